@@ -46,9 +46,9 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
   }
   if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
     bound(step, loaded->step,
-          fmt::format("{:g} rad of the oscillation of body \"{}\" under {} particles, as many as can touch it",
-                      kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name,
-                      loaded->contacts));
+          fmt::format(
+              "{:g} rad of the oscillation of body \"{}\" under {} particles, as many as can touch it",
+              kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name, loaded->contacts));
 }
 
 void bound_by_pair(const Model& model, const PairLimit& limit, ExplicitStep& step) {

@@ -1,7 +1,6 @@
 #include "model/mesh_plausibility.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,7 @@
 #include "mesh/facets.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
-#include "model/mesh_corners.hpp"
+#include "model/loose_meshes.hpp"
 #include "model/plausibility.hpp"
 #include "physics/plausible.hpp"
 
@@ -269,99 +268,6 @@ std::string runs_across(const Model& model, const Wall& wall) {
       wall.name);
 }
 
-// Names of walls, the first few of them.
-std::string some_of(const std::vector<std::string>& walls) {
-  constexpr std::size_t kMost = 3;
-  const std::size_t shown = std::min(walls.size(), kMost);
-  return fmt::format("{}{}",
-                     fmt::join(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-                     walls.size() > shown ? fmt::format(" and {} more", walls.size() - shown) : "");
-}
-
-// Whether the deck says what the two do to each other, be it nothing.
-bool pair_is_given(const DeckTable& deck, const Model& model, int a, int b) {
-  const std::vector<std::string>& names = model.contact.material_names;
-  const std::string &first = names[static_cast<std::size_t>(a)], &second = names[static_cast<std::size_t>(b)];
-  return std::ranges::any_of(deck.table("contact").tables("pairs"), [&](const DeckTable& pair) {
-    if (!pair.has("materials")) return true;
-    const std::vector<std::string>& of = pair.texts("materials");
-    return (of[0] == first && of[1] == second) || (of[0] == second && of[1] == first);
-  });
-}
-
-// Loose bodies of meshes alone, and which walls they go through though something might hold them up there.
-class LooseMeshes {
- public:
-  LooseMeshes(const DeckTable& deck, const Model& model) : deck_(deck), model_(model) {
-    const std::vector<bool> held = held_bodies(model);
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      const Body& body = model.bodies[b];
-      if (held[b] || !body.shapes.empty() || body.meshes.empty()) continue;
-      add(
-          body, [&](const Wall& wall) { return touches_spheres(body, wall) && wall.mesh >= 0; }, meshes_);
-      add(
-          body, [&](const Wall& wall) { return has_no_law(body, wall); }, without_law_);
-    }
-  }
-  std::string through_meshes() const {
-    return finding(meshes_,
-                   "it has meshes and no discs or spheres: meshes do not touch walls that are meshes",
-                   "shapes beside the meshes, or a joint, keep it inside");
-  }
-  std::string through_planes() const {
-    return finding(without_law_,
-                   "contact.pairs has no law for its meshes there: they touch planes where there is one",
-                   "a pair of the two materials, with stiffness = 0 where nothing is to stop it");
-  }
-
- private:
-  struct Passing {
-    std::string body;  // the first one
-    std::vector<std::string> walls;
-    std::size_t bodies = 0;
-  };
-  template <class Passes>
-  void add(const Body& body, const Passes& passes, Passing& to) {
-    std::vector<std::string> walls;
-    for (const Wall& wall : model_.walls)
-      if (passes(wall)) walls.push_back(fmt::format("\"{}\"", wall.name));
-    if (walls.empty() || to.bodies++ > 0) return;
-    to.body = body.name, to.walls = walls;
-  }
-  bool touches_spheres(const Body& body, const Wall& wall) const {
-    return std::ranges::any_of(body.meshes, [&](const MeshShape& mesh) {
-      return model_.contact.law(mesh.material, wall.material).acts();
-    });
-  }
-  bool has_no_law(const Body& body, const Wall& wall) const {
-    return wall.mesh < 0 && std::ranges::none_of(body.meshes, [&](const MeshShape& mesh) {
-             return model_.contact.law(mesh.material, wall.material).acts() ||
-                    pair_is_given(deck_, model_, mesh.material, wall.material);
-           });
-  }
-  static std::string finding(const Passing& found, const char* reason, const char* remedy) {
-    if (found.bodies == 0) return "";
-    return fmt::format("body \"{}\": no joint holds it, and {}: it passes through {}{}; {}", found.body,
-                       reason, some_of(found.walls),
-                       found.bodies > 1 ? fmt::format(", and so do {} other bodies", found.bodies - 1) : "",
-                       remedy);
-  }
-
-  const DeckTable& deck_;
-  const Model& model_;
-  Passing meshes_, without_law_;
-};
-
-// Meshes meet neither each other nor walls that are meshes.
-std::string without_partners(const DeckTable& deck, const Model& model) {
-  const auto any_body = [&](const auto& has) { return std::ranges::any_of(model.bodies, has); };
-  const bool meshes = any_body([](const Body& b) { return !b.meshes.empty(); });
-  const bool shapes = any_body([](const Body& b) { return !b.shapes.empty(); });
-  if (!meshes || shapes || !deck.tables("particles").empty() || largest_corner_radius(model) > 0) return "";
-  return "bodies have meshes, and the deck has nothing that these touch: particles, planes, or discs and "
-         "spheres of other bodies; meshes pass through each other and through walls that are meshes";
-}
-
 }  // namespace
 
 // Within a distance of a point of a plane that is cut into triangles are on average as many of these as have
@@ -387,11 +293,7 @@ Real triangles_wide(const Model& model, const SurfaceMesh& mesh, Real radius) {
 }
 
 std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model) {
-  std::vector<std::string> findings;
-  const LooseMeshes loose(deck, model);
-  for (const std::string& finding :
-       {without_partners(deck, model), loose.through_meshes(), loose.through_planes()})
-    if (!finding.empty()) findings.push_back(finding);
+  std::vector<std::string> findings = loose_meshes(deck, model);
   const std::set<std::string> used = used_meshes(deck);
   const std::vector<std::set<int>> materials = materials_of(model);
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {

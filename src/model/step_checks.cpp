@@ -1,0 +1,163 @@
+// Whether the deck's steps suit its contacts, bodies and speeds.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/build_parts.hpp"
+#include "model/explicit_step.hpp"
+#include "model/impact_speed.hpp"
+#include "model/limits.hpp"
+#include "model/mesh_corners.hpp"
+#include "physics/step_limits.hpp"
+
+namespace scree {
+
+namespace {
+
+// n = 1 has an exact limit, other exponents an estimate: an error and a warning.
+void check_explicit_step(const DeckTable& deck, const Model& model, const std::vector<PairLimit>& limits,
+                         Log& log) {
+  const std::optional<PairLimit> tightest = smallest_explicit_step(limits);
+  const Real step = model.time.step / model.integrator.substeps;
+  if (!tightest || step <= tightest->explicit_step) return;
+  const std::vector<std::string>& names = model.contact.material_names;
+  const auto a = static_cast<std::size_t>(tightest->material[0]),
+             b = static_cast<std::size_t>(tightest->material[1]);
+  const std::string problem = fmt::format(
+      "a velocity-verlet step of step / substeps = {:.4g} s is unstable in dense contacts of \"{}\" and "
+      "\"{}\"; it must be at most {:.4g} s",
+      step, names[a], names[b], tightest->explicit_step);
+  if (tightest->law.exponent == 1) deck.table("time").fail("step", problem + left_out_step(model));
+  log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)" +
+              left_out_step(model));
+}
+
+// Masses of a body on a contact [kg]: pushed along the normal, and rubbed across it; 0: there is none.
+struct MassesOnContact {
+  Real pushed = 0, rubbed = 0;
+  bool beside_particle = false;  // else other bodies or walls alone are met
+};
+
+// Of the lightest body of material a on something of material b: a particle, another body or a surface. What
+// particles give way is left out: they have substeps of their own.
+MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+  const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
+  const bool beside_particle = other.particles > 0;
+  const MassesOnContact alone{body.smallest_body_mass, body.smallest_rubbed_mass, beside_particle};
+  if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
+  if (!bodies_can_meet(model, uses, a, b) || (beside_particle && !model.rotates()))
+    return beside_particle || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
+  return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),
+          reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass), beside_particle};
+}
+
+}  // namespace
+
+// The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
+// and stable only while the step is short against the oscillation of a body on its contacts. As above, it is
+// an estimate for exponents other than 1.
+BodyStepLimit body_step_limit(const Model& model) {
+  const std::vector<MaterialUse> uses = material_uses(model);
+  BodyStepLimit limit{0, kMostBodyPhase, 0, true};
+  for (int a = 0; a < model.contact.materials(); ++a) {
+    for (int b = 0; b < model.contact.materials(); ++b) {
+      const MassesOnContact masses = masses_on_contact(model, uses, a, b);
+      if (masses.pushed == 0) continue;
+      const PairSize size =
+          smallest_partners(uses[static_cast<std::size_t>(a)], uses[static_cast<std::size_t>(b)]);
+      const KelvinVoigt& law = model.contact.law(a, b);
+      Real frequency = contact_frequency(typical_stiffness(law, size), masses.pushed);
+      if (model.rotates())
+        frequency = std::max(
+            frequency,
+            contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size), masses.rubbed));
+      const Real allowed = masses.beside_particle || model.rotates() ? kMostBodyPhase : kMostAmongBodies;
+      limit.good_frequency = std::max(limit.good_frequency, frequency);
+      if (frequency / allowed > limit.frequency / limit.most_phase)
+        limit.frequency = frequency, limit.most_phase = allowed,
+        limit.is_exact = law.of_size(size).exponent == 1;
+    }
+  }
+  return limit;
+}
+
+namespace {
+
+void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
+  const BodyStepLimit limit = body_step_limit(model);
+  const std::string finding = fmt::format(
+      "a body on a contact oscillates with {:.4g} rad/s; with velocity-verlet particles the bodies' step "
+      "must be at most {:.3g} s",
+      limit.frequency, limit.most_step());
+  if (model.time.step > limit.most_step() && limit.is_exact)
+    deck.table("time").fail("step", finding + left_out_step(model));
+  if (model.time.step > limit.good_step())
+    log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding, limit.good_step(),
+                            left_out_step(model)));
+}
+
+// A surface that the deck moves goes as far as a particle might: past those in its way.
+void check_surface_speeds(const Model& model, Real step, Log& log) {
+  const Real speed = ImpactSpeeds(model).fastest_surface(), radius = model.particles.totals.smallest_radius;
+  if (model.particles.totals.count == 0 || speed * step <= radius) return;
+  const bool is_fixed = model.time.control == StepControl::fixed;
+  log.warning(fmt::format(
+      "{}: in a step of {:.4g} s a surface that motions, drivers or motors move goes {:.3g} times the "
+      "smallest "
+      "radius at its fastest, {:.3g} m/s, and may pass particles unnoticed; the step should be at most "
+      "{:.2g} s",
+      is_fixed ? "time.step" : "time.max_step", step, speed * step / radius, speed, 0.95 * radius / speed));
+}
+
+// The same of bodies on the corners of their meshes, of which a face has many. A body that a joint holds may
+// never come to a plane: it is warned of, where the step would not do.
+void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
+  const Real most = model.rotates() ? kMostBodyPhase : kMostAmongBodies;
+  for (const bool held : {false, true}) {
+    const CornerOscillation on = fastest_on_corners(model, held);
+    const Real phase = on.frequency * model.time.step;
+    const std::string finding = fmt::format(
+        "a body on a plane, with all corners of a face of its mesh, oscillates with {:.4g} rad/s; with "
+        "velocity-verlet particles the bodies' step must be at most {:.3g} s",
+        on.frequency, most / on.frequency);
+    if (phase > most && on.is_exact && !held) deck.table("time").fail("step", finding + left_out_step(model));
+    if (phase > (held ? most : kGoodBodyPhase))
+      log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding,
+                              kGoodBodyPhase / on.frequency, left_out_step(model)));
+  }
+}
+
+// A particle that goes farther than its radius in a step may pass through others and through walls. No law
+// of contact says so, and neither does an error estimate: uniform motion is integrated without error.
+void check_speeds(const Model& model, Real step, Log& log) {
+  const Real radii = model.particles.totals.most_radii_per_second * step;
+  if (radii <= 1) return;
+  const bool is_fixed = model.time.control == StepControl::fixed;
+  const std::string which =
+      fmt::format("{}{:.4g} s{}", model.integrator.substeps > 1 ? "step / substeps = " : "", step,
+                  is_fixed ? "" : ", the longest allowed,");
+  // Rounded to two digits the advice must still be short enough.
+  log.warning(
+      fmt::format("{}: in a step of {} a particle goes {:.3g} times its radius with its speed at t = 0, and "
+                  "may pass through others unnoticed; the step should be at most {:.2g} s",
+                  is_fixed ? "time.step" : "time.max_step", which, radii, 0.95 * step / radii));
+}
+
+}  // namespace
+
+void check_steps(const DeckTable& deck, const Model& model, Log& log) {
+  const std::vector<PairLimit> limits = pair_limits(model);
+  check_body_step(deck, model, log);
+  check_corner_step(deck, model, log);
+  const bool is_explicit = model.integrator.particles == ParticleIntegrator::velocity_verlet;
+  const bool is_fixed = model.time.control == StepControl::fixed;
+  const Real step =
+      is_fixed ? model.time.step / (is_explicit ? model.integrator.substeps : 1) : model.time.max_step;
+  check_speeds(model, step, log);
+  check_surface_speeds(model, step, log);
+  if (is_fixed && is_explicit) check_explicit_step(deck, model, limits, log);
+}
+
+}  // namespace scree
