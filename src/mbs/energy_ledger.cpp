@@ -1,6 +1,7 @@
 #include "mbs/energy_ledger.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace scree {
 
@@ -25,6 +26,14 @@ MultibodyEnergies stored_energies(const RigidBodySystem& system, const Multibody
   for (const auto& kind : system.kinds()) kind->add_energies(state, energies);
   energies.elastic = system.elastic_energy({t, state.position, state.velocity}, state.memory);
   return energies;
+}
+
+Real energy_of_forces(const RigidBodySystem& system, const MultibodyState& state) {
+  const std::vector<Real>& scale = system.coordinate_scale();
+  Real sum = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    sum += scale[i] * (std::abs(state.applied[i]) + std::abs(state.applied[i] - state.force[i]));
+  return sum;
 }
 
 }  // namespace scree

@@ -20,5 +20,7 @@ namespace scree {
 void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
 
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t);
+// Multibody::energy_of_forces.
+Real energy_of_forces(const RigidBodySystem& system, const MultibodyState& state);
 
 }  // namespace scree

@@ -139,6 +139,11 @@ void HhtMethod::close(MultibodyState& state) {
   for (std::size_t i = 0; i < state.force.size(); ++i) state.force[i] -= constraint_force_[i];
 }
 
+void HhtMethod::average_accelerations(MultibodyState& state, Real share) const {
+  for (std::size_t i = 0; i < start_velocity_.size(); ++i)
+    state.acceleration[i] += share * ((state.velocity[i] - start_velocity_[i]) / step_ - state.acceleration[i]);
+}
+
 void HhtMethod::evaluate_at(const MultibodyState& state, Real t, std::span<Real> values) {
   system_.evaluate({t, state.position, state.velocity}, terms_);
   compliance_.update(terms_.constraint_jacobian);

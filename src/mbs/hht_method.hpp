@@ -56,6 +56,8 @@ class HhtMethod {
 
   // Evaluates the forces at the current iterate and writes the end of the step into `state`.
   void close(MultibodyState& state);
+  // Replaces this share of the accelerations at the end of the closed step by their mean over it.
+  void average_accelerations(MultibodyState& state, Real share) const;
 
   // Acceleration-level system at the state's q, v and at time t:
   //   [M, Phi_q^T; Phi_q, -C] (a, lambda) = (Q, acceleration_rhs),  C = 0 unless rows share.

@@ -229,8 +229,9 @@ std::string Multibody::trouble() {
   std::string text;
   if (largest > 0 && largest >= impl.norms.residual / 2)
     text = "; the largest gaps are those of " + largest_gaps(impl.system, gap);
-  const std::string dead = scree::dead_point(impl.system, impl.method.start_position(),
-                                             impl.method.start_velocity(), impl.time, impl.findings.repeated);
+  const HhtMethod& method = impl.method;
+  const std::string dead = scree::dead_point(impl.system, method.start_position(), method.start_velocity(),
+                                             impl.time, impl.findings.repeated);
   if (!dead.empty()) return text + "; " + dead;
   if (impl.method.shares())
     return text.empty() ? ""
@@ -245,9 +246,8 @@ std::string Multibody::dead_point(const MultibodyState& state, Real t) {
 
 Real Multibody::error() const {
   Real largest = 0;
-  for (const auto& kind : impl_->system.kinds()) {
+  for (const auto& kind : impl_->system.kinds())
     largest = larger_error(largest, kind->error(impl_->method, impl_->system.length_scale()));
-  }
   return largest;
 }
 
@@ -274,10 +274,7 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
 }
 
 void Multibody::average_accelerations(MultibodyState& state, Real share) const {
-  const std::vector<Real>& start = impl_->method.start_velocity();
-  const Real h = impl_->method.step();
-  for (std::size_t i = 0; i < start.size(); ++i)
-    state.acceleration[i] += share * ((state.velocity[i] - start[i]) / h - state.acceleration[i]);
+  impl_->method.average_accelerations(state, share);
 }
 
 // The spring of friction that slides holds the limit under the reactions that the step ends with. What it
@@ -332,11 +329,7 @@ MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const
 }
 
 Real Multibody::energy_of_forces(const MultibodyState& state) const {
-  const std::vector<Real>& scale = impl_->system.coordinate_scale();
-  Real sum = 0;
-  for (std::size_t i = 0; i < scale.size(); ++i)
-    sum += scale[i] * (std::abs(state.applied[i]) + std::abs(state.applied[i] - state.force[i]));
-  return sum;
+  return scree::energy_of_forces(impl_->system, state);
 }
 
 MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const {
@@ -357,10 +350,9 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
   const MultibodyState now = at_instant(state, t);
   const auto groups = impl_->system.reactions({t, now.position, now.velocity}, now.multipliers);
   std::vector<Reaction> reactions;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
+  for (std::size_t i = 0; i < groups.size(); ++i)
     reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque,
                          impl_->system.groups()[i].kind, groups[i].frame});
-  }
   return reactions;
 }
 

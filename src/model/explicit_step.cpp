@@ -35,6 +35,7 @@ bool has_neck(const Model& model, const PairLimit& limit) {
 }
 
 void bound_by_bodies(const Model& model, ExplicitStep& step) {
+  const Real substeps = model.integrator.substeps;
   bound(step, body_step_limit(model).good_step(),
         fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
   for (const bool held : {false, true}) {
@@ -44,8 +45,9 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
       bound(step, phase / frequency,
             fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
   }
+  // A loaded body steps with the particles.
   if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
-    bound(step, loaded->step,
+    bound(step, substeps * loaded->step,
           fmt::format(
               "{:g} rad of the oscillation of body \"{}\" under {} particles, as many as can touch it",
               kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name, loaded->contacts));

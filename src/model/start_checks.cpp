@@ -22,11 +22,6 @@ namespace scree {
 
 namespace {
 
-// Phase that a body on one contact may turn in a step of a staggered run.
-constexpr Real kMostBodyPhase = 0.7;
-// Likewise between bodies, or bodies and walls, where nothing rubs: past it the contact gains energy.
-constexpr Real kMostAmongBodies = 2;
-
 // Numbers of items: particles by their ids, then shapes, then walls, then meshes of bodies.
 class ItemNames {
  public:
