@@ -141,7 +141,8 @@ void HhtMethod::close(MultibodyState& state) {
 
 void HhtMethod::average_accelerations(MultibodyState& state, Real share) const {
   for (std::size_t i = 0; i < start_velocity_.size(); ++i)
-    state.acceleration[i] += share * ((state.velocity[i] - start_velocity_[i]) / step_ - state.acceleration[i]);
+    state.acceleration[i] +=
+        share * ((state.velocity[i] - start_velocity_[i]) / step_ - state.acceleration[i]);
 }
 
 void HhtMethod::evaluate_at(const MultibodyState& state, Real t, std::span<Real> values) {

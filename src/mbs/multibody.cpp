@@ -28,8 +28,7 @@ namespace {
 constexpr Real kOscillation = 10;
 // Where the velocities suffer too, in thousandths, the run ends in any case.
 constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
-// The bodies' error, over the tolerance, from which they decide on the step's length.
-constexpr Real kGoverns = 0.3;
+constexpr Real kGoverns = 0.3;  // the bodies' error, over the tolerance, from which they decide on the step
 
 MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartFindings& findings) {
   MultibodyState state;
@@ -236,7 +235,7 @@ std::string Multibody::trouble() {
   if (impl.method.shares())
     return text.empty() ? ""
                         : text + ": constraints that share their reactions must not contradict each other";
-  const std::string near = near_singular(impl.system, impl.method.start_position(), impl.time);
+  const std::string near = near_singular(impl.system, method.start_position(), impl.time);
   return near.empty() ? text : text + "; " + near + kSingularPosition;
 }
 
@@ -307,8 +306,8 @@ void Multibody::Impl::fail_for_oscillation() const {
 }
 
 std::string Multibody::reaction_warning() const {
-  const Real share = impl_->watch.worst_share();
-  return share < kOscillation ? "" : oscillation_text(share, impl_->method.coefficients().hht_alpha);
+  const Real share = impl_->watch.worst_share(), alpha = impl_->method.coefficients().hht_alpha;
+  return share < kOscillation ? "" : oscillation_text(share, alpha);
 }
 
 const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }

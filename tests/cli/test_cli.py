@@ -142,8 +142,8 @@ class CommandLineTest(unittest.TestCase):
         if shutil.which("h5diff"):
             for name in ("history.h5", "checkpoint.h5"):
                 files = [str(self.folder / folder / name) for folder in (output, reference)]
-                differing = "--exclude-path=/texts/starts"  # by what the runs took
-                compared = subprocess.run(["h5diff", differing, *files], capture_output=True, text=True)
+                compared = subprocess.run(["h5diff", "--exclude-path=/texts/starts", *files],  # what the runs took
+                                          capture_output=True, text=True)
                 self.assertEqual(compared.returncode, 0, compared.stdout)
 
     def start(self, output, *words, launcher=()):
@@ -394,7 +394,6 @@ class RunTest(CommandLineTest):
         self.write("file", "not a folder")
         self.assertIn("file", self.run_deck(IO_FAILED, "file", *self.SHORT).stderr)
         self.assertEqual((self.folder / "file").read_text(), "not a folder")
-
 
 
 if __name__ == "__main__":
