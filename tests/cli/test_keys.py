@@ -38,7 +38,7 @@ WRONG = {
                               ("bodies", {"inertia_tensor": [1.0] * 6}),
                               ("particles", {"radius": {"kind": "uniform", "min": 0.1, "max": 0.2, "mean": 0.1}}),
                               ("spring_dampers", {"actuator": {"kind": "ramp", "frequency": 1.0}})],
-    "a key that is missing": [("time", {"end": None}), ("time", {"step": None}), ("space", {"dimension": None}),
+    "a key that is missing": [("time", {"end": None}), ("space", {"dimension": None}),
                               ("particles", {"spacing": None}), ("particles", {"kind": None}),
                               ("bodies", {"position": None}), ("bodies", {"name": None}),
                               ("particles", {"radius": {"kind": "uniform", "min": 0.1}}),
