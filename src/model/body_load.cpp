@@ -39,17 +39,18 @@ void add_contacts(const Model& model, int surface, Real radius, PressedBody& bod
 PressedBody pressed_body(const Model& model, const Body& body) {
   PressedBody pressed;
   pressed.mass = body.mass;
+  const bool is_planar = body.kind == BodyKind::planar;  // it turns about z alone
   Real arm = 0;  // of the farthest push; discs and spheres are pushed through their centres unless rubbed
   for (const Shape& shape : body.shapes) {
     add_contacts(model, shape.material, shape.radius, pressed);
-    const Real offset = norm(shape.offset);
+    const Real offset = is_planar ? std::hypot(shape.offset.x, shape.offset.y) : norm(shape.offset);
     pressed.reach = std::max(pressed.reach, offset + shape.radius);
     arm = std::max(arm, model.rotates() ? offset + shape.radius : offset);
   }
   for (const MeshShape& shape : body.meshes) {
     add_contacts(model, shape.material, kInfinity, pressed);
     const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
-    const Real reach = farthest(mesh, shape.offset, model.space.dimension);
+    const Real reach = farthest(mesh, shape.offset, is_planar ? 2 : 3);
     pressed.reach = std::max(pressed.reach, reach), arm = std::max(arm, reach);
   }
   pressed.least_mass = 1 / (1 / body.mass + arm * arm / body.inertia);
