@@ -12,7 +12,7 @@ CornerSet::CornerSet(const Model& model, const SurfaceSet& surfaces) : surfaces_
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (std::size_t m = 0; m < model.bodies[b].meshes.size(); ++m) {
       const MeshShape& shape = model.bodies[b].meshes[m];
-      if (!meets_planes(model, shape)) continue;
+      if (!meets_planes(model, b, shape)) continue;
       const HullCorners* const hull = model.meshes[static_cast<std::size_t>(shape.mesh)].corners.get();
       meshes_.push_back({SurfaceSet::placed_mesh(model, static_cast<int>(b), static_cast<int>(m)),
                          static_cast<Index>(next), hull});

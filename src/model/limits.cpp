@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/mesh_corners.hpp"
 #include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
@@ -117,14 +118,15 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       take_smaller(use.smallest_rubbed_mass, 1 / (1 / body.mass + rubbed * rubbed / body.inertia));
     }
   }
-  for (const Body& body : model.bodies)
-    for (const MeshShape& shape : body.meshes) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes) {
+      const Body& body = model.bodies[b];
       MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
       const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
       const Real reach = farthest(mesh, shape.offset, model.space.dimension);
       ++use.meshes;
       use.sheets += mesh.surface->sheet;
-      if (mesh.corners != nullptr)
+      if (may_meet_planes(model, b, shape))
         ++use.corners, take_smaller(use.smallest_corner_radius, mesh.corners->radius);
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));

@@ -108,17 +108,37 @@ void build_mesh_corners(Model& model) {
     }
 }
 
-bool meets_planes(const Model& model, const MeshShape& shape) {
-  return corners_of(model, shape) != nullptr && std::ranges::any_of(model.walls, [&](const Wall& wall) {
+// As far as contacts may overlap at t = 0, unless the deck says otherwise.
+const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& shape) {
+  constexpr Real kMostOverlap = 0.05;  // over the effective radius
+  const HullCorners* const hull = corners_of(model, shape);
+  if (hull == nullptr) return nullptr;
+  const auto is_across = [&](const Wall& wall) {
+    return is_plane(wall) && std::ranges::any_of(hull->corners, [&](Vec3 corner) {
+             const Vec3 place = to_global_point(model, static_cast<int>(body), shape.offset + corner);
+             return dot(wall.normal, place - wall.point) < -kMostOverlap * hull->radius;
+           });
+  };
+  const auto wall = std::ranges::find_if(model.walls, is_across);
+  return wall == model.walls.end() ? nullptr : &*wall;
+}
+
+bool may_meet_planes(const Model& model, std::size_t body, const MeshShape& shape) {
+  return corners_of(model, shape) != nullptr &&
+         (plane_across(model, body, shape) == nullptr || !held_bodies(model)[body]);
+}
+
+bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape) {
+  return may_meet_planes(model, body, shape) && std::ranges::any_of(model.walls, [&](const Wall& wall) {
            return is_plane(wall) && model.contact.law(shape.material, wall.material).acts();
          });
 }
 
 Real largest_corner_radius(const Model& model) {
   Real largest = 0;
-  for (const Body& body : model.bodies)
-    for (const MeshShape& shape : body.meshes)
-      if (meets_planes(model, shape)) largest = std::max(largest, corners_of(model, shape)->radius);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes)
+      if (meets_planes(model, b, shape)) largest = std::max(largest, corners_of(model, shape)->radius);
   return largest;
 }
 
@@ -127,7 +147,7 @@ CornerOscillation fastest_on_corners(const Model& model, bool held) {
   const std::vector<bool> is_held = held_bodies(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
-      if (is_held[b] != held || !meets_planes(model, shape)) continue;
+      if (is_held[b] != held || !meets_planes(model, b, shape)) continue;
       const Body& body = model.bodies[b];
       const HullCorners& hull = *corners_of(model, shape);
       const InverseMasses masses = inverse_masses(body, shape, hull);

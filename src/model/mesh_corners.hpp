@@ -8,8 +8,13 @@ namespace scree {
 // Finds the corners of the meshes that bodies have, where there are planes; after both are built.
 void build_mesh_corners(Model& model);
 
-// Whether a mesh of a body touches one of the planes.
-bool meets_planes(const Model& model, const MeshShape& shape);
+// Whether a mesh of a body may touch planes: not where it lies across one at t = 0 and something holds the
+// body to the ground there, as a shaft that goes through a wall.
+bool may_meet_planes(const Model& model, std::size_t body, const MeshShape& shape);
+// The same, and the deck has a law for it with one of the planes.
+bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape);
+// A plane that the mesh lies across at t = 0, further than round-off and contacts go; null: none.
+const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& shape);
 // The largest of the effective radii of the meshes that touch planes; 0: there are none [m].
 Real largest_corner_radius(const Model& model);
 

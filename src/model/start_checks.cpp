@@ -193,7 +193,7 @@ void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
       const std::int64_t of_mesh = number++;
-      if (!meets_planes(model, shape)) continue;
+      if (!meets_planes(model, b, shape)) continue;
       const HullCorners& hull = *model.meshes[static_cast<std::size_t>(shape.mesh)].corners;
       for (const Vec3 corner : hull.corners) {
         const Vec3 place =
@@ -205,6 +205,21 @@ void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
                      names.first_wall() + static_cast<std::int64_t>(w));
         }
       }
+    }
+}
+
+// Of bodies that are held, on planes that they would touch but for lying across them.
+void warn_of_meshes_across(const Model& model, Log& log) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes) {
+      const Wall* const wall = plane_across(model, b, shape);
+      if (wall == nullptr || may_meet_planes(model, b, shape) ||
+          !model.contact.law(shape.material, wall->material).acts())
+        continue;
+      log.warning(fmt::format(
+          "body \"{}\": its mesh \"{}\" lies across wall \"{}\" at t = 0, and joints hold the body: the mesh "
+          "touches no planes",
+          model.bodies[b].name, model.meshes[static_cast<std::size_t>(shape.mesh)].name, wall->name));
     }
 }
 
@@ -242,6 +257,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
   find_corner_overlaps(model, own);
+  warn_of_meshes_across(model, log);
   find_mesh_overlaps(model, items, own);
   const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);

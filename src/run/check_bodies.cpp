@@ -40,9 +40,9 @@ std::string solid_line(const Model& model, const Body& body) {
 // What the bodies' meshes touch.
 std::string mesh_partners_line(const Model& model) {
   std::int64_t corners = 0;
-  for (const Body& body : model.bodies)
-    for (const MeshShape& shape : body.meshes)
-      if (meets_planes(model, shape))
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes)
+      if (meets_planes(model, b, shape))
         corners += std::ssize(model.meshes[static_cast<std::size_t>(shape.mesh)].corners->corners);
   const std::string planes =
       corners == 0 ? "" : fmt::format(", and planes by {}", counted(corners, "corner", "corners"));

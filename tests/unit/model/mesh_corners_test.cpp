@@ -99,6 +99,24 @@ TEST_CASE("corners past a plane at t = 0 count by the mesh's radius on planes") 
   CHECK(model_error(deck(kCube), {"bodies.b.position=[0, 0, -0.4]"}).empty());
 }
 
+TEST_CASE("a mesh that lies across a plane at t = 0 touches none where a joint holds its body") {
+  const std::string hinge =
+      "[[joints]]\nname = \"hinge\"\ntype = \"revolute\"\nbodies = [\"ground\", \"b\"]\npoint = [0, 0, "
+      "0]\naxis = [0, "
+      "0, 1]\n";
+  const std::string across = "bodies.b.position=[0, 0, -0.45]",
+                    warning = "lies across wall \"floor\" at t = 0";
+  const auto warned = [&](const std::string& position) {
+    return std::ranges::any_of(model_warnings(deck(kCube, hinge), {position}),
+                               [&](const std::string& text) { return contains(text, warning); });
+  };
+  CHECK(largest_corner_radius(model_of(deck(kCube, hinge), {across})) == 0);
+  CHECK(warned(across));
+  CHECK(largest_corner_radius(model_of(deck(kCube, hinge), {"bodies.b.position=[0, 0, -0.4]"})) > 0);
+  CHECK(!warned("bodies.b.position=[0, 0, -0.4]"));
+  CHECK(contains(model_error(deck(kCube), {across}), "overlap at t = 0"));
+}
+
 TEST_CASE("a law for meshes and planes alone is not asked for, but made where the deck mixes") {
   const Model without = model_of(two_materials(""), kTwoMaterials);
   CHECK(largest_corner_radius(without) == 0);
