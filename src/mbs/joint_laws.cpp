@@ -58,7 +58,7 @@ Real first_root(Real a, Real b, Real c) {
   const Real q = -(b + std::copysign(std::sqrt(square), b)) / 2;
   Real least = 1;
   for (const Real root : {q != 0 ? a / q : Real(0), c != 0 ? q / c : Real(1)})
-    if (root >= 0) least = std::min(least, root);
+    if (root > 0 || (root == 0 && b < 0)) least = std::min(least, root);
   return least;
 }
 
