@@ -34,13 +34,16 @@ bool has_neck(const Model& model, const PairLimit& limit) {
   return law.neck && law.attracts();
 }
 
+// That bodies on the corners of their meshes may turn in a step [rad]: what joints hold may never lie on a
+// plane.
+Real corner_phase(bool held) { return held ? kMostBodyPhase : kGoodBodyPhase; }
+
 void bound_by_bodies(const Model& model, ExplicitStep& step) {
   const Real substeps = model.integrator.substeps;
   bound(step, body_step_limit(model).good_step(),
         fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
   for (const bool held : {false, true}) {
-    const Real phase = held ? kMostBodyPhase : kGoodBodyPhase,
-               frequency = fastest_on_corners(model, held).frequency;
+    const Real phase = corner_phase(held), frequency = fastest_on_corners(model, held).frequency;
     if (frequency > 0)
       bound(step, phase / frequency,
             fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
@@ -101,6 +104,8 @@ ExplicitStep longest_explicit_step(const Model& model) {
 
 bool suits_explicit(const Model& model, Real step) {
   if (step > body_step_limit(model).good_step()) return false;
+  for (const bool held : {false, true})
+    if (step * fastest_on_corners(model, held).frequency > corner_phase(held)) return false;
   const Real h = step / model.integrator.substeps;
   for (const PairLimit& limit : explicit_pairs(model))
     if (h > limit.explicit_step || explicit_error(model, limit, h) > kBadRebound) return false;
