@@ -19,7 +19,8 @@ const TableKeys& mesh_keys() {
   static const TableKeys keys = [] {
     TableKeys mesh{
         "Surfaces of triangles that walls and bodies refer to. Particles and the shapes of bodies touch "
-        "them; meshes of bodies touch planes, too, with the corners of their convex hulls, where the deck has a "
+        "them; meshes of bodies touch planes, too, with the corners of their convex hulls, where the deck "
+        "has a "
         "law for the two materials. Meshes do not touch each other. In 2D: lines.",
         {name_key().required().about("Name for references and messages."),
          choice<MeshKind>("kind").required().about(

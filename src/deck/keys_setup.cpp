@@ -282,7 +282,8 @@ const TableKeys& contact_keys() {
        real("max_start_overlap", "")
            .within(0, 1)
            .otherwise("0.05")
-           .about("Overlap at t = 0 over the smaller radius (of a body's mesh on a plane that of a sphere of the "
+           .about("Overlap at t = 0 over the smaller radius (of a body's mesh on a plane that of a sphere of "
+                  "the "
                   "area of its convex hull): an error past this limit, a warning below it."),
        choice<Mixing>("mixing")
            .otherwise_choice(Mixing::none)

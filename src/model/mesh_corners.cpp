@@ -1,5 +1,7 @@
 #include "model/mesh_corners.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -132,6 +134,20 @@ bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape) 
   return may_meet_planes(model, body, shape) && std::ranges::any_of(model.walls, [&](const Wall& wall) {
            return is_plane(wall) && model.contact.law(shape.material, wall.material).acts();
          });
+}
+
+void warn_of_meshes_across(const Model& model, Log& log) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes) {
+      const Wall* const wall = plane_across(model, b, shape);
+      if (wall == nullptr || may_meet_planes(model, b, shape) ||
+          !model.contact.law(shape.material, wall->material).acts())
+        continue;
+      log.warning(fmt::format(
+          "body \"{}\": its mesh \"{}\" lies across wall \"{}\" at t = 0, and joints hold the body: the mesh "
+          "touches no planes",
+          model.bodies[b].name, model.meshes[static_cast<std::size_t>(shape.mesh)].name, wall->name));
+    }
 }
 
 Real largest_corner_radius(const Model& model) {

@@ -1,6 +1,7 @@
 // Meshes of bodies on planes: a plane can touch the corners of a mesh's convex hull alone.
 #pragma once
 
+#include "base/log.hpp"
 #include "model/model.hpp"
 
 namespace scree {
@@ -15,6 +16,8 @@ bool may_meet_planes(const Model& model, std::size_t body, const MeshShape& shap
 bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape);
 // A plane that the mesh lies across at t = 0, further than round-off and contacts go; null: none.
 const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& shape);
+// Warns of bodies that are held, on planes that they would touch but for lying across them.
+void warn_of_meshes_across(const Model& model, Log& log);
 // The largest of the effective radii of the meshes that touch planes; 0: there are none [m].
 Real largest_corner_radius(const Model& model);
 

@@ -208,21 +208,6 @@ void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
     }
 }
 
-// Of bodies that are held, on planes that they would touch but for lying across them.
-void warn_of_meshes_across(const Model& model, Log& log) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (const MeshShape& shape : model.bodies[b].meshes) {
-      const Wall* const wall = plane_across(model, b, shape);
-      if (wall == nullptr || may_meet_planes(model, b, shape) ||
-          !model.contact.law(shape.material, wall->material).acts())
-        continue;
-      log.warning(fmt::format(
-          "body \"{}\": its mesh \"{}\" lies across wall \"{}\" at t = 0, and joints hold the body: the mesh "
-          "touches no planes",
-          model.bodies[b].name, model.meshes[static_cast<std::size_t>(shape.mesh)].name, wall->name));
-    }
-}
-
 }  // namespace
 
 void check_bodies_inside(const DeckTable& deck, const Space& space) {

@@ -56,7 +56,9 @@ LineSnapshot ContactNetwork::snapshot() const {
   add("wall", {"1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none"},
       wall_);
   add("body", {"1", "which body is at its end, counted from 0 in the deck's order; -1: none"}, body_);
-  add("first_body", {"1", "which body's disc, sphere or corner of a mesh is at its start, likewise; -1: none, but a particle"},
+  add("first_body",
+      {"1",
+       "which body's disc, sphere or corner of a mesh is at its start, likewise; -1: none, but a particle"},
       first_body_);
   return out;
 }
