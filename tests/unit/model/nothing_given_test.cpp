@@ -13,7 +13,7 @@ std::string deck_of(const std::string& pair, const std::string& more = "", bool 
   return std::string(
              "[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = "
              "1e-6\n") +
-         (implicit ? "" : "[integrator]\nparticles = \"velocity-verlet\"\n") +
+         fmt::format("[integrator]\nparticles = \"{}\"\n", implicit ? "hht" : "velocity-verlet") +
          "[[particles]]\nkind = \"row\"\ncount = 2\norigin = [0, 0, 0]\nspacing = [0.5, 0, 0]\nradius = "
          "0.02\nmass = "
          "0.1\n" +

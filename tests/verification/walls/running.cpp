@@ -21,7 +21,7 @@ const std::vector<std::string> kSolved{"integrator.residual_tolerance=1e-10"};
 // Its weight lies on the belt from the start.
 WallDeck conveyor(const std::string& method, Real step) {
   WallDeck deck;
-  deck.wall = kFloor + fmt::format("surface_velocity = [{}, 0, 0.3]\n", kBelt);
+  deck.wall = kFloor + fmt::format("surface_velocity = [{}, 0, 0]\n", kBelt);
   deck.contact = fmt::format(
       "stiffness = 1e5\nfriction = {}\ntangential_stiffness = 1e5\n"
       "tangential_damping_ratio = 0.3\n",
