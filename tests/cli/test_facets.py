@@ -1,5 +1,5 @@
-"""What check says of the facets of meshes, their number and their cost, of shells that cut through each other; keys of 0
-that are as if they were left out. Usage: SCREE=path/to/scree python3 test_facets.py"""
+"""What check says of the facets of meshes, their number and their cost, of shells that cut through each other; keys of
+0 that are as if they were left out. Usage: SCREE=path/to/scree python3 test_facets.py"""
 
 import json
 import math
@@ -124,7 +124,8 @@ class FacetsTest(CommandLineTest):
     def test_what_a_mesh_costs(self):
         report, warnings = self.check(DECK % f"{SCREW}\nsegments = 96")
         self.assertRegex(report, r"a particle of 0\.005 m is \S+ triangles wide; where it touches, about \d+ are near")
-        self.assertRegex(warnings, r'mesh "m": its triangles are small beside the particles: .* costs time: segments = 32')
+        self.assertRegex(warnings,
+                         r'mesh "m": its triangles are small beside the particles: .* costs time: segments = 32')
         self.assertRegex(report, r"device memory .*; \S+ [kM]B of it meshes\)")
 
     def test_shells_that_cut_through_each_other(self):
