@@ -20,8 +20,8 @@ inline constexpr Real kStableShare = Real(1) / 3;  // of the stability limit in 
 inline constexpr Real kNeckShare = 0.01;  // of the shortest contact, where a neck must let go within one
 // Phase that a body on its contacts turns in a step [rad]: its contacts are staggered with the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
-// The largest that is accepted; and between bodies, or bodies and walls, without friction: past it the contact
-// gains energy.
+// The largest that is accepted; and between bodies, or bodies and walls, without friction: past it the
+// contact gains energy.
 inline constexpr Real kMostBodyPhase = 0.7, kMostAmongBodies = 2;
 
 // Mass of the relative motion of two bodies [kg].

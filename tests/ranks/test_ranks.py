@@ -48,8 +48,8 @@ MAIN_CASES = {
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (1, 2, 3, 4)),
-    "meshes, a light plate under heavy spheres": ([HERE / "loaded_plate.toml", "parallel.imbalance=0.0", "time.end=0.08"],
-                                                  (1, 2, 4)),
+    "meshes, a light plate under heavy spheres": ([HERE / "loaded_plate.toml", "parallel.imbalance=0.0",
+                                                   "time.end=0.08"], (1, 2, 4)),
     "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 4)),
     "elements in space": ([*ELEMENTS, "time.end=0.08"], (1, 2, 4)),
     "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (1, 2, 3, 4)),
