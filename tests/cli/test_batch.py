@@ -30,7 +30,7 @@ class EarlySignalTest(CommandLineTest):
                 self.addCleanup(run.kill)
                 with open(fifo, "w") as deck:  # waits for the run, which then waits for its deck
                     run.send_signal(number)
-                    deck.write(DECK)
+                    deck.write(DECK + '[integrator]\nparticles = "hht"\n')  # nothing is chosen, and told
                 text, _ = run.communicate(timeout=LIMIT)
                 self.assertEqual(run.returncode, STOPPED, text)
                 self.assertEqual(text, f"stopped by signal ({signal.strsignal(number)}) before the first step: "
