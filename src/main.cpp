@@ -114,7 +114,7 @@ Deck checked_deck(const Arguments& arguments) {
   return deck;
 }
 
-// From here on the deck has what the program chose, as if it named it.
+// Puts the chosen values into the deck, as if it had named them.
 void take_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
   for (const ChosenValue& value : chosen) deck.root.take(value);
 }

@@ -162,7 +162,7 @@ void BodyLink::follow_load(bool found) {
   if (found)
     loaded_.follow(multibody_->motion(), end_wrench_);
   else
-    loaded_.foretell(multibody_->motion());
+    loaded_.extrapolate(multibody_->motion());
   loaded_.give(step_wrench_);
 }
 

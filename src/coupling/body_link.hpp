@@ -65,9 +65,9 @@ class BodyLink {
   // Whether the contacts of the last reduce_end_wrench(run) are stiff for a step of length h [s] of the
   // bodies (LoadedBodies). Collective.
   bool is_loaded(Real h);
-  // Of such a step, in this order: after predict(); after each correct(), `found` where
-  // reduce_end_wrench(run) has the contacts at the corrected position, else with the wrenches that their
-  // slopes foretell; after accept().
+  // The calls of a step of loaded bodies, in this order. open_loaded() follows predict(). follow_load()
+  // follows each correct(): with `found` reduce_end_wrench(run) has the contacts at the corrected position,
+  // else their slopes predict the wrenches. average_accelerations() follows accept().
   void open_loaded(Real h);
   void follow_load(bool found);
   void average_accelerations(MultibodyState& bodies);

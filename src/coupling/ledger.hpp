@@ -44,8 +44,8 @@ struct CarriedOut {
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
   RubbingLosses losses{};                      // of contact_loss
-  // Of those that drift, when they left: kinetic and gravitational energy, and what the integrator had taken
-  // [J].
+  // Kinetic and gravitational energy of the drifting particles when they left, and what the integrator had
+  // taken out of them until then [J].
   Real drifting_energy = 0, drifting_integrator_loss = 0;
 };
 
@@ -55,8 +55,8 @@ void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
                    const MultibodyState& state, Real t);
 
-// The same ledger as if particles that drift had been removed when they left: what they do outside is in no
-// entry. Of the same instant; the same bits where none drifts.
+// The ledger of an instant as if particles that drift had been removed when they left: no entry has what they
+// do outside. Its bits are those of `all` where none drifts.
 Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const CarriedOut& carried_out);
 
 }  // namespace scree

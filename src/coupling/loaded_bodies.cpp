@@ -87,8 +87,8 @@ bool LoadedBodies::are_loaded(const std::vector<std::int64_t>& contacts, Real h)
   return false;
 }
 
-// Per displacement the contacts' force falls by K, and by C times the change of the velocity that Newmark
-// makes of it.
+// A unit displacement lowers the contacts' force by K, and by C times the change of velocity that Newmark's
+// formulas give with it.
 void LoadedBodies::open(const std::vector<std::int64_t>& contacts, Real h,
                         const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& mean,
                         const std::vector<BodyWrench>& predicted) {
@@ -113,7 +113,7 @@ void LoadedBodies::follow(const std::vector<BodyMotion>& motion, const std::vect
   }
 }
 
-void LoadedBodies::foretell(const std::vector<BodyMotion>& motion) {
+void LoadedBodies::extrapolate(const std::vector<BodyMotion>& motion) {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     now_[b] += slope_[b].change(motion_[b], motion[b]), motion_[b] = motion[b];
 }

@@ -15,16 +15,16 @@
 
 namespace scree {
 
-// Of one body: an estimate of how its contact wrench falls with its displacement, which each observed change
-// corrects by the symmetric update of rank one (Nocedal, Wright, Numerical Optimization, 2006, Eq. 6.24). It
-// begins at or above the true one, and is symmetric and nowhere negative throughout.
+// An estimate of how one body's contact wrench falls with its displacement; each observed change corrects it
+// by the symmetric update of rank one (Nocedal, Wright, Numerical Optimization, 2006, Eq. 6.24). The estimate
+// begins at or above the true slope, and is symmetric and positive semidefinite throughout.
 class WrenchSlope {
  public:
-  // Along every axis the same [N/m], about every axis this times reach^2.
+  // stiffness: along every axis [N/m]; about every axis it is this times reach^2, reach in [m].
   void begin(Real stiffness, Real reach);
   // The wrench changed by `change` where the body was moved.
   void observe(const BodyMotion& from, const BodyMotion& to, const BodyWrench& change);
-  // What it foretells of that change.
+  // The change of the wrench that the estimate predicts.
   BodyWrench change(const BodyMotion& from, const BodyMotion& to) const;
   std::array<Real, 21> packed() const;  // WrenchStiffness::stiffness
 
@@ -37,14 +37,15 @@ class WrenchSlope {
   std::array<Vector, 6> slope_{};  // [N/m]
 };
 
-// On rank 0.
+// The loaded bodies of a step. Lives on rank 0 but for can_be().
 class LoadedBodies {
  public:
   explicit LoadedBodies(const Model& model);
 
   // Whether particles can touch a body at all; on every rank.
   bool can_be() const { return can_be_; }
-  // contacts: of particles, per carrier. Whether a step of length h [s] is one of loaded bodies.
+  // Whether a step of length h [s] is one of loaded bodies. contacts: number of particles' contacts, per
+  // carrier.
   bool are_loaded(const std::vector<std::int64_t>& contacts, Real h) const;
 
   // Opens such a step. mean: the wrenches that it is to be solved with if the bodies stay on their
@@ -53,15 +54,17 @@ class LoadedBodies {
             const std::vector<BodyWrench>& mean, const std::vector<BodyWrench>& predicted);
   // The bodies are there now, and their contacts have the wrenches `found`.
   void follow(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found);
-  // The same with wrenches that the slopes foretell.
-  void foretell(const std::vector<BodyMotion>& motion);
-  // What the next iteration is to be solved with; of `step`, the bodies' entries.
+  // The bodies are there now, and the slopes predict the wrenches of their contacts.
+  void extrapolate(const std::vector<BodyMotion>& motion);
+  // Sets the bodies' entries of `step` to the wrenches that the next iteration is solved with.
   void give(ContactWrenches& step) const;
-  // Share of the accelerations at the end of the step that their mean over it has to replace: at a step in
-  // which damping takes what is left of the bodies' own motion, Newmark's alternate about it.
+  // Share of the accelerations at the end of the step that their mean over the step replaces: where damping
+  // takes nearly all of the bodies' own motion within a step, Newmark's accelerations alternate about that
+  // mean.
   Real averaged_share() const { return averaged_; }
 
-  // Once a body's phase was above kMostLoadedPhase: which body, its contacts and what to do; else empty.
+  // Names the body whose phase was above kMostLoadedPhase, with its contacts and the remedy; empty if none
+  // was.
   std::string warning() const;
 
  private:
@@ -77,7 +80,7 @@ class LoadedBodies {
   std::vector<PressedBody> bodies_;
   bool can_be_ = false;
   Worst worst_;
-  // Of the open step.
+  // These belong to the open step.
   std::vector<WrenchSlope> slope_;
   std::vector<BodyMotion> motion_;
   std::vector<BodyWrench> mean_, predicted_, now_;

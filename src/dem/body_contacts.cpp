@@ -96,8 +96,8 @@ std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& places, Real s
   return shapes;
 }
 
-// Rows of these shapes, in this order, with all that is no shape. Corners go as far as their meshes, and are
-// looked for as far from planes as these are from particles.
+// Rows of these shapes, in this order, with all that is no shape. Corners go as far as their meshes, and the
+// search for planes near them reaches as far as that for particles near meshes.
 void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
                                  SurfaceRows& rows) const {
   std::vector<Vec4> position;
@@ -107,7 +107,7 @@ void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const s
     const bool is_corner = corners_.has(s);
     const PlacedSurface& shape = places.placed[static_cast<std::size_t>(corners_.surface_of(s))];
     const Vec3 p =
-        is_corner ? shape.point + places.frames[shape.frame].axes * corners_.place_of(s) : shape.point;
+        is_corner ? shape.point + places.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
     const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
     if (position.empty()) min = max = p;
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
@@ -233,9 +233,9 @@ void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
     const PlacedSurface& s = (at_start ? places.start : places.placed)[corners_.surface_of(item.surface)];
     const Body& body = model_.bodies[static_cast<std::size_t>(carrier_of(item.surface))];
     const bool is_corner = corners_.has(item.surface);
-    const PlacedCorner at =
-        is_corner ? placed_corner(s, places.frames[s.frame], corners_.place_of(item.surface), at_start, snap_)
-                  : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
+    const PlacedCorner at = is_corner ? placed_corner(s, places.frames[s.frame],
+                                                      corners_.position_of(item.surface), at_start, snap_)
+                                      : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
     store_.position.push_back(vec4(at.point + image_shift(item.image, period_), s.radius));
     store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.travel : at.velocity, body.mass));
     store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));

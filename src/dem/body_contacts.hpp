@@ -108,8 +108,8 @@ class BodyContacts {
                      SurfaceRows& rows) const;
   void take_contacts(const SurfacePlaces& places);
   void list_items(const std::vector<Index>& shapes, const std::vector<std::vector<Item>>& partners);
-  // Where they are now, or at the start of the step. h: of the step that ends now, for velocities of its
-  // middle; 0: as they are.
+  // Sets the items' positions and velocities to those of now, or of the start of the step. h: length of the
+  // step that ends now [s], for velocities of its middle; 0: velocities of the instant.
   enum class Instant { now, start };
   void place(const SurfacePlaces& places, Instant when, Real h);
   void place_start(const SurfacePlaces& places, Real h);

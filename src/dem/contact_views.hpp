@@ -83,7 +83,8 @@ struct ContactViews {
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
   Real reach = 0;              // Contact::reach [m]
-  // What laws see in place of an item's radius at planes; null: that. Of packed rows alone [m].
+  // Radii [m] that laws take at planes instead of the items' own; null: the items' own. Packed rows alone
+  // have it.
   const Real* law_radius = nullptr;
 };
 

@@ -25,12 +25,13 @@ class CornerSet {
   // The placed surface that an item is, or whose corner it is.
   Index surface_of(Index item) const { return has(item) ? mesh_of(item).surface : item; }
   const OfMesh& mesh_of(Index corner) const;
-  Vec3 place_of(Index corner) const {
+  // Position of a corner in the frame of its mesh [m].
+  Vec3 position_of(Index corner) const {
     const OfMesh& mesh = mesh_of(corner);
     return mesh.hull->corners[static_cast<std::size_t>(corner - mesh.first)];
   }
   // Adds the corners that are less than the margin [m] over one of the planes, or below it, by number: a mesh
-  // that is far from all of them is looked at as a whole.
+  // that is far from all of them costs one test.
   void add_near_planes(const SurfacePlaces& places, std::span<const WallPlane> planes, Real margin,
                        std::vector<Index>& to) const;
   // A corner neither rolls nor resists twisting: where the deck has laws for that, the materials stand twice
@@ -42,7 +43,7 @@ class CornerSet {
   std::vector<OfMesh> meshes_;
 };
 
-// A corner where it is at one instant, as PlacedSurface says it of spheres.
+// A corner at one instant, with the members that PlacedSurface has for spheres.
 struct PlacedCorner {
   Vec3 point, arm, velocity, travel;
 };

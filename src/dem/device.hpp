@@ -60,8 +60,8 @@ inline constexpr std::size_t kLinesAtOnce = std::size_t{1} << 18;
 // Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
 // estimate from the model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);
-// What of it the meshes are, but for the particles near them: their arrays and trees, and what contacts lose
-// at each triangle where the output asks for that [B].
+// Device memory of the meshes [B], without that of the particles near them: arrays and trees, and the losses
+// of contacts at each triangle where the output asks for these.
 std::size_t device_memory_of_meshes(const Model& model);
 
 // What one rank asks of its GPU.

@@ -109,7 +109,7 @@ SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const 
   return rows;
 }
 
-// What a mesh is on the device, whether or not anything touches it: the arrays of a MeshView.
+// Memory of a mesh on the device [B], whether or not anything touches it: the arrays of a MeshView.
 double bytes_of_mesh(const SurfaceMesh& mesh) {
   const auto of = [](const auto& values) {
     return static_cast<double>(values.size() * sizeof(values.front()));

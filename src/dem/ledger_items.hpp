@@ -73,7 +73,7 @@ struct LedgerItem {
   }
 };
 
-// Of the particles that have not left the space, sums of their own: InsideEnergies.
+// Sums over the particles that have not left the space, for InsideEnergies.
 enum InsideTerm {
   kInsideKinetic,         // [J]
   kInsideGravitational,   // [J]
@@ -85,7 +85,8 @@ struct InsideTerms {
   Real value[kInsideTerms];
 };
 
-// Where none has left, each is the sum of LedgerItem, bit for bit. gravity, period, verlet_step: as there.
+// Where none has left, each is the sum of LedgerItem, bit for bit. gravity, period, verlet_step: as
+// LedgerItem's.
 struct InsideItem {
   ParticleViews in;
   Vec3 gravity, period;

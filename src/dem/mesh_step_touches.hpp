@@ -106,7 +106,8 @@ struct MeshStepTouchItem {
                       from};
     before[entry] = {pair0.geometry, pair0.contact};
   }
-  // Of a contact, as its feature lies to the centre at both ends; zero: there is none.
+  // Overlaps of a contact at both ends of the step, from how its feature lies to the centre; zero: no
+  // contact.
   struct Overlaps {
     Real at_start, at_end;
   };

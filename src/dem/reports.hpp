@@ -22,7 +22,8 @@ struct RotationEnergies {
   friend bool operator==(const RotationEnergies&, const RotationEnergies&) = default;
 };
 
-// Of the particles that have not left the space; what bodies' contacts lost to the integrator is with it [J].
+// Energies of the particles that have not left the space [J]; integrator_loss includes that of bodies'
+// contacts.
 struct InsideEnergies {
   Real kinetic = 0, gravitational = 0, integrator_loss = 0;
 };

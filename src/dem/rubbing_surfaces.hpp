@@ -98,7 +98,8 @@ struct SurfaceRubItem {
     return excess.work(force0 * path.normal0 - contact.leverage0 * contact.rub.start,
                        contact.normal.step.force * path.normal1 - contact.leverage * contact.rub.step);
   }
-  // Likewise of a surface that runs: at the start with the velocity there.
+  // Excess work of a surface that runs along itself [J]: its accounting takes at the start the velocity
+  // there.
   SCREE_HD Real slide_work(const PlacedSurface& surface, const RubbingPath& path,
                            const RubbingContact& contact) const {
     if (path.slide == Vec3{}) return 0;

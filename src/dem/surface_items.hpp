@@ -38,7 +38,7 @@ struct SurfaceViews {
   // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
   // [kg]
   const Real* masses = nullptr;
-  // What laws see in place of a particle's radius; null: that [m].
+  // Radii [m] that laws take instead of the particles' own; null: the particles' own.
   const Real* law_radius = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
@@ -89,9 +89,9 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
           in.masses != nullptr ? in.masses[surface] : kInfinity};
 }
 
-// Where a contact with a plane or a mesh was when the step began, from the surface's point there [m].
-// normal0: its normal then; apart: how far the sphere's centre has come from the surface's point since. Along
-// an edge it is below the centre, at a vertex where it is.
+// Position of a contact with a plane or a mesh when the step began, from the surface's point then [m].
+// normal0: the contact's normal then; apart: displacement of the sphere's centre relative to the surface's
+// point since. On a face and an edge the contact is below the centre; at a vertex it is the vertex.
 SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
                             Vec3 apart) {
   const Vec3 place = touch.pair.contact, normal1 = touch.pair.geometry.normal();
@@ -100,16 +100,16 @@ SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame
   const Vec3 material = frame.before * transposed_times(frame.axes, place);
   return material + across(centre - material, normal0);
 }
-// Of a velocity in the middle of a step: with the rate along the contact's end that it has along the normal
-// of the middle, where the surface had turned by half.
+// A velocity of the middle of a step, changed along the contact's normal at the end of the step: its rate
+// there becomes the rate along the normal of the middle, where the surface had turned by half.
 SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 velocity) {
   const Vec3 normal = touch.pair.geometry.normal();
   return velocity - Real(0.5) * dot(cross(surface.turn, normal), velocity) * normal;
 }
-// Of a sphere i over a plane or a mesh j in a step; travel: relative to the material of j halfway along the
-// path of the contact [m]. face_motion() takes for slip what is across the normal at the end. Of a face that
-// has turned, what is along the normal of the middle of the step must be along that: else a contact that
-// opens or closes slips.
+// Motion of a sphere i over a plane or a mesh j in a step; travel: relative to the material of j halfway
+// along the path of the contact [m]. face_motion() takes the part across the normal at the end for slip.
+// Where a face has turned, the part along the normal of the middle of the step must not count as slip: else a
+// contact that opens or closes slips.
 SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 normal0,
                                    Vec3 travel, const TurningPartner& i, const TurningPartner& j, Real h) {
   const ContactGeometry& geometry = touch.pair.geometry;
@@ -230,7 +230,7 @@ struct SurfaceLoadItem {
     }
     const ContactMotion motion =
         motion_over(surface, touch, normal0, in.h * state.velocity, one, {turning}, in.h);
-    // What a dashpot along the normal sees is how fast the overlap grows.
+    // A dashpot along the normal acts on the rate of the overlap.
     if (!at_rest && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
     return {state, motion};
   }
@@ -251,8 +251,8 @@ struct SurfaceLoadItem {
 // How a particle lies to a placed surface at both ends of an implicit step.
 struct SurfacePath {
   SurfaceTouch now, start;
-  // Of the particle's centre relative to the surface's material halfway along the contact's path, and of that
-  // material about the surface's point [m].
+  // Displacements [m]: travel of the particle's centre relative to the surface's material halfway along the
+  // contact's path, turned of that material about the surface's point.
   Vec3 travel, turned;
   Changeover change{};
 };
@@ -285,7 +285,7 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
 struct CarrierExcess {
   Vec3 start, end;
 
-  // What the contact's books must not have of it; forces: on the particle [J].
+  // The work that the energy accounting of the contact must leave out [J]; forces: on the particle.
   SCREE_HD Real work(Vec3 start_force, Vec3 end_force) const {
     return Real(0.5) * (dot(start_force, start) + dot(end_force, end));
   }

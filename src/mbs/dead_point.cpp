@@ -17,8 +17,8 @@ namespace {
 constexpr Real kAtIt = 1e-3, kNear = 0.03;
 // Rates of coordinates over those that drivers ask for, both over their scales, that have grown.
 constexpr Real kGrown = 10;
-// Of the largest weight in the combination, for rows of length 1. Where joints repeat each other by
-// themselves, as in a linkage that lies flat, a driver's is nothing.
+// A driver takes part in a combination from this share of the largest weight on, for rows of length 1. Where
+// joints repeat each other by themselves, as in a linkage that lies flat, a driver's weight is nothing.
 constexpr Real kTakesPart = 0.1;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -29,7 +29,7 @@ Real largest(const std::vector<Real>& values, const std::vector<Real>& scale) {
   return most;
 }
 
-// Of the rows of Phi_q, its columns times the scales of their coordinates.
+// Lengths of the rows of Phi_q, its columns times the scales of their coordinates.
 std::vector<Real> row_lengths(const RigidBodySystem& system, const SparseTerm& jacobian) {
   std::vector<Real> square(at(system.constraints()), 0);
   for (std::size_t i = 0; i < jacobian.size(); ++i) {

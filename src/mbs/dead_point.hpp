@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// What is to be said of a run that fails at or near this instant: the driver whose motion leads to a position
+// A text for a run that fails at or near this instant: it names the driver whose motion leads to a position
 // in which its row of Phi is a combination of others, a dead point, where velocities and reactions grow
 // without bound; with the constraints that become dependent. repeated: those that were at the start, whose
 // drivers contradict others where they do. Empty where no driver's row takes part. The system is left

@@ -5,7 +5,7 @@
 
 namespace scree {
 
-// By the coordinate's value c, its rate c' and the load F at the end of the step.
+// Derivatives by the coordinate's value c, its rate c' and the load F at the end of the step.
 struct Dual {
   Real value = 0, by_value = 0, by_rate = 0, by_load = 0;
 
@@ -29,7 +29,7 @@ inline Dual operator/(const Dual& a, const Dual& b) {
   const Real quotient = a.value / b.value;
   return chained(quotient, 1 / b.value, a, -quotient / b.value, b);
 }
-// With the derivatives of the one that is taken.
+// The smaller or larger one, with its derivatives.
 inline Dual smaller(const Dual& a, const Dual& b) { return b.value < a.value ? b : a; }
 inline Dual larger(const Dual& a, const Dual& b) { return b.value > a.value ? b : a; }
 inline Dual within(const Dual& a, const Dual& limit) { return larger(smaller(a, limit), -limit); }

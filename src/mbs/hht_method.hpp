@@ -42,8 +42,8 @@ class HhtMethod {
   //   A = (M / (1 + alpha) - h gamma Q_v) T^-1 + beta h^2 ((M a)_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
   // and -Q_lambda stands beside Phi_q^T.
   void newton_matrix(std::span<Real> values);
-  // Of the last newton_matrix() what no pattern has, O: its part between bodies that touch each other, and
-  // that of bodies that explicit particles load.
+  // O, the part of the last newton_matrix() that no pattern has: that between bodies that touch each other,
+  // and that of bodies that explicit particles load.
   bool is_coupled() const { return !coupling_.empty(); }
   // Whether O may be far larger than the rest.
   bool is_loaded_by_contacts() const { return derivatives_.loaded; }

@@ -11,7 +11,7 @@ namespace {
 // A spring that slides holds the limit but for round-off; its effort follows the load, and so must the
 // derivative.
 constexpr Real kHeld = 1 - 1e-12;
-// The same of a spring whose limit was found with reactions that converged to round-off.
+// The share from which a spring slides whose limit was found with reactions that converged to round-off.
 constexpr Real kSlid = 1 - 1e-9;
 
 // Remembered: the effort z of the spring, which c stretches. T = -(z + d c'), no larger than
@@ -51,7 +51,7 @@ class FrictionLaw final : public JointLaw {
   struct Over {
     Dual mean, spring;
   };
-  // What a step begins with and ends with, in units of z that grow with the rate at its start where the rate
+  // Quantities at both ends of a step, in units of z that grow with the rate at its start where the rate
   // changes its sign.
   struct Ends {
     Real spring, rate, bound;    // z, c' and T_0 + lever F at the start
@@ -111,11 +111,10 @@ FrictionLaw::Over FrictionLaw::over(const LawStep& step, const CoordinateInstant
 }
 
 // A step in which the joint turns back, after the share s: up to there z grows, as far as the limit of a
-// joint at rest, and from there it falls. What it slid before the turn is lost, and no way back undoes it;
-// else a joint that comes to rest would stick later than it does. Each part has what the limits change of its
-// own line. The trapezoidal mean of z itself stays that of the ends, so that a step that sticks is
-// conservative. A way back that is long enough to pull the spring the other way does not resolve this motion:
-// it counts as one line.
+// joint at rest, and from there it falls. No motion back undoes the slide before the turn; else a joint that
+// comes to rest would stick later than it does. Each part has what the limits change of its own line. The
+// trapezoidal mean of z itself stays that of the ends, so that a step that sticks is conservative. A way back
+// that is long enough to pull the spring the other way does not resolve this motion: it counts as one line.
 FrictionLaw::Over FrictionLaw::turned(const Ends& e, Real h) const {
   const Dual share = e.rate / (e.rate - e.last_rate), there = 0.5 * e.rate * h * share, back = e.way - there;
   const Dual limit = level_at(0) * (e.bound + share * (e.last_bound - e.bound));

@@ -49,12 +49,12 @@ constexpr Real kAtLimit = 1 - 1e-12;
 // Halvings of an interval of length 1 that leave round-off.
 constexpr int kHalvings = 52;
 
-// Where a + b s + c s^2, with a >= 0, first falls below 0 for s in [0, 1]; else 1.
+// The first s in [0, 1] at which a + b s + c s^2, with a >= 0, falls below 0; 1 if there is none.
 Real first_root(Real a, Real b, Real c) {
   const Real square = b * b - 4 * a * c;
   const bool falls = b < 0 || (c < 0 && a == 0);
   if (square < 0 || (!falls && c >= 0)) return 1;
-  // Of the two roots the one without cancellation gives the other.
+  // The root without cancellation gives the other one.
   const Real q = -(b + std::copysign(std::sqrt(square), b)) / 2;
   Real least = 1;
   for (const Real root : {q != 0 ? a / q : Real(0), c != 0 ? q / c : Real(1)})
@@ -62,9 +62,10 @@ Real first_root(Real a, Real b, Real c) {
   return least;
 }
 
-// The mean effort of a step is that of the line between what is wanted at its ends, held within the limit:
-// the trapezoidal rule finds it where the end of the step holds twice the mean less what acted at its start.
-// So a limit that is reached or left within a step counts from there on, and a step without one is as it was.
+// The mean effort of a step is that of the line between the efforts without limit at its ends, held within
+// it: the trapezoidal rule finds it where the end of the step holds twice the mean less what acted at its
+// start. So a limit that is reached or left within a step counts from there on, and a step without one is as
+// it was.
 class MotorLaw : public JointLaw {
  public:
   explicit MotorLaw(Real limit) : limit_(limit) {}
@@ -76,7 +77,7 @@ class MotorLaw : public JointLaw {
     if (std::abs(wanted.effort) <= limit_) return wanted;
     return {std::copysign(limit_, wanted.effort), 0, 0, limit_};
   }
-  // first, last: wanted at the ends of the step.
+  // first, last: efforts without the limit at the ends of the step.
   JointEffort limited_step(Real first, const Dual& last, Real size) const {
     if (std::abs(first) <= limit_ && std::abs(last.value) <= limit_)
       return {last.value, last.by_value, last.by_rate, size};
@@ -159,8 +160,8 @@ class SpeedMotor final : public MotorLaw {
   }
 
  private:
-  // Of the step, in units of e that push towards the limit: e at its ends, and at its share s on the way e_0
-  // + h e_0' s + h^2 w''/2 s^2 while c'' is that of the start.
+  // Errors of the step, in units of e that push towards the limit: at its ends, and at its share s on the way
+  // e_0 + h e_0' s + h^2 w''/2 s^2 while c'' is that of the start.
   struct Errors {
     Real first, slope, bend;  // e_0, h e_0', h^2 w''/2 of the parabola through the wanted rates
     Dual last;
@@ -179,7 +180,7 @@ class SpeedMotor final : public MotorLaw {
     return std::max({gain_ * std::abs(rate_(at.time).value), gain_ * std::abs(at.rate),
                      integral_gain_ * std::abs(memory)});
   }
-  // What is wanted of T, without the limit.
+  // The effort T without its limit.
   Real wanted(const CoordinateInstant& at, Real z) const { return gain_ * error(at) + integral_gain_ * z; }
   Dual wanted(const CoordinateInstant& end, const Dual& z) const {
     return gain_ * end_error(end) + integral_gain_ * z;
@@ -235,8 +236,8 @@ SpeedMotor::Over SpeedMotor::over(const LawStep& step, const CoordinateInstant& 
 }
 
 // When the limit lets go of a step that begins at it. Until then T is constant, and c' keeps its tangent: the
-// instant is exact to O(h^3), where other forces are smooth. First e falls to where T wants less; and there T
-// stays as long as I e would drive it up faster than P e' lets it fall.
+// instant is exact to O(h^3), where other forces are smooth. First e falls to where T without its limit is
+// below it; there T stays as long as I e would drive it up faster than P e' lets it fall.
 SpeedMotor::Release SpeedMotor::release_of(Real memory, const Errors& e) const {
   const Real beyond = std::max(gain_ * e.first + integral_gain_ * memory - limit_, Real(0));
   Release release{first_root(beyond, gain_ * e.slope, gain_ * e.bend), false};
@@ -259,7 +260,7 @@ Dual SpeedMotor::released(const Release& release, Real memory, const Errors& e) 
                  most);
 }
 
-// Of a step in which the limit is reached after the share s: up to there c' has its tangent at the start,
+// e where the limit is reached, after the share s of a step: up to there c' has its tangent at the start,
 // from there on T is constant, and c' a straight line:
 //   c'(s) = c'_0 + s h c''_0 + (c'_1 - c'_0 - h c''_0) s / (2 - s).
 Dual SpeedMotor::error_at(const Dual& share, const Errors& e) const {
@@ -267,8 +268,8 @@ Dual SpeedMotor::error_at(const Dual& share, const Errors& e) const {
   return e.first + share * (e.slope + share * e.bend) + unlike * (share / (2 - share));
 }
 
-// That share, where the step begins within the limit and ends `last` beyond it: what P e + I z does from
-// there on, P (e_1 - e(s)) + I h (1 - s) (e(s) + e_1) / 2, is `last`.
+// The share after which the limit is reached, where the step begins within the limit and ends `last` beyond
+// it: the change of P e + I z from there on, P (e_1 - e(s)) + I h (1 - s) (e(s) + e_1) / 2, is `last`.
 Dual SpeedMotor::held_after(const Dual& last, const Errors& e) const {
   const auto left = [&](const Dual& s) {
     const Dual then = error_at(s, e);

@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Of the positive part of a line from a to b.
+// Mean of the positive part of a line from a to b.
 inline Dual positive_mean(const Dual& a, const Dual& b) {
   if (a.value >= 0 && b.value >= 0) return 0.5 * (a + b);
   if (a.value > 0) return a * a / (2 * (a - b));
@@ -15,9 +15,9 @@ inline Dual positive_mean(const Dual& a, const Dual& b) {
   return {};
 }
 
-// Of a line from a to b that is held between -limit and limit, where the limit, never negative, runs from
-// `first` to `last`. It grows with a and b, and is exact: an event within the step counts over the part of
-// the step that comes after it.
+// Mean of a line from a to b that is held between -limit and limit, where the limit, never negative, runs
+// from `first` to `last`. It grows with a and b, and is exact: an event within the step counts over the part
+// of the step that comes after it.
 inline Dual limited_mean(const Dual& a, const Dual& b, const Dual& first, const Dual& last) {
   if (a.value >= first.value && b.value >= last.value) return 0.5 * (first + last);
   if (-a.value >= first.value && -b.value >= last.value) return -0.5 * (first + last);

@@ -43,8 +43,8 @@ struct SystemTerms {
   Real force_scale = 0;
 };
 
-// An entry of (-Q)_q and -Q_v T^-1 at a place that comes and goes: those of bodies that touch each other, and
-// of bodies that explicit particles load. No pattern has it.
+// An entry of (-Q)_q and -Q_v T^-1 at a position of the matrix that comes and goes: bodies that touch each
+// other and bodies that explicit particles load have such entries. No pattern has them.
 struct CoupledEntry {
   int row, column;
   Real stiffness, damping;

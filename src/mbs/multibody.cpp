@@ -261,8 +261,8 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.end.wrench = end_wrench;
   const bool efforts_differ = impl.system.joint_forces().end_step(),
              contacts_differ = !impl.system.has_forces_of(end_wrench);
-  // Of the efforts of joints all of the change: with alpha < 0 the impulse of a step in which one has an
-  // event is then right whenever that is (mbs/README.md, "Events").
+  // All of the change of joints' efforts counts: with alpha < 0 the impulse of a step with an event is then
+  // right wherever in the step the event is (mbs/README.md, "Events").
   if (efforts_differ) impl.newton.change_forces(impl.end, impl.method.end_time(), 1);
   if (contacts_differ) {
     impl.system.set_forces(end_wrench);

@@ -89,8 +89,8 @@ class Multibody {
   // time t [s]. Throws InputError where a joint or driver does not hold there.
   void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
 
-  // What is to be said of a start position that has passed joint limits, one text for each: what they push
-  // with and what they hold. Throws InputError where it can hardly be meant (mbs/passed_stops.hpp).
+  // Warnings of joint limits that the start position has passed, one text for each: their efforts and the
+  // energy that they hold. Throws InputError where it can hardly be meant (mbs/passed_stops.hpp).
   std::vector<std::string> start_warnings();
 
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.
@@ -101,8 +101,8 @@ class Multibody {
   // What is to be said of a step that does not converge: which joints and drivers are not kept, and whether
   // the position is near a singular one; empty where neither tells why. Of the last correct().
   std::string trouble();
-  // What is to be said of a run that goes on no further than this state, at time t: the driver that asks for
-  // what the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
+  // A text for a run that goes on no further than this state, at time t: it names the driver that asks for a
+  // motion which the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
   std::string dead_point(const MultibodyState& state, Real t);
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
@@ -112,8 +112,8 @@ class Multibody {
   // `state` as it was, where the reactions oscillate beyond repair (see ReactionWatch).
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
 
-  // Of the step that accept() has just closed: replaces this share of the accelerations at its end by their
-  // mean over it.
+  // Replaces this share of the accelerations at the end of the step that accept() has just closed by their
+  // mean over the step.
   void average_accelerations(MultibodyState& state, Real share) const;
 
   // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
@@ -129,8 +129,8 @@ class Multibody {
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
-  // What forces and reactions of the state could do: the sum of their magnitudes, each times the scale of its
-  // coordinate [J]. They may cancel, their round-off does not.
+  // An energy for round-off of forces and reactions [J]: the sum of their magnitudes, each times the scale of
+  // its coordinate. Forces may cancel, their round-off does not.
   Real energy_of_forces(const MultibodyState& state) const;
   // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those
   // of the acceleration-level system with its positions, velocities and forces; and with what friction under

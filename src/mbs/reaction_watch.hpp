@@ -44,7 +44,7 @@ class ReactionWatch {
   int steps_ = 0;                             // that alternate, in sequence
 };
 
-// What is to be said of reactions whose alternating part has grown to `share` times the largest mean part.
+// The message of reactions whose alternating part has grown to `share` times the largest mean part.
 std::string oscillation_text(Real share, Real hht_alpha);
 
 }  // namespace scree

@@ -21,11 +21,11 @@ inline bool overlap(const MeshBox& a, const MeshBox& b) {
          a.min.z <= b.max.z && b.min.z <= a.max.z;
 }
 
-// Of each triangle.
+// One box per triangle.
 std::vector<MeshBox> boxes_of(const TriangleMesh& mesh);
 // The diagonal of the box around all boxes [m].
 Real extent_of(const std::vector<MeshBox>& boxes);
-// Of each shell, from those of the triangles.
+// One box per shell, from those of the triangles.
 std::vector<MeshBox> shell_boxes(const std::vector<MeshBox>& boxes,
                                  const std::vector<Index>& shell_of_triangle);
 // Triangles whose boxes overlap the box of another shell, increasing.

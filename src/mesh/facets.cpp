@@ -12,7 +12,8 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// Of a chord that spans this angle from its arc of radius 1; without the difference of two numbers near 1.
+// Largest distance of a chord that spans this angle from its arc of radius 1, without the difference of two
+// numbers near 1.
 Real sag_of(Real angle) {
   const Real s = std::sin(angle / 4);
   return 2 * s * s;
@@ -20,14 +21,14 @@ Real sag_of(Real angle) {
 
 Real around(Real radius, Index segments) { return radius * sag_of(2 * kPi / segments); }
 
-// Of the side of a cone. A chord's middle is beside the circle by the sag, and beside the side by that times
-// the cosine of its slope.
+// Sag of the side of a cone [m]. A chord's middle is beside the circle by the sag, and beside the side by
+// that times the cosine of its slope.
 Real of_cone(Real radius, Real top_radius, Real length, Index segments) {
   const Real slant = std::hypot(length, radius - top_radius);
   return around(std::max(radius, top_radius), segments) * length / slant;
 }
 
-// Of a point in the plane from the origin to the segment from p to q.
+// Distance of the origin of the plane from the segment from p to q.
 Real distance_to_segment(Real px, Real py, Real qx, Real qy) {
   const Real ex = qx - px, ey = qy - py;
   const Real t = std::clamp(-(px * ex + py * ey) / (ex * ex + ey * ey), Real(0), Real(1));
@@ -83,8 +84,8 @@ Real facet_deviation(const DrumShape& shape) {
 
 namespace {
 
-// Of a point from the helicoid z = -rise * angle, which goes on to any radius: the least over the angle of
-// the distance from the line at that angle, by Newton's method from the point's own angle on.
+// Distance of a point from the helicoid z = -rise * angle, which goes on to any radius: the least over the
+// angle of the distance from the line at that angle, by Newton's method from the point's own angle on.
 Real distance_from_helicoid(Vec3 p, Real rise) {
   const Real radius = std::hypot(p.x, p.y), own = std::atan2(p.y, p.x);
   Real turn = 0;  // from there
@@ -98,7 +99,7 @@ Real distance_from_helicoid(Vec3 p, Real rise) {
   return std::hypot(radius * std::sin(turn), p.z + rise * (own + turn));
 }
 
-// The largest of points of a triangle.
+// The largest distance of points of a triangle.
 Real farthest_from_helicoid(Vec3 a, Vec3 b, Vec3 c, Real rise) {
   constexpr int kPoints = 24;
   Real farthest = 0;
@@ -110,8 +111,9 @@ Real farthest_from_helicoid(Vec3 a, Vec3 b, Vec3 c, Real rise) {
   return farthest;
 }
 
-// Of a face of the flight between two sections that are turned by `angle`, each patch split from its inner
-// corner in the one to its outer corner in the other; the other face is its image in a half turn.
+// Largest distance of a face of the flight between two sections that are turned by `angle`, each patch split
+// from its inner corner in the one to its outer corner in the other; the other face is its image in a half
+// turn.
 Real of_flight(const ScrewShape& shape, const ScrewParts& parts, Real angle) {
   const Real rise = std::abs(shape.pitch) / (2 * kPi), height = rise * angle;
   const auto at = [&](Real radius, bool high) {

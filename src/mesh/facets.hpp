@@ -24,7 +24,7 @@ Real facet_deviation(const HopperShape& shape);
 
 // Facets within this share of the smallest particle's radius fit the particles.
 inline constexpr Real kFacetShare = 0.05;
-// Where there are no particles.
+// Segments and levels where there are no particles.
 inline constexpr Index kUsualSegments = 48;
 inline constexpr int kUsualLevels = 3;
 
@@ -33,7 +33,7 @@ inline constexpr int kUsualLevels = 3;
 // feature_angle [rad]. By the first rule alone a segment is two fifths of a particle's diameter long at
 // least.
 Index fitting_segments(Real radius, Real grain, Real feature_angle);
-// The same of the levels of a sphere, from 2 to 6.
+// Levels of a sphere whose facets lie within kFacetShare of `grain` from it [m], from 2 to 6.
 int fitting_levels(Real radius, Real grain);
 
 }  // namespace scree

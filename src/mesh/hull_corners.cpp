@@ -117,7 +117,7 @@ HullCorners corners_of_outline(const std::vector<Vec3>& given) {
   return out;
 }
 
-// Of points in one plane in space: both its sides are faces.
+// Corners of points in one plane in space: both its sides are faces.
 HullCorners corners_of_flat(const std::vector<Vec3>& points) {
   const Vec3 a = points.front();
   const auto farthest = [&](const auto& measure) {
@@ -147,8 +147,8 @@ Vec3 twice_area(const TriangleMesh& mesh, std::size_t t) {
   return cross(at(1) - at(0), at(2) - at(0));
 }
 
-// Per triangle of a hull the number of its face, and the faces' normals. From the largest triangle on, what
-// hangs together in its plane is one face: slivers join whatever their own normals are.
+// The faces of a hull: their number per triangle, and their normals. From the largest triangle on, connected
+// triangles in one plane are one face; slivers join it whatever their own normals are.
 class HullFaces {
  public:
   HullFaces(const TriangleMesh& hull, Real tolerance) : hull_(hull), tolerance_(tolerance) {

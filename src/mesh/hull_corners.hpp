@@ -18,8 +18,8 @@ struct HullCorners {
   std::vector<Vec3> normals;        // per face, unit, outwards
   Vec3 middle;                      // no corner is farther from it than reach [m]
   Real reach = 0;
-  // Of the sphere whose area is that of the hull; in 2D of the circle that is as long as the hull's outline
-  // [m].
+  // Radius of the sphere whose area is that of the hull; in 2D of the circle that is as long as the hull's
+  // outline [m].
   Real radius = 0;
 
   Index faces() const { return static_cast<Index>(normals.size()); }
@@ -29,8 +29,8 @@ struct HullCorners {
   }
 };
 
-// Of these points, which are not all in one line in space, nor all in one place; planar: as they lie in the
-// plane z = 0, for a space of dimension 2. What is flat to 1e-9 of its extent counts as flat.
+// The corners of these points, which are not all on one line in space, nor all at one position; planar: in
+// the plane z = 0, for a space of dimension 2. What is flat to 1e-9 of its extent counts as flat.
 HullCorners hull_corners(const std::vector<Vec3>& points, bool planar);
 
 }  // namespace scree

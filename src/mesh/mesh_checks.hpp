@@ -15,7 +15,7 @@ namespace scree {
 std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
                                        const std::vector<Index>& numbers = {});
 
-// Where shells of a closed mesh without other trouble cut through each other, as one text: which, and the
+// A text on shells of a closed mesh without other trouble that cut through each other: their numbers, and the
 // first position; "" where none do. Contacts are found on such a mesh, but the volume that two shells share
 // is in both.
 std::string crossing_text(const TriangleMesh& mesh, const std::vector<Index>& numbers = {});

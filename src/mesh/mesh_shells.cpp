@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostShells = 10'000;  // each is compared with each
 constexpr Real kShareOfThickness = 0.01;     // so deep under a shell's surface its inside begins for sure
 
-// Of length 2 x area.
+// Normal of a triangle, of length 2 x area.
 Vec3 normal_of(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
 struct Shell {
@@ -68,8 +68,8 @@ Real turns_around(Vec3 point, const Shell& shell) {
   return turns;
 }
 
-// In how many places the surroundings of a shell are looked at: each of them costs a pass over the triangles
-// of the shells whose boxes it is in, and one over all boxes.
+// Number of points at which the surroundings of a shell are tested: each of them costs a pass over the
+// triangles of the shells whose boxes it is in, and one over all boxes.
 std::size_t points_to_judge(std::size_t triangles, std::size_t shells) {
   constexpr Real kMostPoints = 16, kMostTriangles = 1e7, kMostBoxes = 1e8;
   const Real many = std::min(kMostTriangles / static_cast<Real>(triangles),

@@ -14,7 +14,7 @@ struct DrumArcs {
 };
 DrumArcs drum_arcs(const DrumShape& shape);
 
-// Along a screw, and around its section.
+// Parts along a screw, and around its section.
 struct ScrewParts {
   Index layers, core_segments, sector_segments, radial_segments;
 };

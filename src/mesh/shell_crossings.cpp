@@ -15,8 +15,8 @@ namespace {
 
 using Corners = TriangleCorners;
 
-// Where a triangle cuts a plane that it lies on both sides of: the range of its points there along
-// `direction`, and what they are [m]. height: of its corners over the plane.
+// The line along which a triangle cuts a plane that it lies on both sides of: the range of its points there
+// along `direction`, and its ends [m]. height: of the triangle's corners over the plane.
 struct Cut {
   Real low = kInfinity, high = -kInfinity;
   Vec3 at_low, at_high;

@@ -15,10 +15,11 @@ struct ShellCrossing {
   Vec3 position;                // middle of the line along which the two triangles cross [m]
 };
 
-// Of every two shells that cross, in the order of the shells. Two triangles cross where the corners of each
-// lie on both sides of the other one's plane and the two have a line in common; all three by more than
-// kCrossingTolerance of the mesh's extent, so that shells which touch, as boxes that stand on each other, do
-// not cross, whatever the round-off of a file's coordinates. shell_of_triangle: as shells_of() has them.
+// The first crossing of every two shells that cross, in the order of the shells. Two triangles cross where
+// the corners of each lie on both sides of the other one's plane and the two have a line in common; all three
+// by more than kCrossingTolerance of the mesh's extent, so that shells which touch, as boxes that stand on
+// each other, do not cross, whatever the round-off of a file's coordinates. shell_of_triangle: as shells_of()
+// has them.
 std::vector<ShellCrossing> shell_crossings(const TriangleMesh& mesh,
                                            const std::vector<Index>& shell_of_triangle);
 inline constexpr Real kCrossingTolerance = 1e-6;

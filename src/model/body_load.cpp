@@ -25,7 +25,8 @@ void add_contact(const Model& model, int particles, int surface, Real radius, Re
   body.damping = std::max(body.damping, dashpot_of(friction.damping_ratio, mass, slip_stiffness));
 }
 
-// Of all particles with a surface of this material; radius: of the surface, infinite for a mesh.
+// Adds the contacts of all particles with a surface of this material; radius: of the surface, infinite for a
+// mesh.
 void add_contacts(const Model& model, int surface, Real radius, PressedBody& body) {
   const ParticleTotals& totals = model.particles.totals;
   for (int particles = 0; particles < model.contact.materials(); ++particles) {
@@ -40,7 +41,7 @@ PressedBody pressed_body(const Model& model, const Body& body) {
   PressedBody pressed;
   pressed.mass = body.mass;
   const bool is_planar = body.kind == BodyKind::planar;  // it turns about z alone
-  Real arm = 0;  // of the farthest push; discs and spheres are pushed through their centres unless rubbed
+  Real arm = 0;  // of the farthest push; discs and spheres without friction are pushed through their centres
   for (const Shape& shape : body.shapes) {
     add_contacts(model, shape.material, shape.radius, pressed);
     const Real offset = is_planar ? std::hypot(shape.offset.x, shape.offset.y) : norm(shape.offset);
@@ -100,7 +101,7 @@ std::int64_t most_contacts(const Model& model, int body) {
   const Real r = totals.smallest_radius;
   if (!(r > 0)) return 0;
   const Real size = surface_of(model, model.bodies[static_cast<std::size_t>(body)], r);
-  // Of the densest layer.
+  // Size that one particle takes in the densest layer.
   const Real of_one = model.space.dimension == 2 ? 2 * r : 2 * std::sqrt(Real(3)) * r * r;
   const Real most = std::ceil(size / of_one);
   return most < static_cast<Real>(totals.count) ? std::max<std::int64_t>(1, std::llround(most))

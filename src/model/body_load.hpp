@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// What particles can do to one body.
+// The contacts that particles can have with one body, and the body under them.
 struct PressedBody {
   Real stiffness = 0;   // of its stiffest contact with a particle [N/m], an estimate; 0: none can touch it
   Real damping = 0;     // of its contact with the largest damping [N s/m], likewise

@@ -18,8 +18,8 @@ namespace {
 // More cannot be meant, and counts of them must stay exact.
 constexpr Real kMostSteps = 1e12;
 // From so many particles that may touch on, explicit steps cost less than implicit ones that adapt: something
-// is in contact at all times then, and friction makes an implicit step dearer.
-constexpr std::int64_t kManyParticles = 50, kManyRubbingParticles = 20;
+// is in contact at all times then, and friction makes an implicit step cost more.
+constexpr std::int64_t kManyParticles = 50, kManyWithFriction = 20;
 
 // Short enough for any contact; from there on the step control goes by the error [s].
 Real first_step(const Model& model) {
@@ -29,7 +29,7 @@ Real first_step(const Model& model) {
   return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
 }
 
-// Of steps that adapt [s].
+// Longest of steps that adapt [s].
 Real longest_step(const Model& model) {
   constexpr Real kShareOfRun = 1e-2;
   return std::min(kShareOfRun * model.time.end, unnoticed_step(model));
@@ -51,7 +51,7 @@ struct IntegratorChoice {
   std::string reason;
 };
 
-// What a deck says by keys that one of the two has alone.
+// The integrator that follows from given keys which one of the two has alone; nothing without such keys.
 std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Model& model) {
   const DeckTable &time = deck.table("time"), &method = deck.table("integrator");
   const auto with = [](ParticleIntegrator integrator, const std::string& key) {
@@ -70,14 +70,14 @@ std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Mod
 }
 
 IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
-  if (model.particles.totals.count == 0) return {};  // nothing to say
+  if (model.particles.totals.count == 0) return {};  // no reason without particles
   if (const auto named = named_otherwise(deck, model)) return *named;
   const std::int64_t touching = touching_particles(model);
   if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
   if (model.rolls())
     return {ParticleIntegrator::velocity_verlet, "contacts resist rolling or twisting, which is explicit"};
   if (model.attracts()) return {ParticleIntegrator::velocity_verlet, "contacts attract, which is explicit"};
-  const std::int64_t many = model.rotates() ? kManyRubbingParticles : kManyParticles;
+  const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
                   model.rotates() ? "with" : "without");

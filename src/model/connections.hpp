@@ -89,7 +89,8 @@ int constraint_count(const Model& model);
 int memory_count(const Model& model);
 // Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.
 std::vector<std::pair<int, int>> connected_bodies(const Model& model);
-// Per body, whether joints, springs or bushings hold it, through other bodies or not, to the ground.
+// One entry per body: whether joints, springs or bushings hold it, through other bodies or not, to the
+// ground.
 std::vector<bool> held_bodies(const Model& model);
 
 }  // namespace scree

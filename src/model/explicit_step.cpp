@@ -34,8 +34,8 @@ bool has_neck(const Model& model, const PairLimit& limit) {
   return law.neck && law.attracts();
 }
 
-// That bodies on the corners of their meshes may turn in a step [rad]: what joints hold may never lie on a
-// plane.
+// Phase of oscillation by which bodies on the corners of their meshes may advance in a step [rad]: a body
+// that joints hold may never lie on a plane.
 Real corner_phase(bool held) { return held ? kMostBodyPhase : kGoodBodyPhase; }
 
 void bound_by_bodies(const Model& model, ExplicitStep& step) {

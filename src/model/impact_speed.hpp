@@ -13,16 +13,16 @@ Real fall_height(const Model& model);
 // Mass of the relative motion of the lightest pair [kg].
 Real lightest_mass(const PairLimit& limit);
 
-// Of one model: looks at all its meshes once.
+// Impact speeds of one model. The constructor reads all its meshes once.
 class ImpactSpeeds {
  public:
   explicit ImpactSpeeds(const Model& model);
 
-  // At which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the space
-  // where there is something to fall on; and with the speed of the surfaces that the deck moves, at which
-  // particles are thrown, too.
+  // Speed at which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the
+  // space where there is something to fall on; and with the speed of the surfaces that the deck moves, at
+  // which particles are thrown, too.
   Real of(const PairLimit& limit) const;
-  // Of the surfaces that the deck moves, along their normals [m/s].
+  // Fastest of the surfaces that the deck moves, along their normals [m/s].
   Real fastest_surface() const;
 
  private:
@@ -31,7 +31,7 @@ class ImpactSpeeds {
   std::vector<Real> surfaces_;  // of each material
 };
 
-// Of one pair.
+// Impact speed of one pair [m/s]; for several pairs ImpactSpeeds costs less.
 inline Real impact_speed(const Model& model, const PairLimit& limit) { return ImpactSpeeds(model).of(limit); }
 
 // The time in which a particle as fast as at t = 0 that then fell through the space, or a surface that the

@@ -97,7 +97,7 @@ Real incidence(Real friction) { return std::min(std::atan(2 * friction), std::nu
 struct Setup {
   Partners two;
   Real speed, touch;   // of approach [m/s]; without damping, about [s]
-  Real incidence = 0;  // [rad]; 0: nothing rubs
+  Real incidence = 0;  // [rad]; 0: without friction
   TrialImpact impact{};
 };
 
@@ -119,7 +119,7 @@ auto with_setup(const Model& model, Real fastest, const PairLimit& limit, const 
   });
 }
 
-// The same with the Trials of velocity-verlet.
+// Returns what use(trials) returns for the Trials of velocity-verlet, whatever the model's integrator is.
 template <class Use>
 auto with_explicit_trials(const Model& model, Real fastest, const PairLimit& limit, const Use& use) {
   return with_setup(model, fastest, limit, [&]<class Law>(const Law& law, const Setup& setup) {
@@ -144,7 +144,7 @@ void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTr
   }
 }
 
-// In the steps of the model's integrator.
+// The trial of a pair in the steps of the model's integrator.
 StepTrial try_pair(const Model& model, Real fastest, const PairLimit& limit) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   StepTrial trial{limit, 0, 0, false, false, 0, {}, 0, false, 0, 0};

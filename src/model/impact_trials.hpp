@@ -1,5 +1,5 @@
-// What steps make of impacts of the deck's own materials: each pair's lightest partners meet in the steps
-// that a run takes (physics/trial_impact.hpp).
+// Trial impacts of the deck's own materials: each pair's lightest partners meet in the steps that a run takes
+// (physics/trial_impact.hpp).
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// Of one pair of materials.
+// Trial impact of one pair of materials.
 struct StepTrial {
   PairLimit limit;
   Real speed;  // of approach [m/s]; nothing depends on it where the force is linear in the overlap
@@ -33,7 +33,7 @@ inline constexpr Real kGoodRebound = 0.02, kBadRebound = 0.05;
 // themselves beside explicit particles.
 std::vector<StepTrial> try_steps(const Model& model);
 
-// Of the pairs of materials whose contacts velocity-verlet takes. These need no step and no integrator of the
+// The pairs of materials whose contacts velocity-verlet takes. These need no step and no integrator of the
 // model yet.
 std::vector<PairLimit> explicit_pairs(const Model& model);
 // The longest step of the particles up to which such a pair's trial is within kGoodRebound [s], and the error

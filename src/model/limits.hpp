@@ -35,7 +35,8 @@ std::vector<MaterialUse> material_uses(const Model& model);
 // Whether something of material a can touch something of material b; shapes of bodies that are all connected
 // with each other cannot.
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
-// The same but for meshes of bodies on planes, which touch only where the deck has a law for them.
+// Whether the deck must have a law for the two: they can meet, but not as meshes of bodies on planes alone,
+// which touch only where the deck has a law for them.
 bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether bodies can that have something of a and of b.
 bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
@@ -55,8 +56,8 @@ struct PairLimit {
   Real explicit_step = 0;      // stability limit of velocity-verlet in dense contact [s]; 0: no particles
 };
 
-// Of the bodies' steps beside velocity-verlet particles: how fast a body on its contacts oscillates, and what
-// follows for the step. Frequencies are 0 where bodies touch nothing.
+// Limits of the bodies' steps beside velocity-verlet particles: how fast a body on its contacts oscillates,
+// and which steps follow. Frequencies are 0 where bodies touch nothing.
 struct BodyStepLimit {
   Real frequency = 0;       // of the contact that bounds the step most [rad/s]
   Real most_phase = 0;      // that a step may have of it [rad]

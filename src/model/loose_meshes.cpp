@@ -20,7 +20,7 @@ std::string some_of(const std::vector<std::string>& walls) {
                      walls.size() > shown ? fmt::format(" and {} more", walls.size() - shown) : "");
 }
 
-// Whether the deck says what the two do to each other, be it nothing.
+// Whether the deck has a pair of the two materials, be it one without forces.
 bool pair_is_given(const DeckTable& deck, const Model& model, int a, int b) {
   const std::vector<std::string>& names = model.contact.material_names;
   const std::string &first = names[static_cast<std::size_t>(a)], &second = names[static_cast<std::size_t>(b)];
@@ -31,7 +31,7 @@ bool pair_is_given(const DeckTable& deck, const Model& model, int a, int b) {
   });
 }
 
-// Loose bodies of meshes alone, and which walls they go through though something might hold them up there.
+// Loose bodies of meshes alone, and the walls through which they go although these may be meant to stop them.
 class LooseMeshes {
  public:
   LooseMeshes(const DeckTable& deck, const Model& model) : deck_(deck), model_(model) {

@@ -22,7 +22,7 @@ const HullCorners* corners_of(const Model& model, const MeshShape& shape) {
 constexpr int kMotions = 6;  // of a body: displacements, then rotations
 using Motion = std::array<Real, kMotions>;
 
-// How a place on a body moves in a direction, with each of the body's motions over the root of its inertia:
+// How a point of a body moves in a direction, with each of the body's motions over the root of its inertia:
 // what a spring there adds to the square of frequencies is this vector times itself, times the stiffness
 // [kg^-1/2].
 Motion mobility(const Body& body, Vec3 place, Vec3 direction) {
@@ -65,8 +65,8 @@ Real largest_eigenvalue(const std::vector<Motion>& rows, Real least) {
   return value;
 }
 
-// Inverse masses of a body on its corners [1/kg]: as they are pushed along a plane's normal, and rubbed along
-// it.
+// Inverse masses of a body on its corners [1/kg]: for forces along a plane's normal, and for friction along
+// the plane.
 struct InverseMasses {
   Real pushed = 0, rubbed = 0;
 };

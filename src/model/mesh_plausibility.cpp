@@ -38,7 +38,7 @@ MeshSize size_of(const SurfaceMesh& mesh) {
   return size;
 }
 
-// Of a line, which is drawn along z [m].
+// Length of a line, which is drawn along z [m].
 Real length_of(const SurfaceMesh& line) { return size_of(line).area / (line.box.max.z - line.box.min.z); }
 
 // Meshes that walls and bodies have, or solids are made of.
@@ -128,7 +128,7 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
       mesh.name, sag, 100 * sag / overlap, overlap);
 }
 
-// What makes a mesh of this table coarser.
+// The remedy that makes a mesh of this table coarser, as text.
 std::string coarser(const DeckTable& table, const ModelMesh& mesh, Real smallest_radius) {
   if (table.has("refine")) return "a larger refine";
   if (table.has("file")) return fmt::format("coarsen = {:.2g}", kFacetShare * smallest_radius);
@@ -157,7 +157,7 @@ Real height_of(const Model& model, Vec3 p) {
                   : 0;
 }
 
-// The highest place in a box.
+// The highest point of a box.
 Vec3 top_of(const Model& model, Vec3 low, Vec3 high) {
   const Vec3 g = model.gravity;
   return {g.x < 0 ? high.x : low.x, g.y < 0 ? high.y : low.y, g.z < 0 ? high.z : low.z};
@@ -252,7 +252,7 @@ std::string crossing_shells(const ModelMesh& mesh) {
       mesh.name, mesh.crossing);
 }
 
-// Of a wall whose mesh has no face along which its surface could run.
+// A text on a wall whose mesh has no face along which its surface could run; else empty.
 std::string runs_across(const Model& model, const Wall& wall) {
   constexpr Real kRoundOff = 1e-9;
   if (wall.mesh < 0 || !wall.runs()) return "";

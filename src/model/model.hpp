@@ -72,7 +72,7 @@ struct ModelMesh {
   std::string fitting{};   // "segments = 32": what fits the size of the particles; empty: nothing is known
   bool is_fitted = false;  // the deck leaves it out, and the mesh has it
   std::string crossing{};  // where its shells cross each other, for messages; empty: they do not
-  // In the mesh's frame; null: no body has the mesh, or there is no plane.
+  // Corners of the convex hull in the mesh's frame; null: no body has the mesh, or there is no plane.
   std::shared_ptr<const HullCorners> corners{};
 };
 

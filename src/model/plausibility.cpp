@@ -155,8 +155,8 @@ std::string overdamped(const Model& model, const PairLimit& limit) {
       pair_name(model, limit), damping, ratio, damping / ratio);
 }
 
-// In a column of particles of the smallest kind, spread over the whole base: no column is lower than the
-// mean.
+// Number of particles in a column of the smallest kind, spread over the whole base: no column is lower than
+// the mean.
 Real particles_on_top(const Model& model) {
   const Real diameter = 2 * model.particles.totals.smallest_radius;
   const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));

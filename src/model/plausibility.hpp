@@ -14,7 +14,8 @@ namespace scree {
 // What seems wrong with the whole model, one text for each finding. Costs no pass over the particles.
 std::vector<std::string> implausible(const DeckTable& deck, const Model& model);
 
-// Of the particles above one at the bottom, which all lie on the base of the space [N]; 0 without gravity.
+// Weight of the particles above one at the bottom, which all lie on the base of the space [N]; 0 without
+// gravity.
 Real weight_at_bottom(const Model& model);
 
 // Refuses contacts whose duration or step limit is 0 or infinite. Throws InputError.

@@ -186,7 +186,7 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
   }
 }
 
-// Of the corners of bodies' meshes with planes, over the meshes' effective radii.
+// Overlaps of the corners of bodies' meshes with planes, over the meshes' effective radii.
 void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
   const ItemNames names(model);
   std::int64_t number = names.first_mesh();

@@ -32,14 +32,15 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
               left_out_step(model));
 }
 
-// Masses of a body on a contact [kg]: pushed along the normal, and rubbed across it; 0: there is none.
+// Masses of a body on a contact [kg]: for forces along the normal, and for friction across it; 0: there is
+// none.
 struct MassesOnContact {
   Real pushed = 0, rubbed = 0;
   bool beside_particle = false;  // else other bodies or walls alone are met
 };
 
-// Of the lightest body of material a on something of material b: a particle, another body or a surface. What
-// particles give way is left out: they have substeps of their own.
+// The masses of the lightest body of material a on something of material b: a particle, another body or a
+// surface. The motion of particles is left out: they have substeps of their own.
 MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
   const bool beside_particle = other.particles > 0;
@@ -54,8 +55,8 @@ MassesOnContact masses_on_contact(const Model& model, const std::vector<Material
 }  // namespace
 
 // The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
-// and stable only while the step is short against the oscillation of a body on its contacts. As above, it is
-// an estimate for exponents other than 1.
+// and stable only while the step is short against the oscillation of a body on its contacts. The limit is an
+// estimate for exponents other than 1.
 BodyStepLimit body_step_limit(const Model& model) {
   const std::vector<MaterialUse> uses = material_uses(model);
   BodyStepLimit limit{0, kMostBodyPhase, 0, true};
@@ -97,7 +98,7 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
                             left_out_step(model)));
 }
 
-// A surface that the deck moves goes as far as a particle might: past those in its way.
+// A surface that the deck moves and that goes farther than the smallest radius in a step may pass particles.
 void check_surface_speeds(const Model& model, Real step, Log& log) {
   const Real speed = ImpactSpeeds(model).fastest_surface(), radius = model.particles.totals.smallest_radius;
   if (model.particles.totals.count == 0 || speed * step <= radius) return;
@@ -110,8 +111,8 @@ void check_surface_speeds(const Model& model, Real step, Log& log) {
       is_fixed ? "time.step" : "time.max_step", step, speed * step / radius, speed, 0.95 * radius / speed));
 }
 
-// The same of bodies on the corners of their meshes, of which a face has many. A body that a joint holds may
-// never come to a plane: it is warned of, where the step would not do.
+// Checks the step against the oscillation of bodies on the corners of their meshes, of which a face has many.
+// A body that a joint holds may never come to a plane: too long a step causes a warning there, no refusal.
 void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
   if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
   const Real most = model.rotates() ? kMostBodyPhase : kMostAmongBodies;

@@ -21,15 +21,15 @@ struct Twist {
   Vec3 point, velocity, spin;  // [m], [m/s], [rad/s]
 
   Vec3 at(Vec3 x) const { return velocity + cross(spin, x - point); }
-  // In a frame that is turned by `turn` and whose origin is at the place `origin` here.
+  // The twist in a frame that is turned by `turn` and whose origin is at the position `origin` here.
   Twist seen_from(const Quaternion& turn, Vec3 origin) const {
     const Quaternion back = conjugate(turn);
     return {turned(back, point - origin), turned(back, velocity), turned(back, spin)};
   }
 };
 
-// What a function does between 0 and `end` [s], each time at which it may be fastest: its ends, the middle of
-// a step, the first crest of a sine's rate, and of each piece of a table eight places.
+// Times between 0 and `end` [s] at which a function may be fastest: its ends, the middle of a step, the first
+// crest of a sine's rate, and eight times of each piece of a table.
 std::vector<Real> telling_times(const TimeFunction& function, Real end) {
   std::vector<Real> times{0, end};
   if (function.kind == TimeFunctionKind::step) times.push_back((function.start + function.end) / 2);
@@ -102,7 +102,7 @@ Real fastest_along_normals(const SurfaceMesh& mesh, const Twist& twist) {
   return most;
 }
 
-// Where a plane cuts the edges of the space's box.
+// Points at which a plane cuts the edges of the space's box.
 std::vector<Vec3> corners_in_space(const Space& space, Vec3 point, Vec3 normal) {
   const auto corner = [&](unsigned k) {
     return Vec3{k & 1u ? space.max.x : space.min.x, k & 2u ? space.max.y : space.min.y,

@@ -1,5 +1,5 @@
 // How fast surfaces come at what they hit, as far as the deck prescribes it: walls by their motions, bodies
-// by drivers and by motors with a wanted rate.
+// by drivers and by motors with a prescribed rate.
 #pragma once
 
 #include <vector>

@@ -76,7 +76,7 @@ toml::table build_table() {
                      {"libraries", libraries}};
 }
 
-// Of this start.
+// Entries of this start.
 toml::table cost_table(const RunRecord& record) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -107,7 +107,7 @@ toml::array start_array(const std::vector<RunStart>& starts) {
   return array;
 }
 
-// Of all starts.
+// Entries of all starts.
 toml::table total_table(const std::vector<RunStart>& starts) {
   const RunStart sum = sum_of(starts);
   toml::table table{{"starts", static_cast<std::int64_t>(starts.size())}, {"steps", sum.steps}};

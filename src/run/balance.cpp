@@ -145,9 +145,9 @@ BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State&
   return {energies.kinetic + std::abs(energies.elastic), state.bodies.integrator_loss, small};
 }
 
-// HHT books what it does as an entry of its own. What velocity-Verlet does to contacts is the balance error;
+// HHT has an entry of its own for its effect. The effect of velocity-Verlet on contacts is the balance error;
 // its entry is a function of state, which goes to and fro. Bodies may hold much and exchange next to nothing,
-// as a crank that is driven at constant speed: what was taken out of them is then little for what they hold.
+// as a crank that is driven at constant speed: energy taken out of them is then measured by what they hold.
 std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   const Real error = balance_error(balance), taken = taken_by_integrator(balance);

@@ -44,13 +44,13 @@ void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& n
 // Of bodies at the end of a run [J].
 struct BodiesBook {
   Real held = 0;       // kinetic and elastic energy
-  Real taken = 0;      // what the time integration took out of them, and booked
+  Real taken = 0;      // what the time integration took out of them, by its entry
   Real round_off = 0;  // below which no energy of theirs says anything
 };
 BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State& state);
 
-// A warning where the time integration has changed the energy by more than 1 % of what was exchanged, what it
-// took out of bodies by more than 1 % of what they hold, too; else empty. The one place that says what to do.
+// A warning where the time integration has changed the energy by more than 1 % of the energy exchanged; what
+// it took out of bodies counts from 1 % of what they hold on; else empty. No other text states a remedy.
 std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model);
 
 }  // namespace scree

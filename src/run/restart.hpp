@@ -20,7 +20,7 @@ struct Restart {
   std::vector<RunStart> starts;  // up to the checkpoint
 };
 
-// Adds to a packed state what a restart wants to know. changes: as in Restart; starts: with this one.
+// Adds to a packed state the texts that a restart reads. changes: as in Restart; starts: with this one.
 void add_restart_texts(Checkpoint& checkpoint, const RunOptions& options, const std::string& state_hash,
                        const std::string& changes, const std::vector<RunStart>& starts);
 // The names of these texts.

@@ -62,7 +62,7 @@ TEST_CASE("a body oscillates on all corners of a face at once") {
     CHECK(near(fastest_on_corners(disc, false).frequency,
                std::sqrt(kStiffness * std::max(corners / body.mass, turning)), {.relative = 1e-3}));
   }
-  // Rubbed, k_t = 2/7 K; what is pushed is stiffer.
+  // Friction has k_t = 2/7 K; along the normal the contact is stiffer.
   const Model rubbing = model_of(deck(kCube), {"contact.pairs.0.friction=0.3"});
   CHECK(
       near(fastest_on_corners(rubbing, false).frequency, std::sqrt(6 * kStiffness / 4), {.relative = 1e-6}));

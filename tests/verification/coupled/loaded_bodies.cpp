@@ -42,7 +42,7 @@ restitution = 0.3
                      end, step, substeps, friction > 0 ? fmt::format("friction = {}", friction) : "");
 }
 
-// In layers of side x side, each a little off its place, above z.
+// Grains in layers of side x side, each a little off its lattice position, above z.
 std::string grains(int count, int side, Real radius, Real z, Real mass) {
   std::string places;
   for (int i = 0; i < count; ++i) {
@@ -114,7 +114,7 @@ constexpr const char* kHinge =
 
 }  // namespace
 
-// With the force at the predicted place alone the first, the third and the fifth of these are thrown off.
+// With the force at the predicted position alone the first, the third and the fifth of these are thrown off.
 TEST_CASE("grains in a light bin weigh what they weigh at its hinge") {
   for (const Load& load : {Load{"40 grains of 0.5 kg", kHinge, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
                            Load{"40 grains that rub", kHinge, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},

@@ -103,7 +103,7 @@ TEST_CASE("a ball that meets a rough floor at 60 degrees keeps the same speed al
   }
 }
 
-// Unlike partners, spins that turn against each other; a body in place of the second particle.
+// Unlike partners, spins that turn against each other; a body instead of the second particle.
 TEST_CASE("with a dashpot of friction pairs part alike in explicit and implicit steps, and on bodies") {
   for (const int dimension : {2, 3})
     for (const Real ratio : {0.1, 1.0})
@@ -136,7 +136,7 @@ TEST_CASE("with a dashpot of friction pairs part alike in explicit and implicit 
               "one_law/pair", "",
               at_most(difference(pair.particles()[k], exact.particles()[k], 0.05) / kSpeed, kOneLaw)));
         if (dimension == 3) continue;
-        // A body in the plane, which turns about z alone, and the particle in its place.
+        // A body in the plane, which turns about z alone, and the particle that it replaces.
         SimulationRun on_body(meeting.with_body());
         on_body.run();
         REQUIRE(on_body.particle_ledger().contacts == 0);
