@@ -44,14 +44,14 @@ WrenchSlope::Vector WrenchSlope::product(const Vector& move) const {
 }
 
 void WrenchSlope::observe(const BodyMotion& from, const BodyMotion& to, const BodyWrench& change) {
-  const Vector move = moved(from, to), foretold = product(move);
+  const Vector move = moved(from, to), expected = product(move);
   const Real size = std::sqrt(inner(move, move));
   if (!(size > kRoundOff * (reach_ + norm(to.position)))) return;
   const Vec3 force = change.force, couple = reciprocal(reach_) * change.torque;
   Vector fall{-force.x, -force.y, -force.z, -couple.x, -couple.y, -couple.z};
   if (!(inner(fall, move) > 0)) fall = {};  // contacts have opened: there is no stiffness this way
   Vector missing;
-  for (std::size_t k = 0; k < 6; ++k) missing[k] = fall[k] - foretold[k];
+  for (std::size_t k = 0; k < 6; ++k) missing[k] = fall[k] - expected[k];
   const Real along = inner(missing, move);
   if (!(std::abs(along) > kAlong * std::sqrt(inner(missing, missing)) * size)) return;
   for (std::size_t i = 0; i < 6; ++i)

@@ -17,7 +17,8 @@ namespace scree {
 
 // An estimate of how one body's contact wrench falls with its displacement; each observed change corrects it
 // by the symmetric update of rank one (Nocedal, Wright, Numerical Optimization, 2006, Eq. 6.24). The estimate
-// begins at or above the true slope, and is symmetric and positive semidefinite throughout.
+// begins at or above the true slope; it is symmetric, and stays positive semidefinite where the wrench is
+// linear with a symmetric slope.
 class WrenchSlope {
  public:
   // stiffness: along every axis [N/m]; about every axis it is this times reach^2, reach in [m].

@@ -57,7 +57,7 @@ BodyMotion at(Vec3 place, Vec3 turn) {
 }  // namespace
 
 TEST_CASE("the wrench's slope is found by as many displacements as it has directions") {
-  // Of springs along z at two points, as a wrench per displacement and small turn.
+  // The wrench of springs along z at two points, for a displacement and a small turn.
   const auto wrench = [](Vec3 place, Vec3 turn) {
     BodyWrench sum;
     for (const Vec3 arm : {Vec3{0.1, 0.05, 0}, Vec3{-0.08, 0.02, 0}}) {

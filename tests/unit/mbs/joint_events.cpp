@@ -107,9 +107,9 @@ TEST_CASE("a motor's integral goes on over the part of a step that is free of th
   CHECK(near(after(0.5, 2, 0.1), 0.1 + h * 1.9, {.absolute = 1e-14}));  // never at the limit
   // P e + I z = 3 is left at e = 2.9, after a quarter of the step: I e = 1.45 < P c''.
   CHECK(near(after(0.5, 2.95, 0.2), 0.2 + 0.075 * (2.9 + 2.75) / 2, {.absolute = 1e-14}));
-  // With I e = 5.8 > P c'' it follows the limit: P e_1 + I z_1 = 3.
+  // With I e = 5.8 > P c'' z follows the limit: P e_1 + I z_1 = 3.
   CHECK(near(after(2, 2.95, 0.05), (3 - 2.75) / 2, {.absolute = 1e-14}));
-  // The same from below, reached within the step.
+  // The limit is reached from below, within the step.
   CHECK(near(after(2, 2.8, 0.05), (3 - 2.6) / 2, {.absolute = 1e-14}));
   // Until I e falls to P c'' at e = 1, after half the step; it has 3 - 1 = I z then, and grows by e from
   // there.

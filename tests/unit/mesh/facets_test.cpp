@@ -144,7 +144,7 @@ TEST_CASE("facets of screws lie as far from core, rim and faces as is said") {
                                           disc(screw.core_length / 2), disc(-screw.core_length / 2)};
       CHECK(facet_deviation(screw) == Approx(measured(screw_mesh(screw), surfaces, 8)).epsilon(0.02));
     }
-  // What the angles between its facets do not tell: eight chords around a rim of radius 0.045.
+  // The angles between its facets do not show this sag: eight chords around a rim of radius 0.045.
   CHECK(facet_deviation(ScrewShape{0.012, 0.045, 0.07, 0.005, 0.14, 0.14, 8}) ==
         Approx(0.045 * (1 - std::cos(kPi / 8))).epsilon(0.01));
 }

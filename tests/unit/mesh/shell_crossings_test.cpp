@@ -85,7 +85,7 @@ TEST_CASE("shells that touch do not cross, and weigh what each of them does") {
   for (const Vec3 shift :
        {Vec3{0.02, 0.03, 0.04}, {0.1, 0.02, 0.01}, {0.1, 0.05, 0.04}, {0, 0, 0.04}, {0.5, 0, 0}}) {
     CAPTURE(shift.x, shift.y, shift.z);
-    // With corners of their own where they share them.
+    // Each solid has corners of its own where the two share positions.
     const TriangleMesh two = with(slab(), refined(slab(), 0.07), shift);
     for (const TriangleMesh& mesh : {two, moved(two, turned, {0.3, 0.1, -0.7})}) {
       CHECK(crossings(mesh).empty());
@@ -117,7 +117,7 @@ TEST_CASE("cavities are right, solids inside solids are not, also where they tou
   CHECK(is_inside(with(slab(), ball, {0.02, 0.01, 0})));
   CHECK(is_inside(with(slab(), half, {0, 0, 0.01})));      // with a face in the top
   CHECK(is_inside(with(slab(), half, {0.025, 0, 0.01})));  // and in a side
-  // The same box twice, the second of smaller triangles.
+  // One box twice, the second of smaller triangles.
   const Texts twice = mesh_troubles(with(slab(), refined(slab(), 0.03), {}), false);
   REQUIRE(twice.size() == 1);
   CHECK(twice[0].find("inside") != std::string::npos);

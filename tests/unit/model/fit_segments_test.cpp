@@ -77,7 +77,7 @@ TEST_CASE("the mesh has the segments that the resolved deck names, and says how 
   CHECK(again.fingerprint() == whole.fingerprint());
   CHECK(with_fitting_segments(again).fingerprint() == whole.fingerprint());
   CHECK_FALSE(model_of(whole.resolved_text()).meshes.front().is_fitted);
-  // Without particles, and where it is named.
+  // Nothing is fitted without particles, or where the deck names the number.
   CHECK(model_of(kSpace + kRod).meshes.front().fitting.empty());
   CHECK(model_of(kSpace + kRod).meshes.front().surface->triangles.size() == 4 * 48);
   CHECK(model_of(deck, {"meshes.m.segments=8"}).meshes.front().deviation ==

@@ -67,7 +67,7 @@ TEST_CASE("walls count with the fastest that they move along their normals") {
   };
   is(kPlate + along(x, ramp), 6, round_off);
   is(kPlate + along("[-1, 0, 0]", ramp), 6, round_off);
-  // Along itself, but for its edges: they hit what is in their way.
+  // A plate that moves along itself has edges that hit what is in their way.
   is(kPlate + along(y, ramp), 6, round_off);
   is(kPlane + along(y, ramp), 0, round_off);
   is(kPlane + along("[0, 3, 4]", ramp), 4.8, round_off);

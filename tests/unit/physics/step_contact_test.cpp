@@ -166,7 +166,7 @@ TEST_CASE("without damping, the step's work is the change of the elastic energy"
   }
 }
 
-// Of a sphere between the faces of a plate the nearer one acts: the contact with one ends at the overlap at
+// On a sphere between the faces of a plate the nearer face acts: the contact with one ends at the overlap at
 // which that with the other begins. The last two do not move along their normals while they act.
 TEST_CASE("contacts that change over do the work of their elastic energies, and what they damp is booked") {
   struct Change {

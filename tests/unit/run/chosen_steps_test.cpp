@@ -98,7 +98,7 @@ std::string RandomDecks::next() {
   deck += fmt::format("[time]\nend = 1.0\n[integrator]\nparticles = \"velocity-verlet\"\nsubsteps = {}\n",
                       maybe(0.3) ? 4 : 1);
   const std::string one = law(spheres, radius, mass, speed);
-  // Of a modulus with which spheres overlap by a share of a per cent to some per cent.
+  // Moduli with which spheres overlap by a share of a per cent to some per cent.
   const std::string moduli = contains(one, "stiffness")
                                  ? ""
                                  : fmt::format("young_modulus = {}\npoisson_ratio = 0.3\n",
@@ -242,7 +242,7 @@ mass = 0.1
     CHECK(model.of("particles") == nullptr);
     CHECK((model.of("step") != nullptr) == (named == std::string("velocity-verlet")));
   }
-  // Of an integrator that is refused, both keys that call for it are named.
+  // The refusal of an integrator names both keys that call for it.
   CHECK(
       contains(model_error(deck, {friction, "contact.pairs.0.rolling_friction=0.1", "time.control=adaptive"}),
                "needs integrator.particles = \"velocity-verlet\""));

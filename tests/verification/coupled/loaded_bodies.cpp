@@ -174,7 +174,7 @@ free = 0.0
     }
 }
 
-// What the particles gave and the body did not get, or the other way round, is of the order of the
+// The difference of momentum between the particles' loss and the body's gain is of the order of the
 // correction, which vanishes with the step.
 TEST_CASE("heavy spheres that hit a light free plate keep the momentum of both") {
   const auto error = [](Real step) {

@@ -151,7 +151,8 @@ TEST_CASE("a high crate on a slope stands, and tilts where the slope is steep en
     }
 }
 
-// Of restitution 1 without friction: P = 2 v / (1/m + (r x n) J^-1 (r x n)), in the limit of a stiff corner.
+// The impulse at restitution 1 without friction: P = 2 v / (1/m + (r x n) J^-1 (r x n)), in the limit of a
+// stiff corner.
 TEST_CASE("a crate that falls on a corner leaves as impulse says, and keeps its energy") {
   Real errors[2];
   for (const int k : {0, 1}) {
@@ -248,7 +249,7 @@ TEST_CASE("forces of corners on planes are those of all vertices of the box that
     }
 }
 
-// With the radius of the sphere whose area is the crate's.
+// The radius is that of the sphere whose area is the crate's.
 TEST_CASE("by Hertz's law a corner is a sphere as large as the mesh") {
   const std::string pair = "[[materials]]\nname = \"default\"\nyoung_modulus = 1e8\npoisson_ratio = 0.25\n";
   std::string deck = crate("restitution = 0.3") + pair;

@@ -38,7 +38,7 @@ struct PlateDeck {
 
 const std::vector<std::string> kFine{"integrator.particles=velocity-verlet", "time.step=1e-6"};
 
-// What a run ends with.
+// The end of a run.
 struct Passed {
   Vec3 velocity, body_velocity;
 
@@ -46,7 +46,7 @@ struct Passed {
     SimulationRun run(deck.model(settings));
     const Real energy = kMass * kSpeed * kSpeed / 2;
     run.run([&] {
-      // Of what the steps have lost or made, at every row of the history.
+      // Energy that the steps have lost or made, at every row of the history.
       const ParticleLedger ledger = run.particle_ledger();
       CHECK(std::abs(ledger.integrator_loss) < 0.01 * energy);
       CHECK(ledger.contact_loss > -1e-9 * energy);

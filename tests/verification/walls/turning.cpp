@@ -44,7 +44,7 @@ std::string wall(const std::string& surface, const std::string& axis, const std:
   return "[[walls]]\nname = \"table\"\n" + surface + "motions = [{ type = \"rotation\", " + about +
          ", angle = " + angle + " }]\n";
 }
-// The same motion of a heavy body by a driver.
+// The wall's motion as that of a heavy body, by a driver.
 std::string body(const std::string& axis, const std::string& angle, const std::string& spin) {
   const std::string in_space =
                         "kind = \"spatial\"\nposition = [0, 0, 0]\ninertia_tensor = [5, 5, 9, 0, 0, "
@@ -93,7 +93,7 @@ TurningDeck on_line(const std::string& name, const std::string& surfaces, Real b
           surfaces,  fmt::format("0.1, {:.17g}", kHeight),
           "0.05, 0", fmt::format("{:.17g}", (belt - 0.05) / kRadius)};
 }
-// In the groove between two boxes, on an edge of each.
+// A sphere in the groove between two boxes, on an edge of each.
 TurningDeck in_groove() {
   constexpr Real kHalf = 0.006;  // of the groove's width [m]
   const Real load = kMass * kGravity / 2 / std::cos(std::asin(kHalf / kRadius));
