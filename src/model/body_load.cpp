@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "physics/step_limits.hpp"
 
@@ -37,19 +38,20 @@ void add_contacts(const Model& model, int surface, Real radius, PressedBody& bod
   }
 }
 
-PressedBody pressed_body(const Model& model, const Body& body) {
+// prescribed: no contact moves it.
+PressedBody pressed_body(const Model& model, const Body& body, bool prescribed) {
   PressedBody pressed;
   pressed.mass = body.mass;
   const bool is_planar = body.kind == BodyKind::planar;  // it turns about z alone
   Real arm = 0;  // of the farthest push; discs and spheres without friction are pushed through their centres
   for (const Shape& shape : body.shapes) {
-    add_contacts(model, shape.material, shape.radius, pressed);
+    if (!prescribed) add_contacts(model, shape.material, shape.radius, pressed);
     const Real offset = is_planar ? std::hypot(shape.offset.x, shape.offset.y) : norm(shape.offset);
     pressed.reach = std::max(pressed.reach, offset + shape.radius);
     arm = std::max(arm, model.rotates() ? offset + shape.radius : offset);
   }
   for (const MeshShape& shape : body.meshes) {
-    add_contacts(model, shape.material, kInfinity, pressed);
+    if (!prescribed) add_contacts(model, shape.material, kInfinity, pressed);
     const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
     const Real reach = farthest(mesh, shape.offset, is_planar ? 2 : 3);
     pressed.reach = std::max(pressed.reach, reach), arm = std::max(arm, reach);
@@ -92,7 +94,9 @@ Real PressedBody::load(std::int64_t contacts, Real h) const {
 
 std::vector<PressedBody> pressed_bodies(const Model& model) {
   std::vector<PressedBody> bodies;
-  for (const Body& body : model.bodies) bodies.push_back(pressed_body(model, body));
+  const std::vector<bool> prescribed = prescribed_bodies(model);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    bodies.push_back(pressed_body(model, model.bodies[b], prescribed[b]));
   return bodies;
 }
 

@@ -351,13 +351,10 @@ std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
   return pairs;
 }
 
-// A torsional spring holds no body where it is.
-std::vector<bool> held_bodies(const Model& model) {
-  std::vector<std::array<int, 2>> links;
-  const auto add = [&](const auto& elements) {
-    for (const auto& element : elements) links.push_back({element.body[0], element.body[1]});
-  };
-  add(model.joints), add(model.spring_dampers), add(model.bushings);
+namespace {
+
+// Which bodies chains of these links connect with the ground.
+std::vector<bool> reached_from_ground(const Model& model, const std::vector<std::array<int, 2>>& links) {
   std::vector<bool> held(model.bodies.size());
   const auto is_held = [&](int body) { return body == kGround || held[static_cast<std::size_t>(body)]; };
   for (bool found = true; found;) {
@@ -368,6 +365,33 @@ std::vector<bool> held_bodies(const Model& model) {
     }
   }
   return held;
+}
+
+}  // namespace
+
+// A torsional spring holds no body where it is.
+std::vector<bool> held_bodies(const Model& model) {
+  std::vector<std::array<int, 2>> links;
+  const auto add = [&](const auto& elements) {
+    for (const auto& element : elements) links.push_back({element.body[0], element.body[1]});
+  };
+  add(model.joints), add(model.spring_dampers), add(model.bushings);
+  return reached_from_ground(model, links);
+}
+
+std::vector<bool> prescribed_bodies(const Model& model) {
+  const auto prescribes = [&](std::size_t j) {
+    const JointKind kind = model.joints[j].kind;
+    if (kind == JointKind::fixed) return true;
+    const bool one_coordinate = kind == JointKind::revolute || kind == JointKind::translational;
+    return one_coordinate && std::ranges::any_of(model.drivers, [&](const Driver& driver) {
+             return driver.joint == static_cast<int>(j);
+           });
+  };
+  std::vector<std::array<int, 2>> links;
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    if (prescribes(j)) links.push_back({model.joints[j].body[0], model.joints[j].body[1]});
+  return reached_from_ground(model, links);
 }
 
 }  // namespace scree

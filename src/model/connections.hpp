@@ -92,5 +92,8 @@ std::vector<std::pair<int, int>> connected_bodies(const Model& model);
 // One entry per body: whether joints, springs or bushings hold it, through other bodies or not, to the
 // ground.
 std::vector<bool> held_bodies(const Model& model);
+// Whether each body moves as the ground, fixed joints and drivers of revolute and translational joints
+// prescribe, whatever forces act on it: contacts meet it as if its mass were infinite.
+std::vector<bool> prescribed_bodies(const Model& model);
 
 }  // namespace scree

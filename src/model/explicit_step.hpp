@@ -23,7 +23,8 @@ struct ExplicitStep {
 // to two digits, rounded down: the deck that names it is the same deck.
 ExplicitStep longest_explicit_step(const Model& model);
 
-// Whether steps of this length [s] are neither refused nor warned about.
+// Whether steps of this length [s] suit the contacts: stability, trial rebounds, bodies on single contacts
+// and on the corners of their meshes.
 bool suits_explicit(const Model& model, Real step);
 
 // "; left out, it is 1.2e-05 s: ...": the remedy of a refusal or warning.

@@ -30,7 +30,10 @@ struct Partners {
     const bool beside_particle = i.is_particle && !j.is_particle;
     return {i.radius, j.radius, i.mass, beside_particle ? kInfinity : j.mass};
   }
-  Real mass() const { return j.mass < kInfinity ? reduced_mass(i.mass, j.mass) : i.mass; }
+  Real mass() const {
+    if (i.mass == kInfinity || j.mass == kInfinity) return std::min(i.mass, j.mass);
+    return reduced_mass(i.mass, j.mass);
+  }
   Real radius() const { return std::min(i.radius, j.radius); }
 };
 
@@ -45,8 +48,9 @@ Partners lightest_partners(const Model& model, const PairLimit& limit) {
   };
   const auto body = [&](int side) {
     const Real of_spheres = use(side).smallest_radius;
+    const Real mass = use(side).smallest_body_mass;  // 0: none that gives way
     return Partner{of_spheres > 0 ? of_spheres : use(side).smallest_corner_radius,
-                   use(side).smallest_body_mass, false};
+                   mass > 0 ? mass : kInfinity, false};
   };
   const bool same = limit.material[0] == limit.material[1];
   if (use(0).particles > (same ? 1 : 0) && use(1).particles > 0) return {particle(0), particle(1)};

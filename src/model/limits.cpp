@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/connections.hpp"
 #include "model/mesh_corners.hpp"
 #include "model/touching.hpp"
 #include "physics/step_limits.hpp"
@@ -107,11 +108,14 @@ std::vector<MaterialUse> material_uses(const Model& model) {
     uses[m].smallest_particle_mass = particles.smallest_mass;
     uses[m].smallest_inertia_factor = particles.smallest_inertia_factor;
   }
-  for (const Body& body : model.bodies) {
+  const std::vector<bool> prescribed = prescribed_bodies(model);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
     for (const Shape& shape : body.shapes) {
       MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
       ++use.shapes;
       take_smaller(use.smallest_radius, shape.radius);
+      if (prescribed[b]) continue;
       const Real rubbed = norm(shape.offset) + shape.radius;
       take_smaller(use.smallest_body_mass,
                    1 / (1 / body.mass + dot(shape.offset, shape.offset) / body.inertia));
@@ -128,6 +132,7 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       use.sheets += mesh.surface->sheet;
       if (may_meet_planes(model, b, shape))
         ++use.corners, take_smaller(use.smallest_corner_radius, mesh.corners->radius);
+      if (prescribed[b]) continue;
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
     }
@@ -192,6 +197,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
       const MaterialUse &first = uses[static_cast<std::size_t>(a)],
                         &second = uses[static_cast<std::size_t>(b)];
       const PairSize size = smallest_partners(first, second);
+      if (smallest_reduced_mass(size) == kInfinity) continue;  // neither gives way
       const KelvinVoigt sized = law.of_size(size);
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;

@@ -160,10 +160,10 @@ Real largest_corner_radius(const Model& model) {
 
 CornerOscillation fastest_on_corners(const Model& model, bool held) {
   CornerOscillation fastest;
-  const std::vector<bool> is_held = held_bodies(model);
+  const std::vector<bool> is_held = held_bodies(model), prescribed = prescribed_bodies(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
-      if (is_held[b] != held || !meets_planes(model, b, shape)) continue;
+      if (is_held[b] != held || prescribed[b] || !meets_planes(model, b, shape)) continue;
       const Body& body = model.bodies[b];
       const HullCorners& hull = *corners_of(model, shape);
       const InverseMasses masses = inverse_masses(body, shape, hull);

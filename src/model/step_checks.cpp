@@ -48,6 +48,7 @@ MassesOnContact masses_on_contact(const Model& model, const std::vector<Material
   if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
   if (!bodies_can_meet(model, uses, a, b) || (beside_particle && !model.rotates()))
     return beside_particle || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
+  if (other.smallest_body_mass == 0) return alone;  // nothing else gives way
   return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),
           reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass), beside_particle};
 }
