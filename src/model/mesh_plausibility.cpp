@@ -132,13 +132,13 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
 std::string coarser(const DeckTable& table, const ModelMesh& mesh, Real smallest_radius) {
   if (table.has("refine")) return "a larger refine";
   if (table.has("file")) return fmt::format("coarsen = {:.2g}", kFacetShare * smallest_radius);
-  return mesh.fitting.empty() || mesh.is_fitted ? "a smaller contact.skin" : mesh.fitting;
+  return mesh.fitting.empty() ? "a smaller contact.skin" : mesh.fitting;
 }
 
 std::string too_fine(const Model& model, const ModelMesh& mesh, const DeckTable& table) {
   const ParticleTotals& particles = model.particles.totals;
   const Real near = triangles_near(model, *mesh.surface, particles.largest_radius);
-  if (!(near > kMostTrianglesNear)) return "";
+  if (mesh.is_fitted || !(near > kMostTrianglesNear)) return "";
   return fmt::format(
       "mesh \"{}\": its triangles are small beside the particles: one of radius {:.3g} m that touches it is "
       "near "
