@@ -7,7 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/body_load.hpp"
 #include "model/impact_speed.hpp"
+#include "model/limits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -155,6 +157,41 @@ TEST_CASE("a stiffness too low for a wall's speed is warned of, and a step in wh
   };
   CHECK(passes("2e-4") == 1);
   CHECK(passes("1e-4") == 0);
+}
+
+// Whatever its mass, a body that a driver moves gives way to no contact.
+TEST_CASE("the mass of a body that a driver or a fixed joint holds has no say in steps and warnings") {
+  const auto paddle = [](Real mass, const std::string& joint) {
+    return kSpheres +
+           fmt::format(
+               "[[bodies]]\nname = \"arm\"\nkind = \"spatial\"\nposition = [0.3, 0, 0]\nmass = {0}\n"
+               "inertia_tensor = [{0}, {0}, {0}, 0, 0, 0]\nshapes = [{{ radius = 0.05, offset = [0.1, 0, 0] "
+               "}}]\n"
+               "[[joints]]\nname = \"axle\"\nbodies = [\"ground\", \"arm\"]\npoint = [0, 0, 0]\n{1}",
+               mass, joint);
+  };
+  const std::string driven =
+      "type = \"revolute\"\naxis = [0, 0, 1]\n[[drivers]]\nname = \"d\"\njoint = \"axle\"\n"
+      "motion = { kind = \"ramp\", rate = 150.0, start = 0.1, end = 0.2 }\n";
+  const std::vector<std::string> is_explicit{"integrator.particles=velocity-verlet"};
+  for (const std::string& joint : {driven, std::string("type = \"fixed\"\n")}) {
+    const Model light = model_of(paddle(1e-5, joint), is_explicit),
+                heavy = model_of(paddle(1e3, joint), is_explicit);
+    CHECK(light.time.step == heavy.time.step);
+    CHECK(body_step_limit(light).frequency == 0);
+    CHECK(!shortest_loaded_step(light));
+  }
+  const auto soft = [&](Real mass) {
+    return std::ranges::count_if(model_warnings(paddle(mass, driven)), [](const std::string& w) {
+      return contains(w, "stiffness is too low for impacts at 60 m/s");
+    });
+  };
+  CHECK(soft(1e-5) == 1);
+  CHECK(soft(1e3) == 1);
+  // A hinge alone holds nothing still.
+  const std::string hinge = "type = \"revolute\"\naxis = [0, 0, 1]\n";
+  CHECK(model_of(paddle(1e-5, hinge), is_explicit).time.step <
+        model_of(paddle(1e3, hinge), is_explicit).time.step);
 }
 
 }  // namespace scree
