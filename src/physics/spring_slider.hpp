@@ -39,9 +39,21 @@ struct SpringSlider {
   Real limit;       // [N]
 };
 
+// The part of a dashpot that acts at an instant, and over an implicit step that begins there. As in
+// spring_step() all of it acts beside a spring within its limit, and nothing beside one that slides, which is
+// at the limit. What the end of an implicit step decides is a jump of the force, at which Newton's method
+// stalls; the start decides the same as steps shrink. Within a small margin next to the limit a part acts:
+// round-off decides nothing.
+SCREE_HD Real dashpot_part(const SpringSlider& p, Vec3 spring) {
+  constexpr Real kMargin = 1e-3;  // of the limit
+  const Real room = p.limit - norm(spring), margin = kMargin * p.limit;
+  return room >= margin ? 1 : room > 0 ? room / margin : 0;
+}
+
 // Of a spring and its dashpot at an instant; rate: of what the spring resists.
 SCREE_HD Vec3 acting_at(const SpringSlider& p, Vec3 spring, Vec3 rate) {
-  return shortened(spring + p.dashpot * rate, p.limit);
+  const Real dashpot = p.dashpot > 0 ? dashpot_part(p, spring) * p.dashpot : p.dashpot;
+  return shortened(spring + dashpot * rate, p.limit);
 }
 
 struct SpringStep {

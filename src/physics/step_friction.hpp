@@ -88,7 +88,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   SpringSlider first{};
   if (starts) {
     first = slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0);
-    out.start = acting_at_end(first, spring, c.slip_rate0);
+    out.start = acting_at(first, spring, c.slip_rate0);
   }
   if (!(share > 0)) return out;
   const NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
@@ -113,7 +113,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.stored0 = spring_energy(spring, slider.stiffness0);
   const Real left = spring_energy(over.spring, slider.stiffness);
   if (ends)
-    out.spring = over.spring, out.stored1 = left, out.end = acting_at_end(end, over.spring, c.slip_rate1);
+    out.spring = over.spring, out.stored1 = left, out.end = acting_at(end, over.spring, c.slip_rate1);
   else
     out.losses.sliding += left;  // of limits that were frozen, and of contacts that change over
   return out;

@@ -6,23 +6,6 @@
 
 namespace scree {
 
-// The part of a dashpot that acts over an implicit step beside a spring with a slider, from the spring's
-// force where the step starts. As in spring_step() all of it acts beside a spring within its limit, and
-// nothing beside one that slides, which is at the limit. What the end of the step decides is a jump of the
-// force, at which Newton's method stalls; the start decides the same as steps shrink. Within a small margin
-// next to the limit a part acts: round-off decides nothing.
-SCREE_HD Real dashpot_part(const SpringSlider& p, Vec3 spring) {
-  constexpr Real kMargin = 1e-3;  // of the limit
-  const Real room = p.limit - norm(spring), margin = kMargin * p.limit;
-  return room >= margin ? 1 : room > 0 ? room / margin : 0;
-}
-
-// What acts at an end of an implicit step; rate: of what the spring resists.
-SCREE_HD Vec3 acting_at_end(const SpringSlider& p, Vec3 spring, Vec3 rate) {
-  if (!(p.dashpot > 0)) return acting_at(p, spring, rate);
-  return shortened(spring + (dashpot_part(p, spring) * p.dashpot) * rate, p.limit);
-}
-
 // The mean force over a step, and its derivatives with respect to the way at the end of the step and to the
 // limit: dM = stiffness (dw - (direction . dw) direction) + grip dL direction; direction is zero while it
 // sticks. The first part is symmetric and positive; the second comes from a limit that changes with the

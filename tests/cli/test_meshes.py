@@ -246,7 +246,7 @@ class ReportTest(MeshTest):
                 (["walls=[]"], 'mesh "rock": no wall, body or solid uses it'),
                 (["meshes.rock.refine=0.005"], "of them, and each costs time: a larger refine"),
                 (['meshes=[{name="rock",kind="pipe",radius=0.1,inner_radius=0.09,length=0.1}]'],
-                 "more than half as wide as the narrowest of its hollows, of radius about 0.0899 m"),
+                 "more than half as wide as the narrowest of its hollows, of radius about 0.0894 m"),
                 (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=1}]'], "beside the smooth surface")]:
             with self.subTest(settings=settings):
                 self.assertIn(text, self.report(*settings)[1])

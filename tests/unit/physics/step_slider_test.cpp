@@ -91,10 +91,10 @@ TEST_CASE("in an implicit step a dashpot acts beside a spring within its limit, 
   CHECK(near(dashpot_part(slider, {0, -9.995, 0}), 0.5, {.absolute = 1e-9}));
   CHECK(dashpot_part(slider, {10, 0, 0}) == 0);
   CHECK(dashpot_part(slider, {8, 8, 0}) == 0);
-  CHECK(acting_at_end(slider, {9, 0, 0}, {-1, 0, 0}) == Vec3{7, 0, 0});
-  CHECK(acting_at_end(slider, {9, 0, 0}, {1, 0, 0}) == Vec3{10, 0, 0});
-  CHECK(acting_at_end(slider, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
-  CHECK(acting_at_end({1, 1, 0, 10}, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
+  CHECK(acting_at(slider, {9, 0, 0}, {-1, 0, 0}) == Vec3{7, 0, 0});
+  CHECK(acting_at(slider, {9, 0, 0}, {1, 0, 0}) == Vec3{10, 0, 0});
+  CHECK(acting_at(slider, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
+  CHECK(acting_at({1, 1, 0, 10}, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
 }
 
 // A slip that turns back while the limit falls: the spring sticks, slides, lets go, and slides on as the
