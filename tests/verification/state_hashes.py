@@ -1,7 +1,9 @@
 """State hashes and histories of the cases that tests/ranks and same_bits.sh compare, one line each, to lay beside those
 of another version of the program: a change that is meant to keep every bit keeps every line.
-Usage: python3 state_hashes.py SCREE [SCREE ...] [--jobs N]; with several programs the lines that differ, and
-exit code 1. Decks whose keys the first program does not know are not compared."""
+Usage: python3 state_hashes.py SCREE [SCREE ...] [--jobs N] [--motion]; with several programs the lines that differ, and
+exit code 1. Decks whose keys the first program does not know are not compared. --motion, which needs h5py: in place of
+the hashes one of the numbers in the last checkpoint without those of the energy balance, for programs that measure the
+balance otherwise."""
 
 import argparse
 import concurrent.futures
@@ -9,6 +11,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -42,7 +45,20 @@ def all_cases():
 UNKNOWN = "its deck is refused"
 
 
-def line_of(program, name, deck, overrides):
+def motion_hash(folder):
+    import h5py  # of .venv
+
+    numbers = {}
+    with h5py.File(next(pathlib.Path(folder).glob("checkpoint*.h5"))) as file:
+        file.visititems(lambda name, of: numbers.update({name: of[()]}) if isinstance(of, h5py.Dataset) else None)
+    digest = hashlib.sha256()
+    for name in sorted(numbers):
+        if not re.search(r"^texts/|/balance/|drifting_|least_kinetic|most_kinetic", name):
+            digest.update(name.encode() + numbers[name].tobytes())
+    return digest.hexdigest()[:16]
+
+
+def line_of(program, name, deck, overrides, motion):
     with tempfile.TemporaryDirectory(prefix="scree_hashes_") as folder:
         settings = [word for override in [*overrides, "output.history_csv=true"] for word in ("--set", override)]
         backend = os.environ.get("SCREE_TEST_BACKEND", "cpu")
@@ -53,18 +69,22 @@ def line_of(program, name, deck, overrides):
         if code != DONE:
             raise SystemExit(f"{program}: {name}: exit code {code}")
         record = json.loads((pathlib.Path(folder) / "run_record.json").read_text())
+        bodies = " (bodies)" if "net" in str(deck) else ""
+        if motion:
+            return f"{name + bodies:40} {motion_hash(folder)}"
         history = hashlib.sha256((pathlib.Path(folder) / "history.csv").read_bytes()).hexdigest()
-    bodies = " (bodies)" if "net" in str(deck) else ""
     return f"{name + bodies:40} {record['run']['state_hash']} {history[:16]}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", nargs="+")
+    parser.add_argument("--motion", action="store_true")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        tables = [list(pool.map(lambda case: line_of(program, *case), all_cases())) for program in arguments.program]
+        tables = [list(pool.map(lambda case: line_of(program, *case, arguments.motion), all_cases()))
+                  for program in arguments.program]
     different = [f"{program}: {line}" for program, table in zip(arguments.program[1:], tables[1:])
                  for line, first in zip(table, tables[0]) if line != first and not first.endswith(UNKNOWN)]
     print(*tables[0], *different, sep="\n")
