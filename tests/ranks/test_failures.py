@@ -57,7 +57,8 @@ class FailureTest(RanksTest):
         def ids(*both):  # the whole chunk of that dataset
             return struct.pack("<2q", *both) + bytes(8 * (CHUNK_ROWS - 2))
         speed = struct.pack("<d", VELOCITY)
-        format_name = b"scree checkpoint 5"
+        version = 5
+        format_name = b"scree checkpoint %d" % version
         damages = {
             "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
             "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),
@@ -85,9 +86,9 @@ class FailureTest(RanksTest):
                     damaged.write_bytes(ill)
                     result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
                     self.assert_one_message(result, "damaged.h5: ", words)
-        for number, words in ((b"3", "of an older version"), (b"5", "of a newer version")):
+        for number, words in ((version - 1, "of an older version"), (version + 1, "of a newer version")):
             with self.subTest(words=words):
-                damaged.write_bytes(sealed(content.replace(format_name, format_name[:-1] + number)))
+                damaged.write_bytes(sealed(content.replace(format_name, b"scree checkpoint %d" % number)))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
                 self.assert_one_message(result, "damaged.h5", words)
 
