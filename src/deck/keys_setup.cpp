@@ -130,13 +130,13 @@ const TableKeys& integrator_keys() {
                   "bodies' mobility."),
        choice<ParticleIntegrator>("particles")
            .otherwise_automatic()
-           .about(
-               "Integrator of the particles: implicit, or explicit. Bodies always use HHT. auto: explicit "
-               "where contacts resist rolling or attract, and from 20 particles that may touch on with "
-               "friction, or 50 without; else, and where the deck names what only implicit steps have "
-               "(control = \"adaptive\", tolerance, max_step, contact_events) or a step too long for "
-               "explicit ones, implicit. The choice stands in the output of scree check, in the log and in "
-               "the resolved deck."),
+           .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT. auto: explicit "
+                  "where contacts resist rolling or attract, and from 20 particles that may touch on with "
+                  "friction, or 50 without; else, and where the deck names what only implicit steps have "
+                  "(control = \"adaptive\", tolerance, max_step, contact_events) or a step too long for "
+                  "explicit ones, implicit; substeps above 1 and precision = \"mixed\" make it explicit. The "
+                  "choice stands in the output of scree check, in the log and in "
+                  "the resolved deck."),
        choice<ContactEvents>("contact_events")
            .otherwise_choice(ContactEvents::resolved)
            .about("Hht: a contact that opens or closes within a step acts over its part of the step, or (the "

@@ -208,7 +208,21 @@ Vec3 axis_of(const Model& model, const Joint& joint, JointCoordinate coordinate)
   return coordinate == JointCoordinate::angle ? Vec3{0, 0, 1} : global(model, joint.body[0], joint.axis);
 }
 
-// Calls use(joint, coordinate, rate) for all that prescribe a rate [rad/s, m/s].
+// The rate at which a motor drives a joint without a load, at its fastest [rad/s, m/s]; 0: it prescribes
+// none.
+Real fastest_rate(const Motor& motor, Real end) {
+  switch (motor.kind) {
+    case MotorKind::speed:
+      return largest(motor.rate, end);
+    case MotorKind::line:
+      return largest(motor.command, end) * motor.free_rate;
+    case MotorKind::effort:
+      return 0;
+  }
+  return 0;
+}
+
+// Calls use(joint, coordinate, rate) for all that drive a joint at a rate [rad/s, m/s].
 template <class Use>
 void for_prescribed(const Model& model, const Use& use) {
   const Real end = model.time.end;
@@ -221,7 +235,7 @@ void for_prescribed(const Model& model, const Use& use) {
   for (const Driver& driver : model.drivers)
     use(joint(driver.joint), coordinate(driver), fastest_rate(driver.motion, end));
   for (const Motor& motor : model.motors)
-    if (motor.kind == MotorKind::speed) use(joint(motor.joint), coordinate(motor), largest(motor.rate, end));
+    use(joint(motor.joint), coordinate(motor), fastest_rate(motor, end));
 }
 
 void take_larger(std::vector<Real>& speeds, int material, Real speed) {

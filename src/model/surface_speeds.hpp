@@ -1,5 +1,5 @@
 // How fast surfaces come at what they hit, as far as the deck prescribes it: walls by their motions, bodies
-// by drivers and by motors with a prescribed rate.
+// by drivers, by motors with a prescribed rate, and by those whose rate without a load is known.
 #pragma once
 
 #include <vector>
