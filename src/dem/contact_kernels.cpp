@@ -1,17 +1,13 @@
+#include "dem/contact_kernels.hpp"
+
 #include <numeric>
 
-#include "dem/contact_kernels_impl.hpp"
 #include "model/choose_law.hpp"
 
 namespace scree {
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
-  return with_contact_laws(contact,
-                           [&]<class Law>(const std::vector<Law>& laws) -> std::unique_ptr<ContactKernels> {
-                             if (laws.size() == 1)
-                               return std::make_unique<CpuContactKernels<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
-                             return std::make_unique<CpuTableKernels<Law>>(laws, contact.materials());
-                           });
+  return with_contact_laws(contact, [&](const auto& laws) { return cpu_kernels(laws, contact.materials()); });
 }
 
 std::vector<ContactLine> contact_lines(const ContactKernels& kernels, const ContactViews<PackedRows>& in,

@@ -92,6 +92,11 @@ class ContactKernels {
                           const StartViews& start) const = 0;
 };
 
+// The stages of one type of law, on the CPU, for the laws of all pairs of `materials`: each type is compiled
+// in a source file of its own, laws/*.cpp.
+template <class Law>
+std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<Law>& laws, int materials);
+
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 
 // The lines of the first items, one item after the other: as many as counts has places, whose lines it

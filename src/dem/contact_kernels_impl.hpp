@@ -175,4 +175,10 @@ class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
   std::vector<Law> table_;
 };
 
+template <class Law>
+std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<Law>& laws, int materials) {
+  if (laws.size() == 1) return std::make_unique<CpuContactKernels<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
+  return std::make_unique<CpuTableKernels<Law>>(laws, materials);
+}
+
 }  // namespace scree
