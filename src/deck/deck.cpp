@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,6 +14,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "deck/nesting.hpp"
 #include "deck/overrides.hpp"
 #include "deck/reader.hpp"
@@ -66,10 +69,13 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
 }
 
 Deck load_deck(const std::string& path, const std::vector<std::string>& overrides) {
-  std::ifstream file(path);
+  if (std::filesystem::is_directory(path)) throw IoError("deck " + path + ": is a folder; must be a file");
+  errno = 0;
+  std::ifstream file(path);  // a pipe will do
+  if (!file) throw IoError(fmt::format("deck {}: cannot be read: {}", path, std::strerror(errno)));
   std::stringstream text;
-  if (!file || std::filesystem::is_directory(path)) throw IoError("deck " + path + ": cannot be read");
   text << file.rdbuf();
+  if (is_lfs_pointer(text.view())) throw IoError(fmt::format("deck {}: {}", path, kLfsPointerTrouble));
   return parse_deck(text.str(), path, overrides);
 }
 

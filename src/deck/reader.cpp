@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "base/printable.hpp"
 #include "deck/source_text.hpp"
 #include "deck/suggestion.hpp"
@@ -275,11 +275,8 @@ std::string Reader::text(const toml::node& node, const Context& context) const {
 std::string Reader::file(const std::string& value, const toml::node& node, const Context& context) const {
   const std::filesystem::path folder = std::filesystem::absolute(deck_path_).parent_path();
   const std::string path = (folder / value).lexically_normal().string();
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) fail(node, context, fmt::format("; {} is a folder", path));
-  // It is read more than once: no pipe or device.
-  if (!std::filesystem::is_regular_file(path, error) || !std::ifstream(path))
-    fail(node, context, fmt::format("; {} cannot be read", path));
+  if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+    fail(node, context, fmt::format("; {} {}", path, trouble));
   return path;
 }
 

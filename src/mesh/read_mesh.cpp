@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/words.hpp"
 
@@ -19,13 +20,10 @@ namespace {
 constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 31;
 
 std::string contents(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) throw IoError(path + ": is a folder; must be a file");
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    throw IoError(path + ": is no regular file");  // a pipe, or a device, which may never end
+  if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+    throw IoError(fmt::format("{}: {}", path, trouble));
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw IoError(fmt::format("{}: cannot be read: {}", path, error.message()));
   if (size == 0) throw InputError(path + ": is empty");
@@ -33,7 +31,7 @@ std::string contents(const std::string& path) {
     throw InputError(fmt::format("{}: {} bytes; must be less than {}", path, size, kMostBytes));
   std::string bytes(size, '\0');
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw IoError(path + ": cannot be read to its end");
+    throw IoError(fmt::format("{}: cannot be read to its end: {}", path, std::strerror(errno)));
   return bytes;
 }
 

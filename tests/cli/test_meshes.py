@@ -140,7 +140,19 @@ class BadFileTest(MeshTest):
                 self.assertIn(words[0], self.of_file(content, launcher=TWO_RANKS))
 
     def test_a_file_that_is_not_there(self):
-        self.assertIn("rock.stl cannot be read", self.refusal())
+        self.assertIn("rock.stl cannot be read: No such file or directory", self.refusal())
+
+    def test_a_pointer_that_git_lfs_has_left_is_named_as_one(self):
+        pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'4d' * 32}\nsize 51284\n"
+        for launcher in ((), TWO_RANKS):
+            self.assertIn('rock.stl is a pointer of Git LFS, not the file itself, which "git lfs pull" fetches',
+                          self.of_file(pointer, launcher=launcher))
+        self.write("rock.stl", stl(FACES))
+        self.write("grains.h5", pointer)
+        settings = "particles=[{kind=\"file\",file=\"grains.h5\",radius=0.05,mass=1.0}]"
+        self.assertIn("grains.h5 is a pointer of Git LFS", self.refusal("--set", settings))
+        result = self.expect(IO_FAILED, "check", self.write("pointer.toml", pointer))
+        self.assertIn("pointer.toml: is a pointer of Git LFS", result.stderr)
 
 
 class BadDeckTest(MeshTest):

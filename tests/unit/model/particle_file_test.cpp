@@ -120,8 +120,8 @@ TEST_CASE("what is no file") {
     return model_error(kSmallDeck + "[[particles]]\nkind = \"file\"\nmass = 1.0\nfile = \"" + path + "\"\n");
   };
   CHECK(contains(error(folder.file("")), "is a folder"));
-  CHECK(contains(error(folder.file("absent.csv")), "absent.csv cannot be read"));
-  CHECK(contains(error("/dev/zero"), "/dev/zero cannot be read"));
+  CHECK(contains(error(folder.file("absent.csv")), "absent.csv cannot be read: No such file or directory"));
+  CHECK(contains(error("/dev/zero"), "/dev/zero is no regular file"));
 }
 
 TEST_CASE("wrong values in HDF5 files name dataset and row") {

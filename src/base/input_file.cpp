@@ -1,0 +1,36 @@
+#include "base/input_file.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace scree {
+
+namespace {
+
+// The first line of every pointer, without the version's number.
+constexpr std::string_view kLfsBeginning = "version https://git-lfs.github.com/spec/";
+
+}  // namespace
+
+bool is_lfs_pointer(std::string_view beginning) { return beginning.starts_with(kLfsBeginning); }
+
+std::string input_file_trouble(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return "cannot be read: " + error.message();
+  if (std::filesystem::is_directory(status)) return "is a folder; must be a file";
+  if (!std::filesystem::is_regular_file(status)) return "is no regular file";
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::string("cannot be read: ") + std::strerror(errno);
+  std::array<char, kLfsBeginning.size()> beginning{};
+  file.read(beginning.data(), beginning.size());
+  if (file.bad()) return std::string("cannot be read: ") + std::strerror(errno);
+  if (is_lfs_pointer({beginning.data(), static_cast<std::size_t>(file.gcount())})) return kLfsPointerTrouble;
+  return "";
+}
+
+}  // namespace scree
