@@ -36,6 +36,13 @@ const TableKeys& mesh_keys() {
              .above(0)
              .otherwise("1.0")
              .about("Metres in the file's unit of length: 0.001 for a file in mm."),
+         reals("stretch", "")
+             .only_for(files)
+             .entries(3)
+             .left_out("none")
+             .about(
+                 "Factors along the file's x, y and z beside scale; one below 0 mirrors: [1, -1, 1] makes a "
+                 "left part of a right one."),
          real("weld", "m")
              .only_for(files)
              .above(0)

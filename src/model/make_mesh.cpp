@@ -174,14 +174,27 @@ MadeMesh made(const DeckTable& table, Real half_depth) {
   return {line_of(table, half_depth), std::nullopt};
 }
 
+// Factors along the axes of what is drawn. One that mirrors turns the windings, which run the other way then.
+Vec3 size_factors(const DeckTable& table, TriangleMesh& mesh) {
+  const Real scale = table.has("scale") ? table.real("scale") : 1;
+  if (!table.has("stretch")) return {scale, scale, scale};
+  const std::vector<Real>& s = table.reals("stretch");
+  const Vec3 factors{scale * s[0], scale * s[1], scale * s[2]};
+  if (factors.x == 0 || factors.y == 0 || factors.z == 0)
+    table.fail("stretch", "none of the three factors may be 0");
+  if ((factors.x < 0) ^ (factors.y < 0) ^ (factors.z < 0))
+    for (std::array<Index, 3>& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return factors;
+}
+
 TriangleMesh placed(const DeckTable& table, TriangleMesh mesh) {
   const Quaternion turn = read_orientation(table);
   const Mat3 axes = rotation_matrix(turn);
   if (table.choice<MeshKind>("kind") == MeshKind::line) check_turned_about_z(table, axes);
   const Vec3 offset = table.vector("offset");
-  const Real scale = table.has("scale") ? table.real("scale") : 1;
+  const Vec3 factors = size_factors(table, mesh);
   for (Vec3& vertex : mesh.vertices) {
-    vertex = scale * vertex;
+    vertex = {factors.x * vertex.x, factors.y * vertex.y, factors.z * vertex.z};
     vertex = (turn.w == 1 ? vertex : axes * vertex) + offset;
   }
   return mesh;

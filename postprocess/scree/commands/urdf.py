@@ -29,6 +29,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stop-stiffness", type=float, metavar="K",
                         help="of the stops at the joints' limits [N m/rad or N/m]; default: each gives way by 0.02 rad "
                              "or m under the effort of its limit")
+    parser.add_argument("--mend-inertia", action="store_true",
+                        help="makes an inertia that no body can have the nearest that one can, and says to what")
 
 
 def pairs(words: Sequence[str]) -> dict[str, str]:
@@ -49,7 +51,7 @@ def run(words: argparse.Namespace) -> int:
     """A robot's URDF as a deck, to which loop joints and particles can be added
 
     Links become bodies, joints joints, limits stops, with damping, friction, couplers for joints that mimic others, and
-    meshes that particles touch. What is left out is said.
+    meshes that particles touch. What is left out or made otherwise is said, once of each kind.
     """
     from scree import urdf
 
@@ -58,7 +60,7 @@ def run(words: argparse.Namespace) -> int:
         raise ScreeError(f"{path}: is there already; --overwrite replaces it")
     options = urdf.Options(words.free, tuple(words.xyz), tuple(words.rpy),
                            {name: number(text) for name, text in pairs(words.position).items()}, words.geometry,
-                           pairs(words.package), words.stop_stiffness)
+                           pairs(words.package), words.stop_stiffness, words.mend_inertia)
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", ScreeWarning)
         deck = urdf.to_deck(words.robot, options)

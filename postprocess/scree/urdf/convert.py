@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pathlib
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,12 +11,15 @@ from typing import Any
 import numpy as np
 
 from scree.deck import Deck
-from scree.errors import ScreeError, ScreeWarning
+from scree.errors import ScreeError
 from scree.frames import Pose, of_roll_pitch_yaw, to_z
 from scree.urdf import meshes, robot
+from scree.urdf.accepted import make_accepted
+from scree.urdf.names import GROUND, allowed
+from scree.urdf.notes import Notes
 from scree.urdf.robot import MOVING, Joint
 from scree.urdf.skeleton import HEAD, TAIL
-from scree.urdf.tree import GROUND, Part, Tree, plant
+from scree.urdf.tree import Part, Tree, make_inertia_possible, plant
 
 DECK_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "translational", "fixed": "fixed",
               "planar": "planar"}
@@ -31,7 +33,8 @@ class Options:
     """free: the root link is held by nothing. xyz [m], rpy [rad]: its frame in the space. positions: coordinates of
     joints at t = 0 [rad or m]. geometry: what particles touch, "collision", "visual" or "none". packages: folders that
     package://NAME stands for. stop_stiffness: of all stops at limits [N m/rad or N/m]; none: each gives way by 0.02 rad
-    or m under the effort of its joint's limit."""
+    or m under the effort of its joint's limit. mend_inertia: an inertia that no body can have becomes the nearest that
+    one can."""
 
     free: bool = False
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -40,41 +43,43 @@ class Options:
     geometry: str = "collision"
     packages: Mapping[str, str] = field(default_factory=dict)
     stop_stiffness: float | None = None
+    mend_inertia: bool = False
 
 
-def warn(text: str) -> None:
-    warnings.warn(ScreeWarning(text), stacklevel=3)
-
-
-def geometry_of(deck: Deck, part: Part, options: Options) -> dict[str, Any]:
-    """What a body's table says of it: spheres are shapes, all else meshes, which are added to the deck."""
-    shapes, used = [], []
-    for link, geometry, pose in part.geometry(options.geometry):
-        if geometry.kind == "sphere" and part.name != GROUND:
-            shapes.append({"radius": float(geometry.numbers[0]), "offset": pose.origin.tolist(), "material": MATERIAL})
+def geometry_of(deck: Deck, part: Part, options: Options, notes: Notes) -> tuple[dict[str, Any], float]:
+    """What a body's table says of it: spheres are shapes, all else meshes, which are added to the deck. And how far it
+    goes from the part's origin [m]."""
+    shapes, used, reach = [], [], 0.0
+    for link, geometry, pose in part.geometry():
+        made = meshes.mesh_table(geometry, pose, deck.folder, options.packages, notes)
+        if made is None:
             continue
-        table = meshes.mesh_table(geometry, pose, deck.folder, options.packages)
-        if table is not None:
-            names = [mesh["name"] for mesh in deck.get("meshes", [])]
-            numbered = (f"{link.name}_{k}" for k in range(2, len(names) + 3))
-            name = next(each for each in (link.name, *numbered) if each not in names)
-            deck.add("meshes", name=name, **table)
-            used.append({"mesh": name, "material": MATERIAL})
-    return {key: tables for key, tables in (("shapes", shapes), ("meshes", used)) if tables}
+        table, far = made
+        reach = max(reach, far)
+        if geometry.kind == "sphere" and part.name != GROUND:
+            shapes.append({"radius": table["radius"], "offset": pose.origin.tolist(), "material": MATERIAL})
+            continue
+        names = [mesh["name"] for mesh in deck.get("meshes", [])]
+        numbered = (f"{link.name}_{k}" for k in range(2, len(names) + 3))
+        name = next(each for each in (link.name, *numbered) if each not in names)
+        deck.add("meshes", name=name, **table)
+        used.append({"mesh": name, "material": MATERIAL})
+    return {key: tables for key, tables in (("shapes", shapes), ("meshes", used)) if tables}, reach
 
 
-def add_body(deck: Deck, part: Part, options: Options) -> None:
-    """What stands on the ground becomes walls."""
-    geometry = geometry_of(deck, part, options)
+def add_body(deck: Deck, part: Part, options: Options, notes: Notes) -> float:
+    """What stands on the ground becomes walls. Returns how far it goes from the part's origin [m]."""
+    geometry, reach = geometry_of(deck, part, options, notes)
     if part.name == GROUND:
         for used in geometry.get("meshes", []):
             deck.add("walls", name=used["mesh"], **used)
-        return
+        return reach
     mass, center, inertia = part.mass_properties()
     tensor = [*np.diag(inertia).tolist(), *inertia[[0, 0, 1], [1, 2, 2]].tolist()]
     away = {"center_of_mass": center.tolist()} if center.any() else {}
     pose = {"position": [0.0, 0.0, 0.0]} | part.pose.keys("position")
     deck.add("bodies", name=part.name, kind="spatial", **pose, mass=mass, **away, inertia_tensor=tensor, **geometry)
+    return max(reach, float(np.linalg.norm(center)))
 
 
 def add_joint(deck: Deck, name: str, kind: str, ends: tuple[tuple[Part, Pose], tuple[Part, Pose]]) -> None:
@@ -87,40 +92,40 @@ def add_joint(deck: Deck, name: str, kind: str, ends: tuple[tuple[Part, Pose], t
 
 def add_joints(deck: Deck, tree: Tree) -> None:
     if tree.held:
-        if "base" in (joint.name for joint, *_ in tree.joints):
-            raise ScreeError(f'{deck.name}: a joint is named "base", which is that of the root with the ground here')
-        add_joint(deck, "base", "fixed", ((tree.parts[0], tree.held.pose), (tree.held, Pose.at())))
+        base = allowed("base", [joint.name for joint, *_ in tree.joints])
+        add_joint(deck, base, "fixed", ((tree.parts[0], tree.held.pose), (tree.held, Pose.at())))
     for joint, parent, frame, child in tree.joints:
         if joint.type != "floating":
             turn = Pose.at(rotation=to_z(joint.axis))
             add_joint(deck, joint.name, DECK_TYPES[joint.type], ((parent, frame @ turn), (child, turn)))
 
 
-def add_efforts(deck: Deck, joint: Joint, start: float, stop_stiffness: float | None) -> None:
+def add_efforts(deck: Deck, joint: Joint, start: float, stop_stiffness: float | None, notes: Notes) -> None:
     """Stops, damping, friction."""
-    name, place = joint.name, joint.element.place
+    name, called = joint.name, joint.element.called
     if joint.damping > 0:
         deck.add("joint_springs", name=f"{name}_damping", joint=name, damping=joint.damping)
     if joint.friction > 0:
         deck.add("joint_frictions", name=f"{name}_friction", joint=name, effort=joint.friction,
                  stiffness=rounded(joint.friction / STICKS), damping=joint.friction)
-    if not np.isfinite([joint.lower, joint.upper]).all():
+    ends = {key: end for key, end in (("lower", joint.lower), ("upper", joint.upper)) if np.isfinite(end)}
+    if not ends:
         return
     if not joint.lower <= start <= joint.upper:
-        warn(f"{place}: joint {name} starts at {start:g}, outside its limits from {joint.lower:g} to {joint.upper:g}; "
-             f"--position {name}=VALUE starts it elsewhere")
+        notes.add("starts outside its limits, and its stop throws it back; --position JOINT=VALUE starts it elsewhere",
+                  f"{called} at {start:g}, with limits from {joint.lower:g} to {joint.upper:g}")
     stiffness = stop_stiffness or rounded(joint.effort / GIVES_WAY)
     if stiffness > 0:
-        deck.add("joint_limits", name=f"{name}_stop", joint=name, lower=joint.lower, upper=joint.upper,
-                 stiffness=stiffness, damping=rounded(stiffness * STICKS))
+        deck.add("joint_limits", name=f"{name}_stop", joint=name, **ends, stiffness=stiffness,
+                 damping=rounded(stiffness * STICKS))
     else:
-        warn(f"{place}: joint {name} has limits but no effort from which the stiffness of its stops would follow, and "
-             "goes past them; --stop-stiffness gives one")
+        notes.add("limits but no effort from which the stiffness of the stops would follow, and so a joint without "
+                  "stops; --stop-stiffness gives one", called)
 
 
 def has_speed_limit(joint: Joint) -> bool:
     limit = joint.element.first("limit")
-    return limit is not None and limit.number("velocity", 0.0) > 0
+    return limit is not None and limit.number("velocity", 0.0, infinite=True) > 0
 
 
 def rounded(value: float) -> float:
@@ -136,15 +141,14 @@ def add_couplers(deck: Deck, joints: list[Joint]) -> None:
                      coefficients=[1.0, -multiple])
 
 
-def size_of(tree: Tree, kind: str) -> float:
-    """How far from the root's place the robot may reach, stretched out [m]."""
+def size_of(tree: Tree, reach: float) -> float:
+    """How far from the root's place the robot may reach, stretched out, where no part goes farther from its origin than
+    this [m]."""
     far = sum(float(np.linalg.norm(joint.pose.origin)) for joint, *_ in tree.joints)
-    far += sum(max(abs(joint.lower), abs(joint.upper)) for joint, *_ in tree.joints
-               if joint.type == "prismatic" and np.isfinite(joint.upper))
-    shapes = [float(np.linalg.norm(pose.origin)) + meshes.reach(geometry)
-              for part in tree.parts for _, geometry, pose in part.geometry(kind)]
-    centers = [float(np.linalg.norm(part.mass_properties()[1])) for part in tree.parts if part.name != GROUND]
-    return far + max([*shapes, *centers, 0.0])
+    for joint, *_ in tree.joints:
+        if joint.type == "prismatic":
+            far += max([abs(end) for end in (joint.lower, joint.upper) if np.isfinite(end)], default=0.0)
+    return far + reach
 
 
 def tail(deck: Deck, moving: list[Joint]) -> str:
@@ -162,31 +166,32 @@ def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Dec
     and geometry that particles touch; of what the file does not say, a space that has room for it, a time, and comments
     where the rest goes. Joint coordinates are those of the file.
 
-    Throws ScreeError with file and line for what is wrong; warns (ScreeWarning) of what is left out.
+    `scree check` takes the deck, where the program is there to be asked. Throws ScreeError with file and line for what
+    is wrong; warns (ScreeWarning) of what is left out or made otherwise, once of each kind.
     """
     chosen, file = options or Options(), pathlib.Path(path)
     if chosen.geometry not in ("collision", "visual", "none"):
         raise ScreeError(f'geometry = "{chosen.geometry}": must be one of "collision", "visual", "none"')
-    found = robot.read(file)
-    if found.ignored:
-        warn(f"{file}: not read: {', '.join(f'<{name}>' for name in found.ignored)}")
+    notes = Notes()
+    found = robot.read(file, chosen.geometry, notes)
     base = Pose.at(chosen.xyz, of_roll_pitch_yaw(*chosen.rpy))
     tree = plant(found, base, chosen.free, chosen.positions)
+    make_inertia_possible(tree, chosen.mend_inertia, notes)
     deck = Deck.parse(HEAD, os.fspath(path), file.resolve().parent)
     deck["title"] = found.name
-    reach = float(f"{1.1 * size_of(tree, chosen.geometry) + 0.1:.2g}")
+    reaches = [add_body(deck, part, chosen, notes) for part in tree.parts]
+    reach = float(f"{1.1 * size_of(tree, max(reaches)) + 0.1:.2g}")
     deck["space.min"] = [round(float(x) - reach, 6) for x in chosen.xyz]
     deck["space.max"] = [round(float(x) + reach, 6) for x in chosen.xyz]
-    for part in tree.parts:
-        add_body(deck, part, chosen)
     add_joints(deck, tree)
     moving = [joint for joint, *_ in tree.joints if joint.type in MOVING]
     for joint in moving:
-        add_efforts(deck, joint, tree.coordinates[joint.name], chosen.stop_stiffness)
+        add_efforts(deck, joint, tree.coordinates[joint.name], chosen.stop_stiffness, notes)
+        if has_speed_limit(joint):
+            notes.add("limits of velocity are left out, as a deck has none", joint.element.called)
     add_couplers(deck, moving)
-    with_speeds = [joint.name for joint in moving if has_speed_limit(joint)]
-    if with_speeds:
-        warn(f"{file}: limits of velocity are left out, as a deck has none: of {', '.join(with_speeds)}")
     deck["output.history_coordinates"] = len(moving)
     deck["output.history_bodies"] = [part.name for part in tree.parts if part.name != GROUND]
+    make_accepted(deck, notes)
+    notes.warn(path)
     return Deck.parse(str(deck) + tail(deck, moving), deck.name, deck.folder)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pathlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scree.frames import Pose, of_roll_pitch_yaw
-from scree.urdf import xml
+from scree.frames import Pose, about, of_roll_pitch_yaw
+from scree.urdf import names, xml
+from scree.urdf.notes import Notes
 from scree.urdf.xml import Element
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
@@ -18,8 +19,8 @@ READ = ("link", "joint", "material")  # elements of a robot; what others say is 
 
 @dataclass(frozen=True)
 class Geometry:
-    """kind: "box", "cylinder", "sphere" or "mesh"; numbers [m]: its edges, its radius and length, its radius, or the
-    scales along x, y and z of the mesh's file."""
+    """kind: "box", "cylinder", "capsule", "sphere" or "mesh"; numbers [m]: its edges, its radius and length, of a
+    capsule without its half spheres, its radius, or the scales along x, y and z of the mesh's file."""
 
     element: Element
     kind: str
@@ -30,14 +31,15 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Link:
-    """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the link's frame; no mass: all zero."""
+    """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the link's frame, which may be that of no
+    body; no mass: all zero."""
 
     element: Element
     name: str
     mass: float
     center: np.ndarray
     inertia: np.ndarray
-    geometry: dict[str, list[Geometry]]  # of "collision" and of "visual"
+    geometry: list[Geometry]  # of the kind that was asked for
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Joint:
     child: str
     pose: Pose
     axis: np.ndarray  # of length 1, in the joint's frame
-    lower: float  # [rad or m]; infinite: no limit
+    lower: float  # [rad or m]; infinite: no limit. As the upper one: held there
     upper: float
     effort: float  # largest one of its drive [N m or N]; 0: not said
     damping: float  # [N m s/rad or N s/m]
@@ -65,7 +67,7 @@ class Robot:
     name: str
     links: dict[str, Link] = field(default_factory=dict)
     joints: dict[str, Joint] = field(default_factory=dict)
-    ignored: tuple[str, ...] = ()  # names of elements that were not read
+    joint_names: dict[str, str] = field(default_factory=dict)  # the deck's by those in the file
 
 
 def pose_of(element: Element) -> Pose:
@@ -83,75 +85,76 @@ def read_inertia(link: Element) -> tuple[float, np.ndarray, np.ndarray]:
         return 0.0, np.zeros(3), np.zeros((3, 3))
     if mass < 0:
         link.fail(f"mass = {mass:g}: must not be below 0")
-    element, pose = inertial.required("inertia"), pose_of(inertial)
+    element, pose = inertial.first("inertia"), pose_of(inertial)
+    if element is None:
+        return mass, pose.origin, np.zeros((3, 3))
     xx, yy, zz = (element.number(name) for name in ("ixx", "iyy", "izz"))
     xy, xz, yz = (element.number(name, 0.0) for name in ("ixy", "ixz", "iyz"))
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    principal = np.linalg.eigvalsh(tensor)
-    if principal[0] <= 0 or principal[2] > (principal[0] + principal[1]) * (1 + 1e-6):
-        moments = ", ".join(f"{value:.6g}" for value in principal)
-        link.fail(f"inertia: principal moments {moments} kg m^2 are those of no body; they must be above 0, and none "
-                  "above the sum of the two others")
     return mass, pose.origin, pose.rotation @ tensor @ pose.rotation.T
 
 
-def read_geometry(owner: Element) -> Geometry:
-    geometry, pose = owner.required("geometry"), pose_of(owner)
-    shape = next(iter(geometry.children), None)
+def read_geometry(owner: Element, notes: Notes) -> Geometry | None:
+    """None, with a note, for what a deck cannot have."""
+    geometry = owner.first("geometry")
+    shape = next(iter(geometry.children), None) if geometry is not None else None
     if shape is None:
-        owner.fail("its <geometry> is empty")
-    if shape.name == "mesh":
-        return Geometry(shape, "mesh", pose, shape.numbers("scale", 3, [1, 1, 1]), shape.text("filename"))
-    if shape.name == "box":
+        notes.add("without a geometry, left out", f"{owner.name} (line {owner.line})")
+        return None
+    kind, pose = shape.name, pose_of(owner)
+    if kind == "mesh":
+        numbers = shape.numbers("scale", 3, [1, 1, 1])
+    elif kind == "box":
         numbers = shape.numbers("size", 3)
-    elif shape.name == "cylinder":
+    elif kind in ("cylinder", "capsule"):
         numbers = np.array([shape.number("radius"), shape.number("length")])
-    elif shape.name == "sphere":
+    elif kind == "sphere":
         numbers = np.array([shape.number("radius")])
     else:
-        shape.fail("unknown; known: box, cylinder, sphere, mesh")
-    if (numbers <= 0).any():
-        shape.fail("its measures must be above 0")
-    return Geometry(shape, shape.name, pose, numbers)
+        notes.add("neither box, cylinder, capsule, sphere nor mesh, left out", f"{kind} (line {shape.line})")
+        return None
+    if kind == "capsule" and numbers[1] == 0:
+        kind, numbers = "sphere", numbers[:1]
+    if (numbers == 0).any() or (kind != "mesh" and (numbers < 0).any()):
+        notes.add("a measure is not above 0, left out", f"{kind} (line {shape.line})")
+        return None
+    return Geometry(shape, kind, pose, numbers, shape.text("filename") if kind == "mesh" else "")
 
 
-def named(element: Element) -> str:
-    name = element.text("name")
-    if "/" in name or name in (".", ".."):
-        element.fail('a deck\'s names have no "/"')
-    return name
+def read_link(element: Element, geometry: str, notes: Notes) -> Link:
+    shapes = [] if geometry == "none" else [read_geometry(each, notes) for each in element.all(geometry)]
+    return Link(element, element.text("name"), *read_inertia(element), [each for each in shapes if each])
 
 
-def read_link(element: Element) -> Link:
-    name = named(element)
-    if name == "ground":
-        element.fail('is what a deck calls the space; give the link another name')
-    mass, center, inertia = read_inertia(element)
-    geometry = {kind: [read_geometry(each) for each in element.all(kind)] for kind in ("collision", "visual")}
-    return Link(element, name, mass, center, inertia, geometry)
-
-
-def read_limits(joint: Element, kind: str) -> tuple[float, float, float]:
+def read_limits(joint: Element, kind: str, notes: Notes) -> tuple[float, float, float]:
     """Lower, upper, effort."""
     limit = joint.first("limit")
-    if kind in ("revolute", "prismatic"):
-        limit = joint.required("limit")
-        lower, upper = limit.number("lower", 0.0), limit.number("upper", 0.0)
-        if lower > upper:
-            joint.fail(f"limits from {lower:g} to {upper:g}: the lower one is above the upper one")
-        return lower, upper, limit.number("effort", 0.0)
-    return -np.inf, np.inf, limit.number("effort", 0.0) if limit else 0.0
+    effort = limit.number("effort", 0.0, infinite=True) if limit else 0.0
+    effort = effort if np.isfinite(effort) else 0.0
+    if kind not in ("revolute", "prismatic"):
+        return -np.inf, np.inf, effort
+    if limit is None or not (limit.has("lower") or limit.has("upper")):
+        notes.add("limits without lower and upper, and so a joint without stops", joint.called)
+        return -np.inf, np.inf, effort
+    lower, upper = (limit.number(name, 0.0, infinite=True) for name in ("lower", "upper"))
+    if lower > upper:
+        notes.add("the lower limit is above the upper one, and so a joint without stops",
+                  f"{joint.called} from {lower:g} to {upper:g}")
+        return -np.inf, np.inf, effort
+    return lower, upper, effort
 
 
-def read_axis(joint: Element) -> np.ndarray:
-    element = joint.first("axis")
+def read_axis(joint: Element, kind: str) -> np.ndarray:
+    """Of one that has none, x."""
+    element = joint.first("axis") if kind in (*MOVING, "planar") else None
     axis = element.numbers("xyz", 3) if element else np.array([1.0, 0.0, 0.0])
     if not axis.any():
         joint.fail("axis = 0 0 0: has no direction")
+    axis = axis / np.abs(axis).max()
     return np.asarray(axis / np.linalg.norm(axis))
 
 
-def read_joint(element: Element) -> Joint:
+def read_joint(element: Element, notes: Notes) -> Joint:
     kind = element.text("type")
     if kind not in TYPES:
         element.fail(f'type = "{kind}": must be one of {", ".join(TYPES)}')
@@ -160,28 +163,75 @@ def read_joint(element: Element) -> Joint:
     if damping < 0 or friction < 0:
         element.fail("dynamics: damping and friction must not be below 0")
     mimics = (mimic.text("joint"), mimic.number("multiplier", 1.0), mimic.number("offset", 0.0)) if mimic else None
+    if mimics and kind not in MOVING:
+        notes.add("has no coordinate, and so follows no other joint", f"{kind} {element.called}")
+        mimics = None
     parent, child = (element.required(name).text("link") for name in ("parent", "child"))
-    return Joint(element, named(element), kind, parent, child, pose_of(element), read_axis(element),
-                 *read_limits(element, kind), damping, friction, mimics)
+    return Joint(element, element.text("name"), kind, parent, child, pose_of(element), read_axis(element, kind),
+                 *read_limits(element, kind, notes), damping, friction, mimics)
 
 
-def read(path: pathlib.Path) -> Robot:
-    """Throws ScreeError for what cannot be read, with file and line."""
-    root = xml.read(path)
+def moved(joint: Joint, coordinate: float) -> Pose:
+    """Of the child's frame in the joint's."""
+    if joint.type == "prismatic":
+        return Pose.at(coordinate * joint.axis)
+    return Pose.at(rotation=about(joint.axis, coordinate))
+
+
+def held_at(joint: Joint, joints: dict[str, Joint], held: dict[str, float]) -> float | None:
+    """The coordinate that a joint cannot leave: None where it moves. held: those of joints that are known to be so."""
+    if joint.type not in MOVING:
+        return None
+    if joint.mimics is None:
+        return joint.lower if joint.lower == joint.upper else None
+    name, multiple, added = joint.mimics
+    if name in joints and (multiple == 0 or name in held or joints[name].type == "fixed"):
+        return multiple * held.get(name, 0.0) + added
+    return None
+
+
+def hold(joints: dict[str, Joint], notes: Notes) -> None:
+    """Makes fixed joints of those that cannot move, at their coordinate."""
+    held: dict[str, float] = {}
+    while True:
+        found = {name: at for name, joint in joints.items()
+                 if name not in held and (at := held_at(joint, joints, held)) is not None}
+        if not found:
+            break
+        held |= found
+    for name, at in held.items():
+        joint = joints[name]
+        why = ("follows a joint that does not move" if joint.mimics else
+               "lower = upper; a joint without both has no stops")
+        notes.add(f"held, as by a fixed joint: {why}", f"{joint.element.called} at {at:g}")
+        joints[name] = replace(joint, type="fixed", pose=joint.pose @ moved(joint, at), mimics=None)
+    for name, joint in joints.items():
+        if joint.type in MOVING and joint.lower == joint.upper:
+            notes.add("lower = upper of a joint that follows another one, and so a joint without stops",
+                      joint.element.called)
+            joints[name] = replace(joint, lower=-np.inf, upper=np.inf)
+
+
+def read(path: pathlib.Path, geometry: str = "none", notes: Notes | None = None) -> Robot:
+    """geometry: "collision", "visual" or "none"; others are not read. notes: get what was read otherwise than it stands
+    there. Throws ScreeError for what cannot be read, with file and line."""
+    root, said = xml.read(path), notes or Notes()
     if root.name != "robot":
         root.fail("the file of a robot begins with <robot>")
+    joint_names = names.rename(root, said)
     links: dict[str, Link] = {}
     joints: dict[str, Joint] = {}
-    for element in root.children:
-        if element.name == "link":
-            link = read_link(element)
-            if link.name in links:
-                element.fail("a second link of this name")
-            links[link.name] = link
-        elif element.name == "joint":
-            joint = read_joint(element)
-            if joint.name in joints:
-                element.fail("a second joint of this name")
-            joints[joint.name] = joint
-    ignored = dict.fromkeys(child.name for child in root.children if child.name not in READ)
-    return Robot(path, root.attributes.get("name", path.stem), links, joints, tuple(ignored))
+    for element in root.all("link"):
+        link = read_link(element, geometry, said)
+        if link.name in links:
+            element.fail("a second link of this name")
+        links[link.name] = link
+    for element in root.all("joint"):
+        joint = read_joint(element, said)
+        if joint.name in joints:
+            element.fail("a second joint of this name")
+        joints[joint.name] = joint
+    hold(joints, said)
+    for name in dict.fromkeys(child.name for child in root.children if child.name not in READ):
+        said.add("not read", f"<{name}>")
+    return Robot(path, root.attributes.get("name", path.stem), links, joints, joint_names)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from scree.errors import ScreeError
-from scree.frames import Pose, about
-from scree.urdf.robot import MOVING, Geometry, Joint, Link, Robot
-
-GROUND = "ground"
+from scree.frames import Pose
+from scree.urdf import inertia
+from scree.urdf.names import GROUND
+from scree.urdf.notes import Notes
+from scree.urdf.robot import MOVING, Geometry, Joint, Link, Robot, moved
 
 
 @dataclass
@@ -34,8 +35,8 @@ class Part:
             inertia += link.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
         return float(masses.sum()), center, inertia
 
-    def geometry(self, kind: str) -> list[tuple[Link, Geometry, Pose]]:
-        return [(link, each, pose @ each.pose) for link, pose in self.links for each in link.geometry.get(kind, [])]
+    def geometry(self) -> list[tuple[Link, Geometry, Pose]]:
+        return [(link, each, pose @ each.pose) for link, pose in self.links for each in link.geometry]
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,9 @@ def find_root(robot: Robot) -> Link:
 
 
 def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, float]:
-    """Of the joints that have one: as given or 0, and what mimics another joint follows it."""
+    """Of the joints that have one: as given, by the names of the file or of the deck, or 0, and what mimics another
+    joint follows it."""
+    given = {robot.joint_names.get(name, name): value for name, value in given.items()}
     for name in given:
         if name not in robot.joints or robot.joints[name].type not in MOVING:
             raise ScreeError(f"{robot.path}: no joint {name} with a coordinate; there are: "
@@ -92,8 +95,6 @@ def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, flo
             joint.element.fail(f'mimics "{name}", which is no joint with a coordinate')
         if name in followers:
             joint.element.fail("mimics itself")
-        if multiple == 0:
-            joint.element.fail("mimics another joint 0 times; make it fixed")
         return multiple * start(other, (*followers, name)) + added
 
     for joint in robot.joints.values():
@@ -102,16 +103,7 @@ def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, flo
             if joint.type != "prismatic" and abs(found[joint.name]) > np.pi:
                 raise ScreeError(f"{robot.path}: joint {joint.name} starts at {found[joint.name]:.6g}: must be from "
                                  "-pi to pi")
-        elif joint.mimics:
-            joint.element.fail(f"a {joint.type} joint cannot mimic another one")
     return found
-
-
-def moved(joint: Joint, coordinate: float) -> Pose:
-    """Of the child's frame in the joint's."""
-    if joint.type == "prismatic":
-        return Pose.at(coordinate * joint.axis)
-    return Pose.at(rotation=about(joint.axis, coordinate))
 
 
 def plant(robot: Robot, base: Pose, free: bool, given: Mapping[str, float]) -> Tree:
@@ -152,3 +144,32 @@ def plant(robot: Robot, base: Pose, free: bool, given: Mapping[str, float]) -> T
         if part.name == "":
             part.links[0][0].element.fail("moves, but neither it nor a link that is fixed to it has a mass")
     return Tree(parts, joints, parts[1] if root.mass > 0 and not free else None, coordinates)
+
+
+def standing(tree: Tree) -> set[str]:
+    """Names of the parts that joints hold to the ground, so that their masses act on nothing."""
+    found = {GROUND} | ({tree.held.name} if tree.held else set())
+    for joint, above, _, part in tree.joints:  # from the root on
+        if joint.type == "fixed" and above.name in found:
+            found.add(part.name)
+    return found
+
+
+def make_inertia_possible(tree: Tree, mend: bool, notes: Notes) -> None:
+    """That of parts which stand on the ground, and with `mend` of all. Throws ScreeError for one that no body can have
+    and that moves."""
+    still = standing(tree)
+    for part in tree.parts:
+        for k, (link, pose) in enumerate(part.links):
+            tensor = inertia.without_rounding(link.inertia, link.mass)
+            if link.mass > 0 and inertia.excess(tensor) > inertia.OF_PROGRAM:
+                moments = f"principal moments {inertia.text_of(tensor)} kg m^2"
+                if not mend and part.name not in still:
+                    link.element.fail(f"inertia: {moments} are those of no body; they must be above 0, and none above "
+                                      "the sum of the two others; --mend-inertia takes the nearest that can be")
+                tensor = inertia.nearest(tensor, link.mass)
+                kind = "of what stands on the ground, where it acts on nothing" if part.name in still else \
+                    "as --mend-inertia asks for"
+                notes.add(f"an inertia of no body was made the nearest that can be, {kind}",
+                          f"{link.element.called} with {moments}, now {inertia.text_of(tensor)}")
+            part.links[k] = replace(link, inertia=tensor), pose

@@ -20,6 +20,14 @@ class Element:
     place: str  # FILE:LINE
     children: list[Element] = field(default_factory=list)
 
+    @property
+    def line(self) -> str:
+        return self.place.rsplit(":", 1)[1]
+
+    @property
+    def called(self) -> str:
+        return f"{self.name} {self.attributes.get('name', '')} (line {self.line})"
+
     def fail(self, text: str) -> NoReturn:
         owner = f' "{self.attributes["name"]}"' if "name" in self.attributes else ""
         raise ScreeError(f"{self.place}: {self.name}{owner}: {text}")
@@ -37,25 +45,29 @@ class Element:
         return found
 
     def text(self, attribute: str) -> str:
-        if not self.attributes.get(attribute, "").strip():
+        if not self.has(attribute):
             self.fail(f'has no attribute "{attribute}"')
         return self.attributes[attribute].strip()
 
-    def numbers(self, attribute: str, count: int, default: list[float] | None = None) -> np.ndarray:
-        """Finite ones, separated by blanks; a default of None: they must be there."""
-        if attribute not in self.attributes and default is not None:
+    def has(self, attribute: str) -> bool:
+        return bool(self.attributes.get(attribute, "").strip())
+
+    def numbers(self, attribute: str, count: int, default: list[float] | None = None,
+                infinite: bool = False) -> np.ndarray:
+        """Finite ones, unless they may be infinite, separated by blanks; a default of None: they must be there."""
+        if not self.has(attribute) and default is not None:
             return np.array(default, dtype=float)
         text = self.text(attribute)
         try:
             values = np.array([float(word) for word in text.split()])
         except ValueError:
             values = np.array([])
-        if len(values) != count or not np.isfinite(values).all():
+        if len(values) != count or not (~np.isnan(values) if infinite else np.isfinite(values)).all():
             self.fail(f'{attribute} = "{text}": must be {"a number" if count == 1 else f"{count} numbers"}')
         return values
 
-    def number(self, attribute: str, default: float | None = None) -> float:
-        return float(self.numbers(attribute, 1, None if default is None else [default])[0])
+    def number(self, attribute: str, default: float | None = None, infinite: bool = False) -> float:
+        return float(self.numbers(attribute, 1, None if default is None else [default], infinite)[0])
 
 
 def read(path: pathlib.Path) -> Element:

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "model/mesh_plausibility.hpp"
 #include "support/catch.hpp"
@@ -71,6 +73,25 @@ TEST_CASE("a body made of a box of triangles weighs what the box does") {
                            "{ kind = \"mesh\", mesh = \"made\", density = 800.0, offset = [0.1, 0.2, 0.3], "
                            "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }")),
               whole);
+}
+
+TEST_CASE("a mesh of a file is stretched along each axis, and mirrored without turning it inside out") {
+  // A tetrahedron of 1/6 m^3, with its centre at a quarter of each edge.
+  const std::string path = std::filesystem::temp_directory_path() / "scree_stretched.obj";
+  std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const std::string file = "kind = \"file\"\nfile = \"" + path + "\"\nscale = 0.1\n";
+  const auto made = [&](const std::string& more) { return body(body_of(file + more, kOfMesh)); };
+  const Body plain = made("");
+  CHECK(plain.mass == Approx(800.0 / 6000));
+  for (const Vec3 s : {Vec3{1, -1, 1}, Vec3{-1, -1, 1}, Vec3{-1, -1, -1}, Vec3{2, 3, -0.5}}) {
+    const Body other = made(fmt::format("stretch = [{}, {}, {}]", s.x, s.y, s.z));
+    CHECK(other.mass == Approx(plain.mass * std::abs(s.x * s.y * s.z)).epsilon(1e-12));
+    CHECK(norm(other.center_of_mass - Vec3{0.025 * s.x, 0.025 * s.y, 0.025 * s.z}) < 1e-15);
+  }
+  const std::string error = model_error(body_of(file + "stretch = [1, 0, 1]", kOfMesh));
+  CHECK(contains(error, "meshes.made.stretch"));
+  CHECK(contains(error, "none of the three factors may be 0"));
+  std::filesystem::remove(path);
 }
 
 TEST_CASE("a mesh that is far longer than the space may want a scale") {
