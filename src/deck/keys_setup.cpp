@@ -77,8 +77,8 @@ const TableKeys& time_keys() {
        real("step", "s")
            .above(0)
            .left_out("velocity-verlet: chosen from the deck's contacts, so that trial impacts rebound within "
-                     "2 % and the step is stable (input/choosing.md); hht, adaptive: 1/20 of the shortest "
-                     "contact time or end / 1000, whichever is shorter; hht, fixed: must be given")
+                     "2 % and the step is stable (input/choosing.md); hht, adaptive: 1/20 of the briefest "
+                     "contact or end / 1000, whichever is less; hht, fixed: must be given")
            .about("Step size; the first one if control is \"adaptive\". A step that is chosen stands in the "
                   "output of scree check, in the log and in the resolved deck."),
        choice<StepControl>("control")
@@ -94,7 +94,7 @@ const TableKeys& time_keys() {
        real("max_step", "s")
            .only_for({StepControl::adaptive})
            .above(0)
-           .left_out("end / 100 or, if shorter, the time in which a particle that fell through the space "
+           .left_out("end / 100 or, if less, the time in which a particle that fell through the space "
                      "would go half of the smallest radius; but at least step")
            .about("Largest step."),
        real("tolerance", "")

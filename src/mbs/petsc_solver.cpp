@@ -119,6 +119,7 @@ struct PetscSolver::Impl {
   bool is_available(const char* package);
   bool solve(bool refactor);
   void multiply(bool back);
+  static std::string likely_description();
 
   SparsePattern pattern;
   std::vector<Real> values, rhs, solution, units;
@@ -195,7 +196,9 @@ void PetscSolver::Impl::create() {
 }
 
 PetscSolver::PetscSolver(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
-  impl_->create();
+  PetscBool started = PETSC_FALSE;
+  PetscInitialized(&started);
+  if (started == PETSC_TRUE) impl_->create();
 }
 PetscSolver::~PetscSolver() = default;
 
@@ -249,7 +252,26 @@ bool PetscSolver::Impl::solve(bool refactor) {
   return reason > 0 && finite;
 }
 
+// Of a solver without a session, as PETSc's own configuration and the order of the packages say.
+std::string PetscSolver::Impl::likely_description() {
+#if SCREE_REFACTORS
+  const char* const package = kKluRefactor;
+#elif defined(PETSC_HAVE_SUITESPARSE)
+  const char* const package = MATSOLVERKLU;
+#elif defined(PETSC_HAVE_SUPERLU)
+  const char* const package = MATSOLVERSUPERLU;
+#elif defined(PETSC_HAVE_MUMPS)
+  const char* const package = MATSOLVERMUMPS;
+#else
+  const char* const package = MATSOLVERPETSC;
+#endif
+  return fmt::format("petsc {}, {} + {} ({})", petsc_version(), KSPPREONLY, PCLU, package);
+}
+
 std::string PetscSolver::description() const {
+  const std::string without_klu =
+      SCREE_REFACTORS == 0 ? ", built without KLU: every matrix is factored anew" : "";
+  if (impl_->solver == nullptr) return Impl::likely_description() + without_klu;
   KSPType method = nullptr;
   PCType preconditioner_type = nullptr;
   check(KSPGetType(impl_->solver, &method));
@@ -260,8 +282,7 @@ std::string PetscSolver::description() const {
     check(PCFactorGetMatSolverType(impl_->preconditioner, &package));
   }
   if (package != nullptr) text += fmt::format(" ({})", package);
-  if (SCREE_REFACTORS == 0) text += ", built without KLU: every matrix is factored anew";
-  return text;
+  return text + without_klu;
 }
 
 }  // namespace scree

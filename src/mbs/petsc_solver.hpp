@@ -16,7 +16,8 @@ namespace scree {
 // The symbolic factorization is done once.
 class PetscSolver {
  public:
-  // Needs a PetscSession. Throws InputError on an mbs_ option that PETSc refuses.
+  // Without a PetscSession it can be described, and nothing else. Throws InputError on an mbs_ option that
+  // PETSc refuses.
   explicit PetscSolver(const SparsePattern& pattern);
   ~PetscSolver();
   PetscSolver(const PetscSolver&) = delete;
@@ -35,7 +36,7 @@ class PetscSolver {
   // of PETSc.
   bool solve(bool refactor);
 
-  // e.g. "petsc 3.18.5, preonly + lu (klu_refactor)"
+  // e.g. "petsc 3.18.5, preonly + lu (klu_refactor)"; without a PetscSession that of one without options
   std::string description() const;
 
  private:

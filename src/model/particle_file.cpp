@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "deck/suggestion.hpp"
+#include "model/hdf5_open.hpp"
 
 namespace scree {
 
@@ -158,8 +159,9 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-Handle open_hdf5(const std::string& path) {
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+Handle open_file(const std::string& path) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  return {open_hdf5(path, Hdf5Open::read, access.get()), H5Fclose};
 }
 
 [[noreturn]] void fail_dataset(const std::string& path, const std::string& name) {
@@ -169,7 +171,7 @@ Handle open_hdf5(const std::string& path) {
 // Lengths of the columns that the file has.
 std::map<std::string, std::int64_t> look_through_hdf5(const std::string& path, int dimension) {
   const QuietHdf5 quiet;
-  const Handle file = open_hdf5(path);
+  const Handle file = open_file(path);
   if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
   std::map<std::string, std::int64_t> lengths;
   for (const std::string& name : known_columns(dimension)) {
@@ -197,7 +199,7 @@ std::vector<Real> read_dataset(const std::string& path, hid_t file, const std::s
 
 ParticleColumns read_hdf5(const std::string& path, const std::vector<std::string>& names, IdRange rows) {
   const QuietHdf5 quiet;
-  const Handle file = open_hdf5(path);
+  const Handle file = open_file(path);
   if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
   ParticleColumns columns;
   for (const std::string& name : names) columns[name] = read_dataset(path, file.get(), name, rows);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include "base/error.hpp"
+#include "model/hdf5_open.hpp"
 #include "output/hdf5_parts.hpp"
 
 namespace scree {
@@ -29,11 +31,14 @@ herr_t keep_description(unsigned level, const H5E_error2_t* error, void* reason)
 std::string library_reason() {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &reason);
+  const bool is_lock = reason.starts_with("unable to lock file");
   const std::string mark = "error message = '";
   if (const auto begin = reason.find(mark); begin != std::string::npos) {
     const auto from = begin + mark.size();
     reason = reason.substr(from, reason.find('\'', from) - from);
   }
+  const char* const asked = std::getenv("HDF5_USE_FILE_LOCKING");
+  if (is_lock && asked != nullptr) reason += fmt::format("; HDF5_USE_FILE_LOCKING={} asks for locks", asked);
   return reason.empty() ? "no reason given" : reason;
 }
 
@@ -89,12 +94,12 @@ Hdf5File::Hdf5File(const std::string& path, Hdf5Access access)
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Hdf5Id plist(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(plist, H5F_CLOSE_STRONG);
-  if (access == Hdf5Access::create) {
-    unlink(path.c_str());  // a link is not followed
-    file_ = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, plist);
-  } else {
-    file_ = H5Fopen(path.c_str(), writing_ ? H5F_ACC_RDWR : H5F_ACC_RDONLY, plist);
-  }
+  if (access == Hdf5Access::create) unlink(path.c_str());  // a link is not followed
+  file_ = open_hdf5(path,
+                    access == Hdf5Access::create ? Hdf5Open::create
+                    : writing_                   ? Hdf5Open::modify
+                                                 : Hdf5Open::read,
+                    plist);
   if (file_ < 0) fail(access == Hdf5Access::create ? "create" : "open");
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
+#include "model/hdf5_open.hpp"
 #include "output/durable_file.hpp"
 
 #if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)
@@ -76,7 +77,9 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
   ranks_.broadcast(reads_back_);
   ranks_.together([&] {
     if (!has_file()) return;
-    file_ = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+    // The MPI library's part of HDF5 locks nothing.
+    file_ =
+        collective_ ? H5Fopen(path.c_str(), H5F_ACC_RDWR, access) : open_hdf5(path, Hdf5Open::modify, access);
     if (file_ < 0) fail("open");
   });
 }
@@ -108,7 +111,7 @@ void SharedRows::close() {
 
 void SharedRows::read_back() {
   if (written_.empty()) return;
-  const Hdf5Id file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Hdf5Id file(open_hdf5(path_, Hdf5Open::read, new_properties(H5P_FILE_ACCESS)), H5Fclose);
   if (!file.valid()) fail("read back");
   std::vector<std::byte> values;
   for (const Written& w : written_) {

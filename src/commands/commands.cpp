@@ -1,0 +1,236 @@
+#include "commands/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "base/processor.hpp"
+#include "base/version.hpp"
+#include "deck/deck.hpp"
+#include "dem/output_fields.hpp"
+#include "mbs/multibody.hpp"
+#include "mbs/petsc_session.hpp"
+#include "model/build.hpp"
+#include "model/fit_segments.hpp"
+#include "model/memory.hpp"
+#include "output/library_versions.hpp"
+#include "output/results_folder.hpp"
+#include "partition/mpi_session.hpp"
+#include "partition/ranks.hpp"
+#include "partition/shared_model.hpp"
+#include "run/check.hpp"
+#include "run/examples.hpp"
+#include "run/scree_post.hpp"
+#include "run/signals.hpp"
+#include "run/simulation.hpp"
+#include "run/start_picture.hpp"
+#include "run/status.hpp"
+#include "run/step_trials.hpp"
+#include "run/still_fields.hpp"
+#include "run/surfaces_outside.hpp"
+
+namespace scree {
+namespace {
+
+std::string output_directory(const Order& order, const Deck& deck) {
+  if (!order.output.empty()) return order.output;
+  const std::string& directory = deck.root.table("output").text("directory");
+  if (!directory.empty()) return directory;
+  return "results/" + std::filesystem::path(order.deck).stem().string();
+}
+
+// What the multibody room refuses it names by joint or body; this adds the deck.
+template <class Action>
+auto naming_deck(const std::string& deck, const Action& action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    throw InputError(message.starts_with(deck) || message.starts_with("--") ? message
+                                                                            : deck + ": " + message);
+  }
+}
+
+Deck checked_deck(const Order& order) {
+  Deck deck = load_deck(order.deck, order.overrides);
+  check_output_fields(deck);
+  return deck;
+}
+
+// Puts the chosen values into the deck, as if it had named them.
+void take_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
+  for (const ChosenValue& value : chosen) deck.root.take(value);
+}
+
+void say_chosen(const std::vector<ChosenValue>& chosen, Log& log) {
+  for (const ChosenValue& value : chosen)
+    if (!value.reason.empty()) log.info(fmt::format("chosen: {} ({})", value.text(), value.reason));
+}
+
+void warn_of_run(const Model& model, Log& log) {
+  for (const std::string& warning : {step_warning(model), outside_at_start(model), still_fields(model)})
+    if (!warning.empty()) log.warning(warning);
+}
+
+// Whether a signal has reached a rank; says so, and what there is not. Collective.
+bool is_stopped(const Ranks& ranks, const char* lacking, Log& log) {
+  const int signal = static_cast<int>(ranks.max(signal_received()));
+  if (signal != 0) log.info(fmt::format("stopped by signal ({}) {}", strsignal(signal), lacking));
+  return signal != 0;
+}
+
+ExitCode run(const Order& order) {
+  start_mpi();
+  catch_signals();  // again: the MPI library has handlers of its own
+  const Ranks ranks = Ranks::world();
+  Log log(!ranks.is_root());
+  Deck deck = checked_deck(order);
+  const std::string directory = output_directory(order, deck);
+  ranks.on_root([&] { ResultsFolder({directory, order.restart, order.overwrite}).check(); });
+  std::vector<ChosenValue> chosen;
+  const Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  take_chosen(chosen, deck);
+  say_chosen(chosen, log);
+  if (is_stopped(ranks, "before the first step: there is no new checkpoint", log))
+    return ExitCode::stopped_by_signal;
+  warn_of_run(model, log);
+  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  ranks.on_root([&] { petsc.emplace("scree", order.petsc_words); });
+  const Deck whole = with_fitting_segments(deck);
+  RunOptions options{
+      order.backend,       directory,  order.restart, order.allow_changes, order.deck, whole.resolved_text(),
+      whole.fingerprint(), order.text, ranks,         order.overwrite};
+  const ExitCode code = naming_deck(order.deck, [&] {
+    return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
+  });
+  if (petsc)
+    for (const std::string& option : petsc->unused_options())
+      log.warning("PETSc option " + option + " was not used");
+  return code;
+}
+
+// What the multibody room says of the bodies, the constraints' rank included; on rank 0.
+std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
+  if (model.bodies.empty()) return "solver         none";
+  std::string report;
+  ranks.on_root([&] {
+    Multibody multibody(model);
+    for (const std::string& warning : multibody.start_warnings()) log.warning(warning);
+    const std::string& change = multibody.start_change();
+    report = "solver         " + multibody.solver_description();
+    if (!multibody.redundancy().empty())
+      report += "\nredundant      reactions shared: " + multibody.redundancy();
+    if (!change.empty()) report += "\nvelocities     made consistent; largest change: " + change;
+  });
+  return report;
+}
+
+// Everything short of running.
+ExitCode check(const Order& order) {
+  const bool draws = !order.picture.empty();
+  if (draws) start_mpi();
+  const Ranks ranks = Ranks::world();
+  Log log(!ranks.is_root());
+  std::string drawer;
+  if (draws) ranks.on_root([&] { drawer = find_scree_post(); });
+  Deck deck = checked_deck(order);
+  std::vector<ChosenValue> chosen;
+  Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  take_chosen(chosen, deck);
+  warn_of_run(model, log);
+  const ModelSize size = size_of(model);
+  naming_deck(order.deck, [&] {
+    naming_memory(size, ranks.size(), [&] {
+      const std::string bodies = bodies_report(model, ranks, log);
+      log.info(check_report(model, chosen, ranks) + bodies);
+    });
+  });
+  if (!draws) return ExitCode::done;
+  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
+  naming_memory(size, ranks.size(), [&] {
+    draw_start(std::move(model), with_fitting_segments(deck).resolved_text(), drawer, order.picture, ranks);
+  });
+  if (is_stopped(ranks, "before the picture was drawn", log)) return ExitCode::stopped_by_signal;
+  log.info("picture        " + order.picture);
+  return ExitCode::done;
+}
+
+ExitCode new_deck(const Order& order) {
+  Ranks::world().on_root([&] {
+    if (order.example.empty()) {
+      std::cout << examples_text();
+      return;
+    }
+    const std::string path = write_example(order.example, order.file);
+    std::cout << fmt::format("{0} is written; scree check {0} checks it, scree run {0} runs it\n", path);
+  });
+  return ExitCode::done;
+}
+
+ExitCode status(const std::vector<std::string>& folders) {
+  ExitCode code = ExitCode::done;
+  const Ranks ranks = Ranks::world();
+  ranks.on_root([&] {
+    if (folders.size() == 1) {
+      std::cout << status_report(folders.front());
+    } else {
+      const StatusTable table = status_table(folders);
+      std::cout << table.text;
+      code = table.code;
+    }
+  });
+  ranks.broadcast(code);
+  return code;
+}
+
+void print_on_root(const std::string& text) {
+  if (Ranks::world().is_root()) std::cout << text;
+}
+
+std::string manual(const Order& order) {
+  if (order.as_schema) return keys_schema();
+  return order.as_markdown ? keys_markdown() + output_fields_markdown() : keys_text() + output_fields_text();
+}
+
+// What the compiler was allowed to use beyond what every processor of the kind has.
+std::string instructions_text() {
+  std::string names;
+  for (const ProcessorFeature* wanted = wanted_instructions(); wanted->name != nullptr; ++wanted)
+    names += (names.empty() ? "" : ", ") + std::string(wanted->name);
+  return names.empty() ? "every processor of this kind" : "processors with " + names;
+}
+
+}  // namespace
+
+std::string version_text() {
+  std::string text = fmt::format("scree {} (commit {})\ncompiler {}\nflags {}\nfor {}\n", version(), commit(),
+                                 compiler(), compile_flags(), instructions_text());
+  for (const auto& [library, number] : library_versions()) text += fmt::format("{} {}\n", library, number);
+  return text + fmt::format("PETSc {}\n", petsc_version());
+}
+
+ExitCode carry_out(const Order& order) {
+  switch (order.command) {
+    case Command::run:
+      return run(order);
+    case Command::check:
+      return check(order);
+    case Command::new_deck:
+      return new_deck(order);
+    case Command::status:
+      return status(order.folders);
+    case Command::keys:
+      print_on_root(manual(order));
+      break;
+    case Command::help:
+      print_on_root(order.help);
+      break;
+  }
+  return ExitCode::done;
+}
+
+}  // namespace scree

@@ -1,0 +1,23 @@
+// Opening HDF5 files wherever they are: also on file systems without locks.
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+
+namespace scree {
+
+enum class Hdf5Open {
+  create,  // a new file; there must be none of this name
+  read,
+  modify
+};
+
+// Opens the file with these access properties, or returns what the library returns where it cannot. The
+// library locks files as long as they are open, so that nobody reads what another one changes, and it refuses
+// a file where the file system has no locks: NFS without lockd, Lustre mounted without flock, DVS. There the
+// file is opened without a lock; the lock of the folder keeps other runs out. The environment variable
+// HDF5_USE_FILE_LOCKING stands above both.
+hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access);
+
+}  // namespace scree

@@ -1,0 +1,103 @@
+#include "partition/mpi_session.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace scree {
+namespace {
+
+bool starting = false;
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+bool runs() {
+  int started = 0, ended = 0;
+  MPI_Initialized(&started), MPI_Finalized(&ended);
+  return started != 0 && ended == 0;
+}
+
+// The system's reason why nothing can be made in the folder of temporary files; empty where something can.
+std::string temporary_trouble(const std::string& folder) {
+  std::string path = folder + "/scree_XXXXXX";
+  if (mkdtemp(path.data()) == nullptr) return std::strerror(errno);
+  rmdir(path.c_str());
+  return "";
+}
+
+// Where the library is about to end the process because it cannot start.
+void say_what_helps() {
+  if (!std::exchange(starting, false)) return;
+  const std::string named = environment("TMPDIR"), folder = named.empty() ? "/tmp" : named,
+                    trouble = temporary_trouble(folder);
+  const std::string advice =
+      !trouble.empty()
+          ? fmt::format(
+                "it needs a folder for temporary files, and cannot write into {}{}: {}; name another one "
+                "with TMPDIR=",
+                folder, named.empty() ? "" : ", which TMPDIR names", trouble)
+          : "under srun, --mpi= must name what this library was built with (srun --mpi=list); where it asks "
+            "for "
+            "ssh or rsh and there is none, as in a container, OMPI_MCA_plm_rsh_agent= (empty) does without";
+  const std::string line =
+      message_line("error", "MPI cannot be started, and says why above. What helps: " + advice);
+  std::fputs(line.c_str(), stderr);
+  std::fflush(nullptr);
+  syscall(SYS_exit_group, static_cast<int>(ExitCode::simulation_failed));
+}
+
+}  // namespace
+}  // namespace scree
+
+// Open MPI's way out of MPI_Init() is this function of the C library, behind which no handler of exit() is
+// called. It gives no other way to say something last.
+extern "C" void _exit(int code) {
+  scree::say_what_helps();
+  for (;;) syscall(SYS_exit_group, code);
+}
+
+namespace scree {
+
+bool launched_with_others() {
+  // Of Open MPI; of PMI, which MPICH, Intel MPI and Cray's launchers speak; of MVAPICH; of a step of Slurm;
+  // of Flux and of IBM's launcher. A batch script has no step of its own.
+  for (const char* const ranks :
+       {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS",
+        "FLUX_JOB_SIZE", "JSM_NAMESPACE_SIZE"})
+    if (std::atoi(environment(ranks).c_str()) > 1) return true;
+  // A launcher by PMIx may tell the rank alone.
+  const bool sized =
+      !environment("OMPI_COMM_WORLD_SIZE").empty() || !environment("SLURM_STEP_NUM_TASKS").empty();
+  return !sized && !environment("PMIX_RANK").empty();
+}
+
+void start_mpi() {
+  if (runs()) return;
+  // Open MPI gives a process that was started alone a daemon, which it would need to start others, and for
+  // which it asks for ssh.
+  if (!launched_with_others()) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  static const int registered = std::atexit(say_what_helps);
+  starting = registered == 0;
+  MPI_Init(nullptr, nullptr);
+  starting = false;
+}
+
+void end_mpi() {
+  if (runs()) MPI_Finalize();
+}
+
+}  // namespace scree

@@ -1,0 +1,26 @@
+// A program that was built for instructions that no processor has: a bit that is always zero stands for them.
+// What it does beside the check of the processor shows whether anything ran before that.
+#include <cstdio>
+
+#include "base/processor.hpp"
+
+namespace {
+
+struct SaysThatItRan {
+  SaysThatItRan() { std::puts("a static object ran"); }
+} early;
+
+}  // namespace
+
+namespace scree {
+
+constinit const ProcessorFeature kWantedFeatures[] = {
+    {"SSE2", 1, 0, kEdx, 26, kAlways},  // every x86-64 has it
+    {"THIS", 1, 0, kEdx, 10, kAlways},  // reserved, as the next one is
+    {"THAT", 1, 0, kEdx, 20, kAlways},         {"VECTORS", 1, 0, kEdx, 10, kZmm},
+    {"MORE", 0x7fffffff, 0, kEax, 0, kAlways},  // no processor has so many leaves
+    {nullptr, 0, 0, kEax, 0, kAlways}};
+
+}  // namespace scree
+
+int main() { return scree::wanted_instructions() == nullptr; }
