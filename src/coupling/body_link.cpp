@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "base/error.hpp"
 #include "dem/surfaces.hpp"
 
 namespace scree {
@@ -52,7 +53,15 @@ void BodyLink::predict(const MultibodyState& bodies, Real t, Real h, Real end) {
 IterationNorms BodyLink::correct() {
   IterationNorms norms;
   if (!has_bodies()) return norms;
-  ranks_.on_root([&] { norms = multibody_->correct(step_wrench_); });
+  ranks_.on_root([&] {
+    try {
+      norms = multibody_->correct(step_wrench_);
+    } catch (const SimulationError& error) {
+      const std::string dead_point = multibody_->dead_point();
+      if (dead_point.empty()) throw;
+      throw SimulationError(std::string(error.what()) + "; " + dead_point);
+    }
+  });
   ranks_.broadcast(norms);
   return norms;
 }
@@ -90,8 +99,8 @@ std::string BodyLink::trouble() {
   return of_root([&] { return multibody_->trouble(); });
 }
 
-std::string BodyLink::dead_point(const MultibodyState& bodies, Real t) {
-  return of_root([&] { return multibody_->dead_point(bodies, t); });
+std::string BodyLink::dead_point() {
+  return of_root([&] { return multibody_->dead_point(); });
 }
 
 std::string BodyLink::of_root(const std::function<std::string()>& tell) {

@@ -47,7 +47,7 @@ class BodyLink {
   void check_reactions();
   // On every rank.
   std::string trouble();
-  std::string dead_point(const MultibodyState& bodies, Real t);
+  std::string dead_point();
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the placed surfaces on the list.
   void broadcast_motion(RankList& list);

@@ -43,7 +43,7 @@ class CoupledStep {
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Why no step goes on from this state, where a driver is why; else empty. Collective.
-  std::string dead_point(const MultibodyState& bodies, Real t) { return link_.dead_point(bodies, t); }
+  std::string dead_point() { return link_.dead_point(); }
   // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
   // step starts; end: of the last one [s]. Returns the number of steps taken: fewer where a particle is
   // outside the space after one.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mbs/redundancy.hpp"
@@ -12,11 +13,16 @@ namespace scree {
 
 namespace {
 
-// Rows of length 1 that are as near to a combination of others: so near that nothing else explains a failure;
-// and where it does if the velocities have grown.
-constexpr Real kAtIt = 1e-3, kNear = 0.03;
+// Distance of a driver's row of length 1 from the combinations of all other rows: so small that nothing else
+// explains a failure; that it does where velocities have grown; and that it may where the next steps lead
+// there.
+constexpr Real kAtIt = 1e-3, kNear = 0.03, kInReach = 0.3;
 // Rates of coordinates over those that drivers ask for, both over their scales, that have grown.
 constexpr Real kGrown = 10;
+// A step that fails before a dead point is not much longer than what is left of the way to it.
+constexpr Real kStepsLeft = 4;
+// Share of a step along which the distance is followed.
+constexpr Real kProbe = 0.01;
 // A driver takes part in a combination from this share of the largest weight on, for rows of length 1. Where
 // joints repeat each other by themselves, as in a linkage that lies flat, a driver's weight is nothing.
 constexpr Real kTakesPart = 0.1;
@@ -40,67 +46,105 @@ std::vector<Real> row_lengths(const RigidBodySystem& system, const SparseTerm& j
   return square;
 }
 
-// A driver's row in a combination.
-struct DrivenRow {
-  int row = -1;
-  Real asked = 0, weight = 0;  // weight times its rate; weight, for a row of length 1
-};
-
-// Whether it is in one of the combinations.
-bool is_in(const std::vector<Dependency>& combinations, int row) {
-  return std::ranges::any_of(combinations, [&](const Dependency& one) {
-    return std::ranges::find(one.columns, row) != one.columns.end();
-  });
+// Whether a driver's row may lead to a dead point. One that repeats others from the start on does where it is
+// the only driver among them and moves: of several it is they that must agree, and one that rests moves
+// nothing.
+bool may_lead(const RigidBodySystem& system, int row, const std::vector<Dependency>& repeated, Real rate) {
+  const auto drives = [&](int one) { return system.groups()[at(system.group_of(one))].drives; };
+  for (const Dependency& one : repeated)
+    if (std::ranges::find(one.columns, row) != one.columns.end() &&
+        (rate == 0 || std::ranges::count_if(one.columns, drives) > 1))
+      return false;
+  return drives(row);
 }
 
-// The one of those that take part which asks for most, or, where all rest, weighs most.
-DrivenRow driven_row(const RigidBodySystem& system, const SparseTerm& jacobian,
-                     const std::vector<Dependency>& combinations, const std::vector<Dependency>& repeated,
-                     const std::vector<Real>& rate) {
+std::vector<int> driven_rows(const RigidBodySystem& system, const std::vector<Dependency>& repeated,
+                             const std::vector<Real>& rate) {
+  std::vector<int> rows;
+  for (int row = 0; row < system.constraints(); ++row)
+    if (may_lead(system, row, repeated, rate[at(row)])) rows.push_back(row);
+  return rows;
+}
+
+// A driver's row, how far it is from the others, and the combination that it is next to.
+struct Nearest {
+  int row = -1;
+  Real distance = 1;
+  Dependency combination;
+};
+
+// Of these rows the one that is the nearest to a combination.
+Nearest nearest(const RigidBodySystem& system, const SparseTerm& jacobian, const std::vector<int>& rows) {
+  Nearest found;
+  std::vector<NearDependency> all = near_combinations(system, jacobian, rows);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (found.row < 0 || all[i].distance < found.distance)
+      found = {rows[i], all[i].distance, std::move(all[i].combination)};
+  return found;
+}
+
+// Of the drivers that take part in a combination the one that asks for most, or, where all rest, weighs most.
+int asking_row(const RigidBodySystem& system, const SparseTerm& jacobian, const Nearest& near,
+               const std::vector<int>& rows, const std::vector<Real>& rate) {
   const std::vector<Real> length = row_lengths(system, jacobian);
-  DrivenRow most;
-  for (const Dependency& dependency : combinations) {
-    Real heaviest = 0;
-    for (const auto& [row, weight] : dependency.weight)
-      heaviest = std::max(heaviest, std::abs(weight) * length[at(row)]);
-    for (const auto& [row, w] : dependency.weight) {
-      const DrivenRow one{row, std::abs(w * rate[at(row)]), std::abs(w) * length[at(row)]};
-      if (!system.groups()[at(system.group_of(row))].drives || one.weight < kTakesPart * heaviest ||
-          is_in(repeated, row))
-        continue;
-      if (most.row < 0 || std::pair(one.asked, one.weight) > std::pair(most.asked, most.weight)) most = one;
-    }
+  Real heaviest = 0;
+  for (const auto& [row, weight] : near.combination.weight)
+    heaviest = std::max(heaviest, std::abs(weight) * length[at(row)]);
+  int most = near.row;
+  std::pair<Real, Real> most_asked{-1, 0};
+  for (const auto& [row, weight] : near.combination.weight) {
+    const std::pair<Real, Real> asked{std::abs(weight * rate[at(row)]), std::abs(weight) * length[at(row)]};
+    if (asked.second < kTakesPart * heaviest || !std::ranges::binary_search(rows, row)) continue;
+    if (asked > most_asked) most = row, most_asked = asked;
   }
   return most;
 }
 
-}  // namespace
-
-std::string dead_point(RigidBodySystem& system, const std::vector<Real>& position,
-                       const std::vector<Real>& velocity, Real t, const std::vector<Dependency>& repeated) {
-  SystemTerms terms;
+const SparseTerm& jacobian_at(RigidBodySystem& system, const SystemInstant& at_instant, SystemTerms& terms) {
   terms.applied_force.assign(at(system.coordinates()), 0);
   terms.constraint.assign(at(system.constraints()), 0);
-  const SystemInstant instant{t, position, velocity};
-  system.evaluate(instant, terms);
-  const SparseTerm& jacobian = terms.constraint_jacobian;
+  system.evaluate(at_instant, terms);
+  return terms.constraint_jacobian;
+}
+
+// How long the velocities take to the dead point [s]: the square of the distance falls in proportion to time,
+// as a driver moves evenly while the joints turn ever faster. Infinite where they lead away from it.
+Real time_left(RigidBodySystem& system, const SystemInstant& now, const Nearest& near, Real step) {
+  const Real tau = kProbe * step;
+  std::vector<Real> displacement = now.velocity, position(now.position.size());
+  for (Real& part : displacement) part *= tau;
+  system.displace(now.position, displacement, position);
+  SystemTerms terms;
+  const Nearest then =
+      nearest(system, jacobian_at(system, {now.time + tau, position, now.velocity}, terms), {near.row});
+  const Real square = near.distance * near.distance, fall = square - then.distance * then.distance;
+  return fall > 0 ? tau * square / fall : std::numeric_limits<Real>::infinity();
+}
+
+}  // namespace
+
+std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real step,
+                       const std::vector<Dependency>& repeated) {
   std::vector<Real> rate(at(system.constraints()), 0);
-  system.velocity_rhs(instant, rate);
+  system.velocity_rhs(now, rate);
+  const std::vector<int> rows = driven_rows(system, repeated, rate);
+  if (rows.empty()) return "";
+  SystemTerms terms;
+  const SparseTerm& jacobian = jacobian_at(system, now, terms);
   const Real asked = largest(rate, system.constraint_scale()),
-             reached = largest(velocity, system.coordinate_scale());
-  std::vector<Dependency> combinations = repeated_rows(system, jacobian, kAtIt);
-  int row = driven_row(system, jacobian, combinations, repeated, rate).row;
-  if (row < 0 && reached > kGrown * asked) {
-    combinations = repeated_rows(system, jacobian, kNear);
-    row = driven_row(system, jacobian, combinations, repeated, rate).row;
-  }
-  if (row < 0) return "";
+             reached = largest(now.velocity, system.coordinate_scale());
+  const Nearest near = nearest(system, jacobian, rows);
+  if (near.row < 0 || near.distance > kInReach) return "";
+  const bool explains = near.distance <= kAtIt || (near.distance <= kNear && reached > kGrown * asked) ||
+                        time_left(system, now, near, step) <= kStepsLeft * step;
+  if (!explains) return "";
   return fmt::format(
       "{} asks for a motion that the mechanism cannot follow: it leads to a dead point, where {} become "
       "dependent and velocities and reactions grow without bound{}. Change its motion so that it stays clear "
       "of this position, or drive another joint: neither shorter steps nor integrator.redundant = \"share\" "
       "pass it",
-      system.constraint_name(row), names_of(system, combinations),
+      system.constraint_name(asking_row(system, jacobian, near, rows, rate)),
+      names_of(system, {near.combination}),
       reached > asked && asked > 0
           ? fmt::format(" (velocities here are {:.3g} times what drivers ask for)", reached / asked)
           : "");

@@ -228,19 +228,19 @@ std::string Multibody::trouble() {
   std::string text;
   if (largest > 0 && largest >= impl.norms.residual / 2)
     text = "; the largest gaps are those of " + largest_gaps(impl.system, gap);
-  const HhtMethod& method = impl.method;
-  const std::string dead = scree::dead_point(impl.system, method.start_position(), method.start_velocity(),
-                                             impl.time, impl.findings.repeated);
+  const std::string dead = dead_point();
   if (!dead.empty()) return text + "; " + dead;
   if (impl.method.shares())
     return text.empty() ? ""
                         : text + ": constraints that share their reactions must not contradict each other";
-  const std::string near = near_singular(impl.system, method.start_position(), impl.time);
+  const std::string near = near_singular(impl.system, impl.method.start_position(), impl.time);
   return near.empty() ? text : text + "; " + near + kSingularPosition;
 }
 
-std::string Multibody::dead_point(const MultibodyState& state, Real t) {
-  return scree::dead_point(impl_->system, state.position, state.velocity, t, impl_->findings.repeated);
+std::string Multibody::dead_point() {
+  const HhtMethod& method = impl_->method;
+  return scree::dead_point(impl_->system, {impl_->time, method.start_position(), method.start_velocity()},
+                           method.step(), impl_->findings.repeated);
 }
 
 Real Multibody::error() const {

@@ -101,9 +101,9 @@ class Multibody {
   // What is to be said of a step that does not converge: which joints and drivers are not kept, and whether
   // the position is near a singular one; empty where neither tells why. Of the last correct().
   std::string trouble();
-  // A text for a run that goes on no further than this state, at time t: it names the driver that asks for a
-  // motion which the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
-  std::string dead_point(const MultibodyState& state, Real t);
+  // A text for a run that ends as the step opened last fails: it names the driver that asks for a motion
+  // which the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
+  std::string dead_point();
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:

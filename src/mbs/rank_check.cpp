@@ -15,6 +15,7 @@ constexpr Real kSuspect = 1e-8;      // pivot of A^T A, the squared distance of 
 constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
 constexpr Real kRoundOff = 1e-12;    // coefficients below, likewise
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
+constexpr Real kNearPart = 1e-3;     // coefficient of a near dependency that counts, relative to the largest
 constexpr int kPasses = 2;           // of projections, each leaves their round-off
 
 using Matrix = Eigen::SparseMatrix<Real>;
@@ -106,26 +107,29 @@ struct Independent {
   Vector direction, weight;
 };
 
-Dependency dependency_of(const Vector& weight, const std::vector<Real>& lengths) {
+Dependency dependency_of(const Vector& weight, const std::vector<Real>& lengths,
+                         Real takes_part = kTakesPart) {
   const Real most = largest(weight);
   Dependency dependency;
   for (int j = 0; j < static_cast<int>(weight.size()); ++j) {
     const Real size = std::abs(weight[j]);
     if (size > kRoundOff * most)
       dependency.weight.emplace_back(j, weight[j] / lengths[static_cast<std::size_t>(j)]);
-    if (size > kTakesPart * most) dependency.columns.push_back(j);
+    if (size > takes_part * most) dependency.columns.push_back(j);
   }
   return dependency;
+}
+
+bool are_finite(const std::vector<MatrixEntry>& entries) {
+  return std::all_of(entries.begin(), entries.end(),
+                     [](const MatrixEntry& entry) { return std::isfinite(entry.value); });
 }
 
 }  // namespace
 
 std::vector<Dependency> column_dependencies(int rows, int columns, const std::vector<MatrixEntry>& entries,
                                             Real distance) {
-  for (const MatrixEntry& entry : entries) {
-    if (!std::isfinite(entry.value)) return {};
-  }
-  if (columns == 0) return {};
+  if (columns == 0 || !are_finite(entries)) return {};
   std::vector<Real> lengths;
   const Matrix a = unit_columns(rows, columns, entries, lengths);
   const Basis basis(a, std::max(kSuspect, distance * distance));
@@ -148,6 +152,28 @@ std::vector<Dependency> column_dependencies(int rows, int columns, const std::ve
     }
   }
   return dependencies;
+}
+
+// Of w = (A^T A)^-1 e_j with columns of length one the product A w / w_j is column j less its combination of
+// the others, of length 1 / sqrt(w_j).
+std::vector<NearDependency> nearest_combinations(int rows, int columns,
+                                                 const std::vector<MatrixEntry>& entries,
+                                                 const std::vector<int>& of) {
+  if (columns == 0 || !are_finite(entries)) return {};
+  std::vector<Real> lengths;
+  const Matrix a = unit_columns(rows, columns, entries, lengths);
+  Eigen::SimplicialLDLT<Matrix> factors;
+  factors.setShift(kPivotShift);
+  factors.compute(Matrix(a.transpose()) * a);
+  std::vector<NearDependency> found;
+  for (const int column : of) {
+    Vector unit = Vector::Zero(columns);
+    unit[column] = 1;
+    const Vector weight = factors.solve(unit);
+    const Real square = 1 / weight[column];
+    found.push_back({square > 0 ? std::sqrt(square) : 0, dependency_of(weight, lengths, kNearPart)});
+  }
+  return found;
 }
 
 std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {

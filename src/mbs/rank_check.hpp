@@ -28,6 +28,20 @@ constexpr Real kDependent = 1e-9;
 // near one the cost of a solution with it.
 std::vector<Dependency> column_dependencies(int rows, int columns, const std::vector<MatrixEntry>& entries,
                                             Real distance = kDependent);
+
+// How far a column of length one is from the nearest combination of all others of length one, and that
+// combination with the column itself; its `columns` are those whose weight counts.
+struct NearDependency {
+  Real distance = 1;
+  Dependency combination;
+};
+// Of each column in `of`, whatever the order of the others: distances above 1e-7 are exact to a percent,
+// below that they are no more than small. None where an entry is not finite. The cost is that of the
+// factorization and of one solution for each column asked for.
+std::vector<NearDependency> nearest_combinations(int rows, int columns,
+                                                 const std::vector<MatrixEntry>& entries,
+                                                 const std::vector<int>& of);
+
 // The columns of one of them; empty if the columns are independent.
 std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries);
 

@@ -78,6 +78,21 @@ std::string remedy_of_position(const RigidBodySystem& system, const SparseTerm& 
          "start elsewhere";
 }
 
+// The only driver among rows that repeat each other, where it moves: the others leave it no way to go, and no
+// share of the load makes one.
+const Driver* stuck_driver(const Model& model, const RigidBodySystem& system,
+                           const std::vector<Dependency>& repeated) {
+  for (const Dependency& dependency : repeated) {
+    const std::set<int> groups = groups_of(system, {dependency});
+    const auto drives = [&](int group) { return system.groups()[at(group)].drives; };
+    if (std::ranges::count_if(groups, drives) != 1) continue;
+    const int group = *std::ranges::find_if(groups, drives);
+    const Driver& driver = model.drivers[at(group) - model.joints.size()];  // they follow the joints
+    if (driver.motion.kind != TimeFunctionKind::constant) return &driver;
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(Asked asked) {
   return asked == Asked::positions    ? "positions"
          : asked == Asked::velocities ? "velocities"
@@ -86,6 +101,16 @@ constexpr const char* word_of(Asked asked) {
 
 constexpr const char* per_of(Asked asked) {
   return asked == Asked::positions ? "" : asked == Asked::velocities ? "/s" : "/s^2";
+}
+
+// Phi_q^T, its rows times the scales of their coordinates.
+std::vector<MatrixEntry> scaled_columns(const RigidBodySystem& system, const SparseTerm& jacobian) {
+  std::vector<MatrixEntry> transposed;
+  for (std::size_t i = 0; i < jacobian.size(); ++i) {
+    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
+    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
+  }
+  return transposed;
 }
 
 // By how much the row that is easiest to change, a driver's where there is one, differs from what the others
@@ -114,12 +139,14 @@ Difference difference_of(const RigidBodySystem& system, const Dependency& depend
 
 std::vector<Dependency> repeated_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
                                       Real distance) {
-  std::vector<MatrixEntry> transposed;
-  for (std::size_t i = 0; i < jacobian.size(); ++i) {
-    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
-    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
-  }
-  return column_dependencies(system.coordinates(), system.constraints(), transposed, distance);
+  return column_dependencies(system.coordinates(), system.constraints(), scaled_columns(system, jacobian),
+                             distance);
+}
+
+std::vector<NearDependency> near_combinations(const RigidBodySystem& system, const SparseTerm& jacobian,
+                                              const std::vector<int>& of) {
+  return nearest_combinations(system.coordinates(), system.constraints(), scaled_columns(system, jacobian),
+                              of);
 }
 
 std::string names_of(const RigidBodySystem& system, const std::vector<Dependency>& repeated) {
@@ -153,6 +180,14 @@ std::string check_redundancy(const Model& model, const RigidBodySystem& system, 
   const int rows = system.constraints(), rank = rows - static_cast<int>(repeated.size());
   if (model.integrator.redundant == RedundantRows::share)
     return fmt::format("{} rows of rank {}: {}", rows, rank, names_of(system, groups));
+  if (const Driver* const stuck = stuck_driver(model, system, repeated))
+    throw InputError(with_label(
+        stuck->deck_label,
+        fmt::format(
+            "driver '{}' asks for a motion that the mechanism cannot follow: its position at t = 0 is a "
+            "dead point, where {} are dependent. Start elsewhere, or drive another joint: "
+            "integrator.redundant = \"share\" does not pass it",
+            stuck->name, names_of(system, groups))));
   throw InputError(with_label(
       label(*groups.rbegin()),
       fmt::format("redundant constraints: {} fix the same motion more than once, {} rows have rank {}; the "

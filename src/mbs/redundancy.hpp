@@ -12,6 +12,9 @@ namespace scree {
 // Rows of Phi_q that are combinations of others to within `distance` (column_dependencies).
 std::vector<Dependency> repeated_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
                                       Real distance = kDependent);
+// How near these rows are to combinations of all others, in the order of `of`.
+std::vector<NearDependency> near_combinations(const RigidBodySystem& system, const SparseTerm& jacobian,
+                                              const std::vector<int>& of);
 
 // Where the model lets such rows share the load, returns what is to be said of them, "20 rows of rank 17:
 // joint 'a', joint 'b'"; empty where there are none. Throws InputError, with the joints' names and what

@@ -6,8 +6,10 @@
 #include "model/build_parts.hpp"
 #include "model/explicit_step.hpp"
 #include "model/impact_speed.hpp"
+#include "model/joint_coordinates.hpp"
 #include "model/limits.hpp"
 #include "model/mesh_corners.hpp"
+#include "model/surface_speeds.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -150,6 +152,24 @@ void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
   }
 }
 
+// A driver that turns its joint by so much within a step may bring the mechanism past a dead point, into
+// another way of putting its parts together: Newton's method finds that one as well, and nothing fails.
+void check_driven_angles(const Model& model, Log& log) {
+  constexpr Real kMost = 1;  // [rad]
+  if (model.time.control != StepControl::fixed) return;
+  for (const Driver& driver : model.drivers) {
+    const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
+    if (!is_angle(coordinate_of(driver.name, joint, driver.coordinate))) continue;
+    const Real turn = fastest_rate(driver.motion, model.time.end) * model.time.step;
+    if (turn > kMost)
+      log.warning(fmt::format(
+          "{}: driver '{}' turns its joint by {:.3g} rad in a step of {:.4g} s at its fastest, "
+          "and may bring the mechanism past a dead point unnoticed; the step should be at most "
+          "{:.2g} s",
+          driver.deck_label, driver.name, turn, model.time.step, 0.1 * kMost * model.time.step / turn));
+  }
+}
+
 }  // namespace
 
 void check_steps(const DeckTable& deck, const Model& model, Log& log) {
@@ -160,6 +180,7 @@ void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const bool is_fixed = model.time.control == StepControl::fixed;
   const Real step =
       is_fixed ? model.time.step / (is_explicit ? model.integrator.substeps : 1) : model.time.max_step;
+  check_driven_angles(model, log);
   check_speeds(model, step, log);
   if (is_fixed && is_explicit) check_explicit_step(deck, model, limits, log);
 }

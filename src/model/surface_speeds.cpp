@@ -59,9 +59,13 @@ Real largest(const TimeFunction& function, Real end) {
   return most;
 }
 
+}  // namespace
+
 Real fastest_rate(const TimeFunction& function, Real end) {
   return std::abs(ScalarFunction(function, "motion", end)(fastest_time(function, end)).rate);
 }
+
+namespace {
 
 // Unit normals of the faces of an edge.
 std::vector<Vec3> face_normals(const SurfaceMesh& mesh, const MeshFeature& edge) {

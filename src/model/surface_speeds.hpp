@@ -14,4 +14,7 @@ namespace scree {
 // joints count, and those fixed to these, as if the other body of the joint were at rest.
 std::vector<Real> surface_speeds(const Model& model);
 
+// The largest rate of a function from 0 to `end` [s], either way [its unit per s].
+Real fastest_rate(const TimeFunction& function, Real end);
+
 }  // namespace scree

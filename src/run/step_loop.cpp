@@ -97,7 +97,7 @@ void StepLoop::reject(const StepOutcome& outcome) {
     if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
     clock_.rejected_for_convergence(outcome.trouble);
   } catch (const SimulationError&) {
-    const std::string dead_point = parts_.step.dead_point(state_.bodies, clock_.time());
+    const std::string dead_point = parts_.step.dead_point();
     if (dead_point.empty()) throw;
     throw SimulationError("stage mbs_correct: " + dead_point);
   }

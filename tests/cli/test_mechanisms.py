@@ -244,6 +244,35 @@ class DeadPointTest(CommandLineTest):
             time = float(self.failure(deck, *settings).split("t = ")[1].split(" ")[0])
             self.assertAlmostEqual(time, (0.4 - start) / 0.1, 3)
 
+    def test_one_that_jumps_past_it(self):
+        """Within a step or a few: the last good state is not as near to the dead point as after a slow approach."""
+        motion = 'motion = { kind = "step", value = 0.0, end_value = 0.3, start = 0.1, end = 0.11 }'
+        deck, _ = slider_crank(0.5, motion.removeprefix("motion = "))
+        for settings in (("time.step=0.01",), ("time.step=1e-3",), ("time.control=adaptive",)):
+            self.failure(deck, *settings)
+
+    def test_a_start_at_the_dead_point(self):
+        """Shared reactions do not pass it: no advice says so, and with them the run names the driver."""
+        motion = '{ kind = "step", value = 0.0, end_value = 0.05, start = 0.0, end = 0.5 }'
+        path = self.write("flat.toml", slider_crank(0.0, motion)[0])
+        text = self.expect(BAD_INPUT, "check", path).stderr
+        self.assertIn("drivers.push: driver 'push' asks for a motion that the mechanism cannot follow: its position at "
+                      "t = 0 is a dead point, where joint 'pivot', joint 'pin', joint 'wrist', driver 'push' are "
+                      "dependent", text)
+        self.assertIn('redundant = "share" does not pass it', text)
+        result = self.expect(FAILED, "run", path, "--output", self.folder / "flat", "--set", "integrator.redundant=share",
+                             "--set", "time.control=adaptive")
+        self.assertIn("driver 'push' asks for a motion that the mechanism cannot follow", result.stderr)
+
+    def test_a_driver_that_turns_its_joint_too_far_in_a_step(self):
+        deck = 'velocities = "consistent"\n' + CRANK + DRIVEN.format("drive", '{ kind = "step", end_value = 3.5, start = 0.1, end = 0.11 }')
+        path = self.write("turns.toml", deck)
+        warned = "driver 'drive' turns its joint by 6.56 rad in a step of 0.01 s at its fastest"
+        self.assertIn(warned, self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",
+                                          "time.step=0.01").stderr)
+        self.assertNotIn("turns its joint", self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",
+                                                         "time.step=1e-4").stderr)
+
     def test_one_that_comes_to_rest_there(self):
         motion = "{{ kind = \"step\", value = 0.0, end_value = {}, start = 0.1, end = 0.6 }}"
         _, start = slider_crank(0.5, "0.0")

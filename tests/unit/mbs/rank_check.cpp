@@ -71,3 +71,25 @@ TEST_CASE("a long chain is checked in linear time") {
   entries.push_back({kLinks, kLinks, 1});
   CHECK(dependent_columns(kLinks + 1, kLinks + 1, entries).size() == kLinks + 1);
 }
+
+TEST_CASE("how near a column is to the others does not depend on their order") {
+  // Column d is a unit vector e of the others' combination (1, 1, 0.05) / sqrt(...) but for 0.01 across it.
+  const Real weight[] = {1, 1, 0.05}, across = 0.01;
+  const Real length = std::sqrt(1 + 1 + 0.05 * 0.05);
+  int order[] = {0, 1, 2, 3};
+  do {
+    std::vector<MatrixEntry> entries;
+    for (int k = 0; k < 3; ++k) {
+      entries.push_back({k, order[k], 7});
+      entries.push_back({k, order[3], weight[k] / length});
+    }
+    entries.push_back({3, order[3], across});
+    const std::vector<NearDependency> near = nearest_combinations(4, 4, entries, {order[3], order[2]});
+    REQUIRE(near.size() == 2);
+    CHECK(std::abs(near[0].distance - across / std::sqrt(1 + across * across)) < 1e-6 * across);
+    CHECK(near[0].combination.columns == std::vector<int>{0, 1, 2, 3});
+    CHECK(near[1].distance > 0.2);  // a column that hardly takes part is far from all others
+  } while (std::next_permutation(order, order + 4));
+  CHECK(nearest_combinations(1, 1, {{0, 0, NAN}}, {0}).empty());
+  CHECK(nearest_combinations(2, 2, {{0, 0, 1}, {0, 1, 2}}, {1}).front().distance < 1e-6);
+}
