@@ -12,16 +12,20 @@ const TableKeys& particle_keys() {
       {name_key().left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
        choice<Kind>("kind").required().about(
            "List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: "
-           "random places without overlap in a box. File: read from a file."),
+           "random positions in a region, the part of the space that lies within all that is given of a box "
+           "(min, max), a cylinder, the inside of a mesh and that of a body. They overlap neither each other "
+           "nor the groups before, and keep clear of walls and of the shapes and meshes of bodies and walls. "
+           "File: read from a file."),
        vectors("positions", "m").only_for({Kind::list}).required().about("Centres."),
        vector("origin", "m")
            .only_for(spaced)
            .left_out("center is given")
            .about("Centre of the first particle."),
        vector("center", "m")
-           .only_for({Kind::lattice})
-           .left_out("origin is given")
-           .about("Centre of the whole lattice, also if count leaves some of its places empty."),
+           .only_for({Kind::lattice, Kind::random})
+           .left_out("origin is given; random: cylinder_radius is left out, or the space is 3D")
+           .about("Centre of the whole lattice, also if count leaves some of its places empty; in 2D also of "
+                  "the circle that a random group fills."),
        vector("spacing", "m")
            .only_for(spaced)
            .required()
@@ -38,9 +42,37 @@ const TableKeys& particle_keys() {
            .about("Number of particles; a lattice fills the first count places."),
        vector("min", "m")
            .only_for({Kind::random})
-           .required()
-           .about("Lower corner of the box that holds the discs."),
-       vector("max", "m").only_for({Kind::random}).required().about("Upper corner of the box."),
+           .left_out("another region is given")
+           .about("Lower corner of the box that holds the particles."),
+       vector("max", "m")
+           .only_for({Kind::random})
+           .left_out("another region is given")
+           .about("Upper corner of the box."),
+       real("cylinder_radius", "m")
+           .only_for({Kind::random})
+           .above(0)
+           .left_out("no cylinder")
+           .about(
+               "Of a cylinder that holds the particles, between its ends; in 2D of a circle about center."),
+       vectors("ends", "m")
+           .only_for({Kind::random})
+           .entries(2)
+           .left_out("no cylinder, or the space is 2D")
+           .about("The two ends of the cylinder's axis."),
+       text("mesh")
+           .only_for({Kind::random})
+           .left_out("no mesh")
+           .about(
+               "A closed mesh whose inside holds the particles: as it stands on the wall or the body that "
+               "has it, "
+               "else in the global frame. It must be a shell (of a file, sheet = true) or touch nothing: the "
+               "inside of other meshes is matter."),
+       text("body")
+           .only_for({Kind::random})
+           .left_out("no body; with a mesh, the only one that has it")
+           .about("A body whose inside holds the particles: what is within the convex hull of its shapes and "
+                  "meshes and free of these, as in a bucket up to its brim. With mesh: the body that this "
+                  "mesh is on."),
        real("gap", "m")
            .only_for({Kind::random})
            .at_least(0)
@@ -50,7 +82,8 @@ const TableKeys& particle_keys() {
            .only_for({Kind::random})
            .within(1, 1000000000)
            .otherwise("10000")
-           .about("Random places that are tried for one particle before the deck is refused."),
+           .about(
+               "Random positions in the region that are tried for one particle before the deck is refused."),
        file("file")
            .only_for({Kind::file})
            .required()

@@ -8,6 +8,7 @@
 #include "deck/choices.hpp"
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
+#include "model/fill_region.hpp"
 #include "model/generators.hpp"
 #include "model/particle_file.hpp"
 #include "model/plausibility.hpp"
@@ -26,6 +27,7 @@ class Group {
   Group(const DeckTable& table, const ModelNames& names, const Model& model)
       : table_(table),
         model_(model),
+        names_(names),
         random_(static_cast<std::uint64_t>(table.integer("seed"))),
         kind_(table.choice<GroupKind>("kind")),
         material_(find_material(names, table, "material")),
@@ -66,6 +68,7 @@ class Group {
 
   const DeckTable& table_;
   const Model& model_;
+  const ModelNames& names_;
   RandomNumbers random_;
   GroupKind kind_;
   int material_;
@@ -203,21 +206,30 @@ void Group::place_lattice() {
     position_.push_back(lattice_position(origin, spacing, size, i));
 }
 
-// Each place depends on all before it: every rank finds all places, and keeps its part of them.
+// Each position depends on all before it: every rank finds all, and keeps its part of them.
 void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
-  const PackingBox box{table_.vector("min"), table_.vector("max"), model_.space.dimension, table_.real("gap"),
-                       table_.integer("tries")};
-  const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
-  if (const std::string trouble = packing_trouble(box, radius); !trouble.empty())
-    table_.fail("count", trouble);
+  const FillRegion region(table_, model_, names_);
+  PackingBox box{region.min(), region.max(), model_.space.dimension, table_.real("gap"),
+                 table_.integer("tries")};
   const StartMeshes meshes(model_);
-  const auto clear = [&](Vec3 p, Real r) { return meshes.is_clear(p, r, box.gap); };
-  const std::vector<Vec3> places = random_packing(box, radius, placed, clear, random_);
+  const auto clear = [&](Vec3 p, Real r, Real gap) {
+    return is_clear_of_planes(model_, p, r) && meshes.is_clear(p, r, gap);
+  };
+  if (!region.is_box()) box.share = region.share([&](Vec3 p, Real r) { return clear(p, r, 0); });
+  if (box.share == 0)
+    table_.fail("count",
+                fmt::format("the {} has no room in the space that is free of walls, meshes and bodies",
+                            region.name()));
+  const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
+  if (const std::string trouble = packing_trouble(box, radius, region.name()); !trouble.empty())
+    table_.fail("count", trouble);
+  const auto is_free = [&](Vec3 p, Real r) { return region.holds(p, r) && clear(p, r, box.gap); };
+  const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, random_);
   if (places.size() < radius.size())
     table_.fail("count",
-                fmt::format("only {} particles found a place in {} tries each; a larger box (min, max), "
-                            "fewer or smaller particles are needed",
-                            places.size(), box.tries));
+                fmt::format("only {} particles found a place in {} tries each in the {}; a larger {}, fewer "
+                            "or smaller particles are needed",
+                            places.size(), box.tries, region.name(), region.is_box() ? "box" : "region"));
   position_.assign(places.begin() + part_.first, places.begin() + part_.last);
 }
 

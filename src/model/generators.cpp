@@ -36,7 +36,7 @@ Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, R
   constexpr std::size_t kParts = 200;
   const Vec3 extent = box.max - box.min;
   const Real volume =
-      (extent.x + box.gap) * (extent.y + box.gap) *
+      box.share * (extent.x + box.gap) * (extent.y + box.gap) *
       (box.dimension == 2 ? 1 : extent.z + box.gap);  // the gap keeps off neighbours, not walls
   PackingSums sums;
   Real failures = 0;
@@ -141,11 +141,12 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return radius[a] > radius[b]; });
+  const Real tries = static_cast<Real>(box.tries) / box.share;
   std::vector<Vec3> positions(radius.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     const Real r = radius[order[n]];
     bool found = false;
-    for (std::int64_t attempt = 0; attempt < box.tries && !found && fits(box, r); ++attempt) {
+    for (std::int64_t attempt = 0; static_cast<Real>(attempt) < tries && !found && fits(box, r); ++attempt) {
       positions[order[n]] = random_place(box, r, random);
       found = bins.is_clear(positions[order[n]], r, box.gap) && is_free(positions[order[n]], r);
     }
@@ -155,12 +156,12 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
   return positions;
 }
 
-std::string packing_trouble(const PackingBox& box, std::vector<Real> radius) {
+std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, const std::string& region) {
   constexpr Real kCertain = 20;  // failures: chance would have to be kind as once in 10^8
   const Vec3 extent = box.max - box.min;
   std::sort(radius.begin(), radius.end(), std::greater<>());
   PackingSums sums;
-  const Real volume = extent.x * extent.y * (box.dimension == 2 ? 1 : extent.z);
+  const Real volume = box.share * extent.x * extent.y * (box.dimension == 2 ? 1 : extent.z);
   for (const Real r : radius) sums.add(box.dimension, r, 1 / volume);
   const bool equal = !radius.empty() && radius.front() == radius.back();
   const Real most_of_all = equal ? densest_fraction(box.dimension) : 1;
@@ -176,10 +177,11 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius) {
   }
   if (sums.fraction <= most) return "";
   return fmt::format(
-      "the particles are {:.3g} of the {} of their box (min, max), and {} {:.2g} of it{}; a larger "
-      "box, fewer or smaller particles are needed",
-      sums.fraction, box.dimension == 2 ? "area" : "volume", bound, most,
-      radius.size() < kMany ? "" : fmt::format(" in {} tries each", box.tries));
+      "the particles are {:.3g} of the {} of their {}, and {} {:.2g} of it{}; a larger {}, fewer or smaller "
+      "particles are needed",
+      sums.fraction, box.dimension == 2 ? "area" : "volume", region, bound, most,
+      radius.size() < kMany ? "" : fmt::format(" in {} tries each", box.tries),
+      region.substr(0, region.find(' ')));
 }
 
 std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part, RandomNumbers& random) {

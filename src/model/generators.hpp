@@ -23,6 +23,7 @@ struct PackingBox {
   int dimension = 3;
   Real gap = 0;            // smallest distance between surfaces [m]
   std::int64_t tries = 0;  // random places per particle
+  Real share = 1;          // of the box: the region that they stand in and are tried in
 };
 
 // Whether a sphere may stand at a point [m].
@@ -36,8 +37,9 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
                                  RandomNumbers& random);
 
 // Why there cannot be room for all of them, before any place is tried; empty where there may be. Judges large
-// groups by the chance of a random place, small ones by their volume alone.
-std::string packing_trouble(const PackingBox& box, std::vector<Real> radius);
+// groups by the chance of a random place, small ones by their volume alone. region: what it is called.
+std::string packing_trouble(const PackingBox& box, std::vector<Real> radius,
+                            const std::string& region = "box (min, max)");
 
 // Entries [part.first, part.last) of `count` values of a distribution (a quantity of the deck): all of them
 // are drawn one after the other, as many as there are. Throws InputError on bounds or weights that make none.

@@ -228,13 +228,20 @@ std::string wide_attraction(const Model& model) {
       reach, smallest);
 }
 
+// Whether a random group fills a box alone.
+bool is_boxed(const DeckTable& group) {
+  return group.has("min") && group.has("max") && !group.has("cylinder_radius") && !group.has("mesh") &&
+         !group.has("body");
+}
+
 // Such groups have the same places in their boxes, and particles of the same radii in the same order where
 // those are drawn alike.
 std::string same_random_places(const DeckTable& deck) {
   const std::vector<DeckTable>& groups = deck.tables("particles");
   const auto alike = [](const DeckTable& a, const DeckTable& b) {
     for (const DeckTable* table : {&a, &b})
-      if (table->choice<GroupKind>("kind") != GroupKind::random || !table->has("count")) return false;
+      if (table->choice<GroupKind>("kind") != GroupKind::random || !table->has("count") || !is_boxed(*table))
+        return false;
     constexpr Real kRoundOff = 1e-12;
     const Vec3 one = a.vector("max") - a.vector("min"), other = b.vector("max") - b.vector("min");
     return a.integer("seed") == b.integer("seed") && a.integer("count") == b.integer("count") &&

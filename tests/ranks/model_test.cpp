@@ -138,6 +138,22 @@ TEST_CASE("the ranks' parts of a model are the whole model") {
   CHECK(warnings == alone_warnings);
 }
 
+TEST_CASE("ranks fill a region with the same positions, and refuse it alike") {
+  const Ranks ranks = world();
+  const RanksShare share(ranks);
+  const GroupsDeck deck(ranks);
+  const std::vector<std::string> region{"particles.packing.cylinder_radius=0.5",
+                                        "particles.packing.ends=[[1.2, 0.5, 0.5], [2.8, 0.5, 0.5]]"};
+  std::vector<std::string> warnings;
+  const ParticleSet whole = built(deck.text(), region, Share(), warnings).particles,
+                    part = built(deck.text(), region, share, warnings).particles;
+  for (std::size_t k = 0; k < part.size(); ++k)
+    CHECK(part.position[k] == whole.position[static_cast<std::size_t>(part.first_id) + k]);
+  const std::vector<std::string> full{region[0], region[1], "particles.packing.count=400"};
+  CHECK(failure(deck.text(), full, share) == failure(deck.text(), full, Share()));
+  CHECK(failure(deck.text(), full, share).find("region (min, max, cylinder_radius)") != std::string::npos);
+}
+
 TEST_CASE("overlaps at the start are found whichever ranks have the two, and named the same") {
   const Ranks ranks = world();
   const RanksShare share(ranks);
