@@ -209,14 +209,26 @@ inline constexpr auto kWords<JointCoordinate> =
 
 // What makes the effort of a motor.
 enum class MotorKind {
-  effort,  // a function of time
-  line,    // falls in a straight line with the joint's rate
-  speed    // a controller that wants a rate
+  effort,   // a function of time
+  line,     // falls in a straight line with the joint's rate
+  speed,    // a controller that wants a rate
+  position  // a servo: a controller that wants a position
 };
 template <>
 inline constexpr auto kWords<MotorKind> = std::to_array<Word<MotorKind>>({{"effort", MotorKind::effort},
                                                                           {"line", MotorKind::line},
-                                                                          {"speed", MotorKind::speed}});
+                                                                          {"speed", MotorKind::speed},
+                                                                          {"position", MotorKind::position}});
+
+// What moves a cylinder.
+enum class CylinderKind {
+  force,  // a function of time
+  speed,  // a controller that wants a rate of the length
+  length  // a servo that wants a length
+};
+template <>
+inline constexpr auto kWords<CylinderKind> = std::to_array<Word<CylinderKind>>(
+    {{"force", CylinderKind::force}, {"speed", CylinderKind::speed}, {"length", CylinderKind::length}});
 
 enum class CouplerKind { gear, belt, rack_and_pinion, differential, sum };
 template <>

@@ -110,6 +110,10 @@ Key choice(const std::string& name) {
 }
 Key name_key();        // "name"
 Key coordinate_key();  // "coordinate", of a joint
+// Of what connects two bodies: its name, which bodies, and its own keys.
+TableKeys with_connection(const std::string& sentence, std::vector<Key> own,
+                          const std::string& selector = "");
+Key local_points_key();  // "local_points", one on either body
 Key file(const std::string& name);
 Key vector(const std::string& name, const std::string& unit);
 Key reals(const std::string& name, const std::string& unit);
@@ -143,6 +147,7 @@ const TableKeys& solid_keys();
 const TableKeys& marker_keys();
 const TableKeys& joint_keys();
 const TableKeys& driver_keys();
+const TableKeys& cylinder_keys();
 const TableKeys& spring_damper_keys();
 const TableKeys& torsional_spring_damper_keys();
 const TableKeys& bushing_keys();

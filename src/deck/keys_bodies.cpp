@@ -1,4 +1,4 @@
-// Keys of bodies, joints, drivers and force elements.
+// Keys of bodies, joints and drivers, and of functions of time.
 #include <algorithm>
 
 #include "deck/choices.hpp"
@@ -7,40 +7,6 @@
 namespace scree {
 
 namespace {
-
-// Which two bodies a joint or a force element connects. Exactly one of the three is given.
-std::vector<Key> connection_keys() {
-  return {
-      texts("bodies")
-          .entries(2)
-          .left_out("markers, chain or each is given")
-          .about("The two bodies; one of them may be \"ground\"."),
-      texts("markers")
-          .entries(2)
-          .left_out("points and axes are as other keys say")
-          .about("The two markers between which it stands, in place of the bodies, of points and axes; with "
-                 "chain "
-                 "or each, of every element: markers of the row, with each the first one on the ground."),
-      text("chain").left_out("none").about(
-          "Name of a row of bodies: one element between each body and the next, named NAME.0, NAME.1, ..."),
-      text("each").left_out("none").about(
-          "Name of a row of bodies: one element between the ground and each body, named NAME.0, ...")};
-}
-
-TableKeys with_connection(const std::string& sentence, std::vector<Key> own,
-                          const std::string& selector = "") {
-  std::vector<Key> keys{name_key().required().about("Name for references, messages and results.")};
-  for (const Key& key : connection_keys()) keys.push_back(key);
-  for (const Key& key : own) keys.push_back(key);
-  return {sentence, keys, selector};
-}
-
-Key local_points() {
-  return vectors("local_points", "m")
-      .entries(2)
-      .left_out("none")
-      .about("The two points, each in its body's frame, in place of global ones.");
-}
 
 Key surface_material() {
   return text("material").left_out("the only material; what does not collide needs none").about("Material.");
@@ -196,7 +162,7 @@ const TableKeys& joint_keys() {
            .entries(2)
            .left_out("the two bodies' centres")
            .about("The two end points at t = 0 in the global frame."),
-       local_points(),
+       local_points_key(),
        vector("axis", "")
            .only_for(with_axis)
            .left_out("[1, 0] or [1, 0, 0] of translational joints of planar bodies; others need it, but "
@@ -245,95 +211,6 @@ const TableKeys& driver_keys() {
   return keys;
 }
 
-const TableKeys& spring_damper_keys() {
-  static const TableKeys keys = with_connection(
-      "Springs with dampers and actuators between two points: tension = k (l - free_length) + c l' + "
-      "actuator.",
-      {vectors("points", "m")
-           .entries(2)
-           .left_out("the two bodies' centres")
-           .about("The two end points at t = 0 in the global frame."),
-       local_points(), real("stiffness", "N/m").at_least(0).otherwise("0.0").about("k."),
-       real("damping", "N s/m").at_least(0).otherwise("0.0").about("c."),
-       real("free_length", "m").at_least(0).left_out("the length at t = 0").about("Length without tension."),
-       quantity("actuator", "N", time_function_keys())
-           .otherwise("0.0")
-           .about("Function of time; positive pulls the two points together.")});
-  return keys;
-}
-
-const TableKeys& torsional_spring_damper_keys() {
-  static const TableKeys keys = with_connection(
-      "Torsional springs with dampers: torque on the second body = -(k (theta - free_angle) + c theta').",
-      {real("stiffness", "N m/rad").at_least(0).otherwise("0.0").about("k."),
-       real("damping", "N m s/rad").at_least(0).otherwise("0.0").about("c."),
-       real("free_angle", "rad")
-           .left_out("the angle at t = 0")
-           .about("theta without torque; theta: angle of the second body minus that of the first.")});
-  return keys;
-}
-
-const TableKeys& bushing_keys() {
-  static const TableKeys keys = with_connection(
-      "Bushings between spatial bodies, or one and the ground: K x + C x' + preload pulls the second body's "
-      "frame back onto the first one's. x: the displacement of the second point along the first frame's "
-      "axes, then the rotation vector from the first frame to the second, for turns of up to 2.6 rad.",
-      {vector("point", "m")
-           .left_out("local_points or markers is given")
-           .about("The bushing's point at t = 0 in the global frame."),
-       local_points(),
-       vector("axis", "")
-           .left_out("the frame's axes are the global ones at t = 0")
-           .about("z axis of the bushing's frame at t = 0 in the global frame, of any length but 0."),
-       vector("second_axis", "")
-           .left_out("axis is left out, too")
-           .about("Its x axis, likewise, perpendicular to axis."),
-       reals("stiffness", "N/m, N m/rad")
-           .required()
-           .about("K: its diagonal, six numbers, or all of it row by row, 36 numbers [N/m, N/rad; N m/m, N "
-                  "m/rad]; symmetric, and no deflection may have an energy below 0."),
-       reals("damping", "N s/m, N m s/rad").left_out("zero").about("C, likewise."),
-       reals("preload", "N, N m")
-           .entries(6)
-           .left_out("zero")
-           .about("What the bushing carries without deflection: above 0 it pulls the second body back along "
-                  "the axis.")});
-  return keys;
-}
-
-const TableKeys& applied_force_keys() {
-  static const TableKeys keys{
-      "Forces and torques on a body as functions of time.",
-      {name_key().required().about("Name for messages."),
-       text("body").left_out("marker is given").about("The body that they act on."),
-       text("marker")
-           .left_out("body is given")
-           .about("The marker that they act at, in place of body and point; those that follow the body are "
-                  "along its axes."),
-       vector("point", "m")
-           .left_out("the body's centre")
-           .about("Point of action at t = 0 in the global frame."),
-       vector("local_point", "m")
-           .left_out("none")
-           .about("Point of action in the body's frame, in place of point."),
-       quantity("fx", "N", time_function_keys()).otherwise("0.0").about("Force along x."),
-       quantity("fy", "N", time_function_keys()).otherwise("0.0").about("Force along y."),
-       quantity("fz", "N", time_function_keys()).otherwise("0.0").about("Force along z, on spatial bodies."),
-       quantity("torque", "N m", time_function_keys()).otherwise("0.0").about("Torque about z."),
-       quantity("torque_x", "N m", time_function_keys())
-           .otherwise("0.0")
-           .about("Torque about x, on spatial bodies."),
-       quantity("torque_y", "N m", time_function_keys())
-           .otherwise("0.0")
-           .about("Torque about y, on spatial bodies."),
-       boolean("follows_body")
-           .otherwise("false")
-           .about("Whether the force's direction turns with the body, with spatial bodies that of the torque "
-                  "too.")},
-      ""};
-  return keys;
-}
-
 const TableKeys& time_function_keys() {
   using Kind = TimeFunctionKind;
   static constexpr auto started = {Kind::constant, Kind::ramp, Kind::sine, Kind::step};
@@ -369,7 +246,7 @@ const TableKeys& time_function_keys() {
        reals("values", kQuantityUnit).only_for({Kind::table}).required().about("Value at each instant."),
        choice<Interpolation>("interpolation")
            .only_for({Kind::table})
-           .left_out("\"natural\" for the motion of a driver, \"linear\" for forces and torques")
+           .left_out("\"natural\" for motions of drivers, walls and servos, \"linear\" for all else")
            .about(
                "Natural: the cubic spline of class C2 whose second derivative is 0 at both ends; it "
                "overshoots where the slope jumps, so that a motion does not hold. Clamped: the cubic spline "

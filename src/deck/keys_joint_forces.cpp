@@ -10,7 +10,8 @@ Key joint_key() {
   return text("joint").required().about(
       "The joint (revolute, translational, cylindrical, screw or universal), or a row of joints: one for "
       "each, named "
-      "NAME.0, NAME.1, ... Its coordinate c: the angle of its second body minus that of the first [rad], in "
+      "NAME.0, NAME.1, ...; or a cylinder, whose coordinate is its length. Its coordinate c: the angle of "
+      "its second body minus that of the first [rad], in "
       "space about the axis and counted on over whole turns, or the displacement along its axis [m]. An "
       "effort above 0 pushes c up.");
 }
@@ -25,7 +26,8 @@ const TableKeys& motor_keys() {
                                                   "c'/free_rate), the torque-speed line of a motor. "
                                                   "Speed: gain e + integral_gain (integral of e over time), "
                                                   "e = rate - c'; the integral stands while the limit "
-                                                  "holds the motor back."),
+                                                  "holds the motor back. Position: position_gain e + "
+                                                  "rate_gain e', e = position - c: a servo."),
        real("limit", "N m or N").above(0).left_out("none").about("Largest effort, either way."),
        quantity("effort", "N m or N", time_function_keys())
            .required()
@@ -58,7 +60,21 @@ const TableKeys& motor_keys() {
            .only_for({MotorKind::speed})
            .at_least(0)
            .otherwise("0.0")
-           .about("Effort per integral of the rate that is missing; 0: a load leaves a rest of it.")},
+           .about("Effort per integral of the rate that is missing; 0: a load leaves a rest of it."),
+       quantity("position", "rad or m", time_function_keys())
+           .required()
+           .only_for({MotorKind::position})
+           .about("Function of time: the coordinate that is wanted."),
+       real("position_gain", "N m/rad or N/m")
+           .above(0)
+           .required()
+           .only_for({MotorKind::position})
+           .about("Effort per distance from the wanted position; a load leaves load / position_gain of it."),
+       real("rate_gain", "N m s/rad or N s/m")
+           .only_for({MotorKind::position})
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Effort per rate of this distance: damps the servo.")},
       "type"};
   return keys;
 }

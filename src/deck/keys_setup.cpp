@@ -39,6 +39,7 @@ const TableKeys& deck_keys() {
        tables("markers", marker_keys()),
        tables("joints", joint_keys()),
        tables("drivers", driver_keys()),
+       tables("cylinders", cylinder_keys()),
        tables("spring_dampers", spring_damper_keys()),
        tables("torsional_spring_dampers", torsional_spring_damper_keys()),
        tables("bushings", bushing_keys()),

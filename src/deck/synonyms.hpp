@@ -39,6 +39,8 @@ inline constexpr auto kWordSynonyms = std::to_array<Synonym>({
     {"cyclic", "periodic"},
     {"closed", "wall"},
     {"delete", "remove"},
+    {"servo", "position"},
+    {"servo", "length"},
 });
 
 // Of keys, by their paths; likewise for other tables that have a key of this name.
@@ -83,6 +85,13 @@ inline constexpr auto kKeySynonyms = std::to_array<Synonym>({
     {"m", "bodies.mass"},
     {"r", "particles.radius"},
     {"omega", "bodies.angular_velocity"},
+    {"torque", "motors.effort"},
+    {"torque", "applied_forces.torque_z"},
+    {"kp", "motors.position_gain"},
+    {"kd", "motors.rate_gain"},
+    {"stroke", "cylinders.max_length"},
+    {"actuators", "cylinders"},
+    {"hydraulic_cylinders", "cylinders"},
     {"spin", "bodies.angular_velocity"},
 });
 

@@ -37,6 +37,7 @@ void JointForce::open_step(const BodyPoses& poses, const SystemInstant& at, Real
   if (h > 0 && law_->needs_second()) step_.start.second = second_rate(*coordinate_, poses, at, gradient_);
   start_effort_ = law_->effort(step_.start, memory).effort;
   in_step_ = h > 0;
+  bridge_ = {};
 }
 
 Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real length,
@@ -45,6 +46,7 @@ Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real
   last_ = coordinate_at(*coordinate_, poses, at, gradient_);
   last_.load = load;
   effort_ = in_step_ ? law_->step_effort(step_, last_) : law_->effort(last_, memory());
+  if (in_step_) bridge_.guide(*law_, step_, effort_);
   for (std::size_t i = 0; i < gradient_.size(); ++i)
     force[scree::at(gradient_.column(i))] += effort_.effort * gradient_.value(i);
   const Real rounded = kRoundingShare * std::abs(effort_.by_value * last_.value);
@@ -80,6 +82,7 @@ void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at
                                  SystemDerivatives& derivatives) {
   SparseTerm &stiffness = derivatives.stiffness, &damping = derivatives.damping;
   const Real one = 1;
+  bridge_.take();
   hessian_.begin();
   coordinate_->hessian(poses, &one, hessian_);
   if (coordinates_.empty()) find_coordinates();
@@ -116,6 +119,11 @@ Real JointForce::elastic_energy(const BodyPoses& poses, Real t, Real memory) con
   Real c = 0;
   coordinate_->value(poses, t, &c);
   return law_->energy(c, memory);
+}
+
+void JointForce::add_reaction(const BodyPoses& poses, Real effort, Vec3& force, Vec3& torque) const {
+  const Real multiplier = -effort;
+  coordinate_->add_reaction(poses, &multiplier, force, torque);
 }
 
 JointForce::Sample JointForce::sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const {

@@ -8,6 +8,7 @@
 
 #include "mbs/constraints.hpp"
 #include "mbs/joint_laws.hpp"
+#include "mbs/limit_bridge.hpp"
 #include "mbs/mechanical_system.hpp"
 
 namespace scree {
@@ -32,6 +33,10 @@ class JointForce {
 
   // The rows of Phi whose multipliers are, along perpendicular axes, the force that the joint transmits.
   void is_loaded_by(std::vector<int> rows) { load_rows_ = std::move(rows); }
+
+  // Acts along the cylinder that is this joint of the model.
+  void acts_along_cylinder(int joint) { cylinder_ = joint; }
+  int cylinder() const { return cylinder_; }  // -1: along none
 
   const std::string& name() const { return name_; }
   bool is_angle() const { return coordinate_->is_angle(); }
@@ -63,6 +68,9 @@ class JointForce {
     Real effort = 0;
   };
   Sample sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const;
+  // Adds the force [N] that this effort is on the joint's second body, at its joint point, and the torque
+  // about it [N m].
+  void add_reaction(const BodyPoses& poses, Real effort, Vec3& force, Vec3& torque) const;
 
  private:
   Real load_of(const SystemInstant& at) const;
@@ -78,9 +86,11 @@ class JointForce {
   std::unique_ptr<JointLaw> law_;
   std::vector<RotationColumns> rotations_;  // in space
   std::vector<int> load_rows_;
+  int cylinder_ = -1;
   LawStep step_;
   Real start_effort_ = 0;
   bool in_step_ = false;
+  LimitBridge bridge_;
   // Of the last add_force().
   CoordinateInstant last_;
   JointEffort effort_;

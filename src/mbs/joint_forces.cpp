@@ -23,6 +23,7 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
     forces_.emplace_back(element.name, std::move(coordinate), make_law(c));
     if (forces_.back().is_loaded())
       forces_.back().is_loaded_by(load_rows[static_cast<std::size_t>(element.joint)]);
+    if (joint.telescopes) forces_.back().acts_along_cylinder(element.joint);
     for (const int body : joint.body) {
       if (is_spatial(model, body)) forces_.back().turns_in_space(body, layout.column(body) + 3);
     }

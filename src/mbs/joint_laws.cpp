@@ -1,3 +1,4 @@
+// Springs and stops.
 #include "mbs/joint_laws.hpp"
 
 #include <fmt/format.h>
@@ -6,23 +7,13 @@
 #include <array>
 #include <cmath>
 
-#include "mbs/limited_line.hpp"
+#include "mbs/integral.hpp"
 #include "model/scalar_function.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {
 
 namespace {
-
-// Of a function between two arguments, by Gauss's rule with three points: exact up to degree 5, the degree of
-// the pieces of tables.
-Real integral(const ScalarFunction& function, Real from, Real to) {
-  static const Real kOuter = std::sqrt(Real(0.6));
-  const Real middle = (from + to) / 2, half = (to - from) / 2;
-  return half / 9 *
-         (5 * function(middle - kOuter * half).value + 8 * function(middle).value +
-          5 * function(middle + kOuter * half).value);
-}
 
 // A curve with its integral from its first point on.
 class IntegratedCurve {
@@ -43,249 +34,6 @@ class IntegratedCurve {
   ScalarFunction function_;
   std::vector<Real> at_, integral_;
 };
-
-// A motor that follows its limit is at it but for round-off.
-constexpr Real kAtLimit = 1 - 1e-12;
-// Halvings of an interval of length 1 that leave round-off.
-constexpr int kHalvings = 52;
-
-// The first s in [0, 1] at which a + b s + c s^2, with a >= 0, falls below 0; 1 if there is none.
-Real first_root(Real a, Real b, Real c) {
-  const Real square = b * b - 4 * a * c;
-  const bool falls = b < 0 || (c < 0 && a == 0);
-  if (square < 0 || (!falls && c >= 0)) return 1;
-  // The root without cancellation gives the other one.
-  const Real q = -(b + std::copysign(std::sqrt(square), b)) / 2;
-  Real least = 1;
-  for (const Real root : {q != 0 ? a / q : Real(0), c != 0 ? q / c : Real(1)})
-    if (root > 0 || (root == 0 && b < 0)) least = std::min(least, root);
-  return least;
-}
-
-// The mean effort of a step is that of the line between the efforts without limit at its ends, held within
-// it: the trapezoidal rule finds it where the end of the step holds twice the mean less what acted at its
-// start. So a limit that is reached or left within a step counts from there on, and a step without one is as
-// it was.
-class MotorLaw : public JointLaw {
- public:
-  explicit MotorLaw(Real limit) : limit_(limit) {}
-  bool drives() const final { return true; }
-  bool resolves_events() const final { return std::isfinite(limit_); }
-
- protected:
-  JointEffort limited(const JointEffort& wanted) const {
-    if (std::abs(wanted.effort) <= limit_) return wanted;
-    return {std::copysign(limit_, wanted.effort), 0, 0, limit_};
-  }
-  // first, last: efforts without the limit at the ends of the step.
-  JointEffort limited_step(Real first, const Dual& last, Real size) const {
-    if (std::abs(first) <= limit_ && std::abs(last.value) <= limit_)
-      return {last.value, last.by_value, last.by_rate, size};
-    return of_mean(first, limited_mean(first, last, limit_, limit_));
-  }
-  JointEffort of_mean(Real first, const Dual& mean) const {
-    const Dual effort = 2 * mean - std::clamp(first, -limit_, limit_);
-    return {effort.value, effort.by_value, effort.by_rate, limit_};
-  }
-  Real limit_;
-};
-
-// T = effort(t)
-class EffortMotor final : public MotorLaw {
- public:
-  EffortMotor(const Motor& motor, const std::string& owner, Real end)
-      : MotorLaw(motor.limit), effort_(motor.effort, owner, end) {}
-  JointEffort effort(const CoordinateInstant& at, Real) const override {
-    const Real effort = effort_(at.time).value;
-    return limited({effort, 0, 0, std::abs(effort)});
-  }
-  JointEffort step_effort(const LawStep& step, const CoordinateInstant& end) const override {
-    const Real last = effort_(end.time).value;
-    return limited_step(effort_(step.start.time).value, last, std::abs(last));
-  }
-
- private:
-  ScalarFunction effort_;
-};
-
-// T = T_s (u(t) - c'/w_f)
-class LineMotor final : public MotorLaw {
- public:
-  LineMotor(const Motor& motor, const std::string& owner, Real end)
-      : MotorLaw(motor.limit),
-        stall_effort_(motor.stall_effort),
-        slope_(-motor.stall_effort / motor.free_rate),
-        command_(motor.command, owner, end) {}
-  JointEffort effort(const CoordinateInstant& at, Real) const override {
-    return limited({driven(at) + slope_ * at.rate, 0, slope_, size(at)});
-  }
-  JointEffort step_effort(const LawStep& step, const CoordinateInstant& end) const override {
-    const Dual last{driven(end) + slope_ * end.rate, 0, slope_, 0};
-    return limited_step(driven(step.start) + slope_ * step.start.rate, last, size(end));
-  }
-
- private:
-  Real driven(const CoordinateInstant& at) const { return stall_effort_ * command_(at.time).value; }
-  Real size(const CoordinateInstant& at) const {
-    return std::max(std::abs(driven(at)), std::abs(slope_ * at.rate));
-  }
-  Real stall_effort_, slope_;
-  ScalarFunction command_;
-};
-
-// T = P e + I z, e = w(t) - c', z the integral of e: over a step that of w less the change of c. While the
-// limit holds T back, z stands where e would drive it further; where e falls so fast that T would leave the
-// limit by that, z grows as fast as keeps T there. Both over the part of a step that they last.
-class SpeedMotor final : public MotorLaw {
- public:
-  SpeedMotor(const Motor& motor, const std::string& owner, Real end)
-      : MotorLaw(motor.limit),
-        gain_(motor.gain),
-        integral_gain_(motor.integral_gain),
-        rate_(motor.rate, owner, end) {}
-
-  JointEffort effort(const CoordinateInstant& at, Real memory) const override {
-    return limited({wanted(at, memory), -integral_gain_, -gain_, size(at, memory)});
-  }
-  JointEffort step_effort(const LawStep& step, const CoordinateInstant& end) const override {
-    const Real first = wanted(step.start, step.memory);
-    const Over o = over(step, end);
-    if (o.held) return of_mean(first, o.mean);
-    return limited_step(first, wanted(end, o.integral), size(end, o.integral.value));
-  }
-  bool remembers() const override { return true; }
-  bool needs_second() const override { return std::isfinite(limit_); }
-  Real memory_after(const LawStep& step, const CoordinateInstant& end) const override {
-    return over(step, end).integral.value;
-  }
-
- private:
-  // Errors of the step, in units of e that push towards the limit: at its ends, and at its share s on the way
-  // e_0 + h e_0' s + h^2 w''/2 s^2 while c'' is that of the start.
-  struct Errors {
-    Real first, slope, bend;  // e_0, h e_0', h^2 w''/2 of the parabola through the wanted rates
-    Dual last;
-    Real h;
-    Real at(Real s) const { return first + s * (slope + s * bend); }
-  };
-  Errors errors(const LawStep& step, const CoordinateInstant& end, Real side) const {
-    const TimeValue wanted = rate_(step.start.time);
-    const Real rise = step.h * wanted.rate, bend = rate_(end.time).value - wanted.value - rise;
-    return {side * error(step.start), side * (rise - step.h * step.start.second), side * bend,
-            side * end_error(end), step.h};
-  }
-  Real error(const CoordinateInstant& at) const { return rate_(at.time).value - at.rate; }
-  Dual end_error(const CoordinateInstant& end) const { return {error(end), 0, -1, 0}; }
-  Real size(const CoordinateInstant& at, Real memory) const {
-    return std::max({gain_ * std::abs(rate_(at.time).value), gain_ * std::abs(at.rate),
-                     integral_gain_ * std::abs(memory)});
-  }
-  // The effort T without its limit.
-  Real wanted(const CoordinateInstant& at, Real z) const { return gain_ * error(at) + integral_gain_ * z; }
-  Dual wanted(const CoordinateInstant& end, const Dual& z) const {
-    return gain_ * end_error(end) + integral_gain_ * z;
-  }
-  // z at the end of the step; and where the limit has a part in it the mean of T.
-  struct Over {
-    Dual integral;
-    bool held = false;
-    Dual mean{};
-  };
-  Over over(const LawStep& step, const CoordinateInstant& end) const;
-  // The share of a step after which the limit lets go, and whether z follows it before.
-  struct Release {
-    Real share;
-    bool follows;
-  };
-  Release release_of(Real memory, const Errors& e) const;
-  Dual released(const Release& release, Real memory, const Errors& e) const;
-  // z with which the end of the step is just at the limit.
-  Dual at_limit(const Errors& e) const { return (limit_ - gain_ * e.last) / integral_gain_; }
-  Dual error_at(const Dual& share, const Errors& e) const;
-  Dual held_after(const Dual& last, const Errors& e) const;
-
-  Real gain_, integral_gain_;
-  ScalarFunction rate_;
-};
-
-SpeedMotor::Over SpeedMotor::over(const LawStep& step, const CoordinateInstant& end) const {
-  const Dual all{step.memory + integral(rate_, step.start.time, end.time) - (end.value - step.start.value),
-                 -1, 0, 0};
-  const Real first = wanted(step.start, step.memory);
-  const Dual last = wanted(end, all);
-  const Over plain{all};
-  if (!needs_second() || step.h == 0) return plain;
-  if (std::abs(first) >= kAtLimit * limit_) {
-    const Real side = std::copysign(Real(1), first);
-    const Errors e = errors(step, end, side);
-    if (!(e.first > 0)) return plain;
-    const Release release = release_of(side * step.memory, e);
-    const Dual z = step.memory + side * released(release, side * step.memory, e), then = wanted(end, z);
-    if (release.share == 1) return {z, true, limited_mean(first, then, limit_, limit_)};
-    return {
-        z, true,
-        side * (release.share * limit_) + 0.5 * (1 - release.share) * (side * limit_ + within(then, limit_))};
-  }
-  if (std::abs(last.value) <= limit_) return plain;
-  const Real side = std::copysign(Real(1), last.value);
-  const Errors e = errors(step, end, side);
-  const Dual share = held_after(side * last - limit_, e);
-  const Dual stood = side * all - step.h * (1 - share) * positive_mean(error_at(share, e), e.last);
-  return {side * (integral_gain_ > 0 ? larger(stood, at_limit(e)) : stood), true,
-          side * limit_ + 0.5 * share * (first - side * limit_)};
-}
-
-// When the limit lets go of a step that begins at it. Until then T is constant, and c' keeps its tangent: the
-// instant is exact to O(h^3), where other forces are smooth. First e falls to where T without its limit is
-// below it; there T stays as long as I e would drive it up faster than P e' lets it fall.
-SpeedMotor::Release SpeedMotor::release_of(Real memory, const Errors& e) const {
-  const Real beyond = std::max(gain_ * e.first + integral_gain_ * memory - limit_, Real(0));
-  Release release{first_root(beyond, gain_ * e.slope, gain_ * e.bend), false};
-  const Real s = release.share, growth = integral_gain_ * e.h;
-  const Real rise = gain_ * (e.slope + 2 * e.bend * s) + growth * e.at(s);
-  if (s == 1 || !(rise > 0)) return release;
-  const Real turn = 2 * gain_ * e.bend + growth * (e.slope + 2 * e.bend * s);
-  return {std::min(s + first_root(rise, turn, growth * e.bend), Real(1)), true};
-}
-
-// How much z changes over such a step. One that ends at the limit all the same has not left it.
-Dual SpeedMotor::released(const Release& release, Real memory, const Errors& e) const {
-  const Real s = release.share, then = e.at(s);
-  if (integral_gain_ == 0) return -e.h * positive_mean(-e.first, -e.last);
-  const Dual most = larger(at_limit(e) - memory, 0);
-  if (release.follows && s == 1) return most;
-  const Real before = release.follows ? (limit_ - gain_ * then) / integral_gain_ - memory : 0;
-  return smaller(s < 1 && then > 0 ? before + 0.5 * e.h * (1 - s) * (then + e.last)
-                                   : -e.h * positive_mean(-e.first, -e.last),
-                 most);
-}
-
-// e where the limit is reached, after the share s of a step: up to there c' has its tangent at the start,
-// from there on T is constant, and c' a straight line:
-//   c'(s) = c'_0 + s h c''_0 + (c'_1 - c'_0 - h c''_0) s / (2 - s).
-Dual SpeedMotor::error_at(const Dual& share, const Errors& e) const {
-  const Dual unlike = e.last - (e.first + e.slope + e.bend);
-  return e.first + share * (e.slope + share * e.bend) + unlike * (share / (2 - share));
-}
-
-// The share after which the limit is reached, where the step begins within the limit and ends `last` beyond
-// it: the change of P e + I z from there on, P (e_1 - e(s)) + I h (1 - s) (e(s) + e_1) / 2, is `last`.
-Dual SpeedMotor::held_after(const Dual& last, const Errors& e) const {
-  const auto left = [&](const Dual& s) {
-    const Dual then = error_at(s, e);
-    return gain_ * (e.last - then) + 0.5 * integral_gain_ * e.h * (1 - s) * (then + e.last) - last;
-  };
-  if (!(left(0).value > 0)) return 0;
-  Real low = 0, high = 1;
-  for (int i = 0; i < kHalvings; ++i) {
-    const Real middle = (low + high) / 2;
-    (left(middle).value > 0 ? low : high) = middle;
-  }
-  const Dual rest = left(low);
-  const Real slope = left(Dual{low, 1, 0, 0}).by_value - rest.by_value;
-  if (!(slope < 0)) return low;
-  return {low, -rest.by_value / slope, -rest.by_rate / slope, 0};
-}
 
 // T = -(k (c - c_0) + d c' + F(c) + G(c'))
 class SpringLaw final : public JointLaw {
@@ -372,19 +120,6 @@ class LimitLaw final : public JointLaw {
 };
 
 }  // namespace
-
-std::unique_ptr<JointLaw> make_joint_law(const Motor& motor, Real end) {
-  const std::string owner = fmt::format("motor '{}'", motor.name);
-  switch (motor.kind) {
-    case MotorKind::effort:
-      return std::make_unique<EffortMotor>(motor, owner, end);
-    case MotorKind::line:
-      return std::make_unique<LineMotor>(motor, owner, end);
-    case MotorKind::speed:
-      return std::make_unique<SpeedMotor>(motor, owner, end);
-  }
-  throw std::logic_error("a motor of no kind");
-}
 
 std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring, Real start) {
   return std::make_unique<SpringLaw>(spring, start, fmt::format("joint spring '{}'", spring.name));

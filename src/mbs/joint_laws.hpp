@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/types.hpp"
+#include "mbs/dual.hpp"
 #include "model/joint_forces.hpp"
 
 namespace scree {
@@ -24,6 +25,7 @@ struct JointEffort {
   Real by_value = 0, by_rate = 0;  // T_c, T_c'
   Real size = 0;                   // its largest single contribution, as they may cancel
   Real by_load = 0;                // T_F
+  Dual wanted{};                   // of a step: the effort at its end without limit(), where that is finite
 };
 
 // A step from `start`, with what the law remembered there.
@@ -45,6 +47,11 @@ class JointLaw {
   }
   // Whether step_effort differs from effort at the same instant.
   virtual bool resolves_events() const { return false; }
+
+  // Of laws whose effort, without it, follows the end of a step alone.
+  virtual Real limit() const { return kInfinity; }
+  // step_effort where the effort without the limit ends at `wanted`.
+  virtual Real limited_at(const LawStep&, Real wanted) const { return wanted; }
 
   virtual bool remembers() const { return false; }
   // What is remembered at the end of an accepted step. Of one of length 0, an instant, under the load of

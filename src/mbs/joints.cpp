@@ -8,7 +8,7 @@
 
 namespace scree {
 
-void add_joint(const Joint& joint, bool driven, JointParts& parts) {
+void add_joint(const Joint& joint, bool rowless, JointParts& parts) {
   switch (joint.kind) {
     case JointKind::revolute:
       parts.points_meet();
@@ -27,8 +27,7 @@ void add_joint(const Joint& joint, bool driven, JointParts& parts) {
         throw InputError(fmt::format("joint '{}': distance {} m is not allowed, it must be positive",
                                      joint.name, joint.distance));
       }
-      // A driver's row replaces the joint's.
-      if (!driven) parts.length(ScalarFunction(joint.distance));
+      if (!rowless) parts.length(ScalarFunction(joint.distance));
       break;
     case JointKind::spherical:
       parts.points_meet();

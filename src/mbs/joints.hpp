@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// driven: a driver prescribes the joint's coordinate. Throws InputError naming a joint that is refused.
-void add_joint(const Joint& joint, bool driven, JointParts& parts);
+// rowless: as rowless_joints() says. Throws InputError naming a joint that is refused.
+void add_joint(const Joint& joint, bool rowless, JointParts& parts);
 // One row: the coordinate is the motion.
 void add_driver(JointCoordinate coordinate, ScalarFunction motion, JointParts& parts);
 

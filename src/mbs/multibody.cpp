@@ -345,13 +345,13 @@ MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const 
 }
 
 std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) const {
-  if (impl_->system.constraints() == 0) return {};
+  const std::vector<ConstraintGroup>& groups = impl_->system.groups();
+  if (groups.empty()) return {};
   const MultibodyState now = at_instant(state, t);
-  const auto groups = impl_->system.reactions({t, now.position, now.velocity}, now.multipliers);
+  const auto loads = impl_->system.reactions({t, now.position, now.velocity, &now.multipliers}, now.memory);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i)
-    reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque,
-                         impl_->system.groups()[i].kind, groups[i].frame});
+    reactions.push_back({groups[i].name, loads[i].force, loads[i].torque, groups[i].kind, loads[i].frame});
   return reactions;
 }
 

@@ -43,7 +43,8 @@ struct MultibodyEnergies {
   Real kinetic = 0, gravitational = 0, elastic = 0;  // [J]
 };
 
-// Reaction of a joint or driver on body[1], at body[1]'s joint point, global frame.
+// Reaction of a joint or driver, or the force of a cylinder, on body[1], at body[1]'s joint point, global
+// frame.
 struct Reaction {
   std::string joint;
   Vec3 force;   // [N]

@@ -72,11 +72,11 @@ RigidBodySystem::RigidBodySystem(const Model& model)
 }
 
 void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start) {
-  const std::vector<bool> driven = driven_joints(model);
+  const std::vector<bool> rowless = rowless_joints(model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
     const std::unique_ptr<JointParts> parts = joint_parts(model, static_cast<int>(i), layout_);
-    add_joint(joint, driven[i], *parts);
+    add_joint(joint, rowless[i], *parts);
     add_group({fmt::format("joint '{}'", joint.name), joint.name, joint.deck_label}, parts->take(), joint,
               between(model, joint.body));
   }
@@ -299,12 +299,13 @@ Real RigidBodySystem::elastic_energy(const SystemInstant& at, const std::vector<
 }
 
 std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(
-    const SystemInstant& at, const std::vector<Real>& multipliers) const {
+    const SystemInstant& at, const std::vector<Real>& memory) const {
   const BodyPoses poses = poses_at(at);
   std::vector<GroupReaction> reactions(groups_.size());
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     for (int i = groups_[k].first; i < groups_[k].end; ++i) {
-      const Real* lambda = &multipliers[static_cast<std::size_t>(first_row_[static_cast<std::size_t>(i)])];
+      const Real* lambda =
+          &(*at.multipliers)[static_cast<std::size_t>(first_row_[static_cast<std::size_t>(i)])];
       constraints_[static_cast<std::size_t>(i)]->add_reaction(poses, lambda, reactions[k].force,
                                                               reactions[k].torque);
     }
@@ -312,7 +313,20 @@ std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(
     if (groups_[k].kind == BodyKind::spatial)
       reactions[k].frame = quaternion_of(poses.spatial[groups_[k].body].rotation) * groups_[k].marker;
   }
+  add_cylinder_forces(at, memory, poses, reactions);
   return reactions;
+}
+
+void RigidBodySystem::add_cylinder_forces(const SystemInstant& at, const std::vector<Real>& memory,
+                                          const BodyPoses& poses,
+                                          std::vector<GroupReaction>& reactions) const {
+  const std::vector<JointForce>& forces = joint_forces_.all();
+  const std::vector<JointForce::Sample> samples = joint_forces_.samples(poses, at, memory);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (forces[i].cylinder() < 0) continue;
+    GroupReaction& sum = reactions[static_cast<std::size_t>(forces[i].cylinder())];
+    forces[i].add_reaction(poses, samples[i].effort, sum.force, sum.torque);
+  }
 }
 
 std::vector<Real> RigidBodySystem::spring_efforts(const SystemInstant& at) const {

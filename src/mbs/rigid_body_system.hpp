@@ -102,7 +102,8 @@ class RigidBodySystem final : public MechanicalSystem {
     Vec3 force, torque;
     Quaternion frame;
   };
-  std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
+  // at: with its multipliers; memory: as in the state. Of a cylinder, which has no rows, what acts along it.
+  std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& memory) const;
   // Of the spring-dampers, then of the torsional ones: ForceElement::effort.
   std::vector<Real> spring_efforts(const SystemInstant& at) const;
 
@@ -119,6 +120,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // start: at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
   void add_elements(const Model& model, const BodyPoses& start);
+  void add_cylinder_forces(const SystemInstant& at, const std::vector<Real>& memory, const BodyPoses& poses,
+                           std::vector<GroupReaction>& reactions) const;
   // Of every joint.
   std::vector<std::vector<int>> load_rows(const Model& model) const;
   // The group's names are given, the rest follows. joint: whose the rows are; of a coupler's, the first one.

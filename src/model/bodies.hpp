@@ -80,6 +80,8 @@ struct Joint {
   // body's, its axis along z; universal: the first body's arm along x, the second one's along y.
   Quaternion marker[2];
   std::string deck_label;  // of its table, for messages: "deck.toml:38:1: joints.hinge"; empty without a deck
+  // Distance: a cylinder, whose length is free. It has no row, and motors and stops act on its length.
+  bool telescopes = false;
 };
 
 // A scalar function of time with two continuous derivatives where a driver needs them.

@@ -73,6 +73,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     build_mesh_corners(model);
     build_markers(root, model, names);
     build_joints(root, model, names);
+    build_cylinders(root, model, names);
     build_force_elements(root, model, names);
     build_bushings(root, model, names);
     build_joint_forces(root, model, names);

@@ -1,6 +1,4 @@
 // Spring-dampers, torsional spring-dampers and applied forces.
-#include <cmath>
-
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 
@@ -15,11 +13,8 @@ void build_spring_dampers(const DeckTable& table, Model& model, const ModelNames
     element.name = connection.name;
     for (int side = 0; side < 2; ++side) element.body[side] = connection.body[side];
     find_end_points(table, model, connection, element.point);
-    const Vec3 ends = to_global_point(model, element.body[1], element.point[1]) -
-                      to_global_point(model, element.body[0], element.point[0]);
     check_same_kind(table, model, connection);
-    const bool spatial = between(model, element.body) == BodyKind::spatial;
-    const Real length = spatial ? norm(ends) : std::hypot(ends.x, ends.y);
+    const Real length = start_distance(model, element.body, element.point);
     if (length == 0) table.fail("name", "the two points of a spring-damper must not coincide at t = 0");
     element.stiffness = table.real("stiffness");
     element.damping = table.real("damping");
@@ -75,7 +70,7 @@ AppliedForce build_applied_force(const DeckTable& table, const Model& model, con
   if (table.has("local_point")) force.point = from_center(model, force.body, table.vector("local_point"));
   force.fx = build_force(table.table("fx"));
   force.fy = build_force(table.table("fy"));
-  force.torque = build_force(table.table("torque"));
+  force.torque = build_force(table.table("torque_z"));
   force.fz = build_force(table.table("fz"));
   force.torque_x = build_force(table.table("torque_x"));
   force.torque_y = build_force(table.table("torque_y"));

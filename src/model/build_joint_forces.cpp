@@ -29,9 +29,10 @@ int moving_joint(const DeckTable& table, const Model& model, const ModelNames& n
                  const std::string& key) {
   const int joint = find_name(names.joints, name, table, key, "joint");
   const JointKind kind = joint_at(model, joint).kind;
-  if (coordinates_of(kind).empty() || kind == JointKind::distance)
-    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be {}", name, word_of(kind),
-                                kinds_with(model, joint, {})));
+  const bool keeps_distance = kind == JointKind::distance && !joint_at(model, joint).telescopes;
+  if (coordinates_of(kind).empty() || keeps_distance)
+    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be a cylinder, or {}", name,
+                                word_of(kind), kinds_with(model, joint, {})));
   return joint;
 }
 
@@ -80,6 +81,11 @@ Motor build_motor(const DeckTable& table) {
       motor.rate = build_force(table.table("rate"));
       motor.gain = table.real("gain");
       motor.integral_gain = table.real("integral_gain");
+      break;
+    case MotorKind::position:
+      motor.position = build_motion(table.table("position"));
+      motor.position_gain = table.real("position_gain");
+      motor.rate_gain = table.real("rate_gain");
       break;
   }
   return motor;
@@ -144,6 +150,10 @@ JointFriction build_friction(const DeckTable& table) {
 // A pin has a radius, a slide has none.
 void check_radius(const DeckTable& table, const Joint& joint) {
   const bool turns = is_angle(read_coordinate(table, joint)), rubs = table.real("friction_coefficient") > 0;
+  if (joint.telescopes && rubs)
+    table.fail(
+        "friction_coefficient",
+        fmt::format("not used; cylinder \"{}\" carries no force across its line: give effort", joint.name));
   if (turns && rubs && !table.has("radius"))
     table.fail(
         "radius",
@@ -247,6 +257,8 @@ Coupler build_coupler(const DeckTable& table, const Model& model, const ModelNam
 
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names) {
   NameMap efforts, reactions = names.joints;  // as they stand side by side in the history
+  for (const Motor& motor : model.motors) efforts.emplace(motor.name, 0);  // of cylinders
+  for (const JointLimit& limit : model.joint_limits) efforts.emplace(limit.name, 0);
   for (const DeckTable& table : deck.tables("motors"))
     add_elements(table, model, names, efforts, model.motors, build_motor);
   for (const DeckTable& table : deck.tables("joint_springs"))

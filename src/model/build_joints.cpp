@@ -209,11 +209,8 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
   if (!spatial) check_planar(table, joint);
   if (joint.kind == JointKind::distance) {
     find_end_points(table, model, connection, joint.point);
-    const Vec3 ends = to_global_point(model, joint.body[1], joint.point[1]) -
-                      to_global_point(model, joint.body[0], joint.point[0]);
-    joint.distance = table.has("distance") ? table.real("distance")
-                     : spatial             ? norm(ends)
-                                           : std::hypot(ends.x, ends.y);
+    joint.distance =
+        table.has("distance") ? table.real("distance") : start_distance(model, joint.body, joint.point);
     if (joint.distance == 0) table.fail("name", "the two points of a distance joint must not coincide");
   } else if (!spatial) {
     find_common_points(table, model, connection, joint.point);

@@ -22,6 +22,8 @@ void build_time(const DeckTable& deck,
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
+// Each becomes a joint whose length is free, a motor and, with a stroke, a stop; `names` gets the joint.
+void build_cylinders(const DeckTable& deck, Model& model, ModelNames& names);
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_bushings(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names);  // also couplers

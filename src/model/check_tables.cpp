@@ -15,7 +15,8 @@ namespace {
 
 constexpr Real kNoticeable = 0.01;  // of a table's range
 // The others are forces and commands, which are read linearly unless they say otherwise.
-constexpr std::array<std::string_view, 3> kMotions = {"motion", "displacement", "angle"};
+constexpr std::array<std::string_view, 5> kMotions = {"motion", "displacement", "angle", "position",
+                                                      "length"};
 
 void check_cover(const DeckTable& table, const TimeFunction& function, Real end) {
   const Real first = function.times.front(), last = function.times.back();

@@ -79,8 +79,11 @@ JointGap joint_gap(const Model& model, const Joint& joint);
 // Whether it keeps its two points together.
 bool points_coincide(const Joint& joint);
 
-// Per joint, whether a driver prescribes it.
-std::vector<bool> driven_joints(const Model& model);
+// Distance between two points of these bodies at t = 0; of planar ones within their plane [m].
+Real start_distance(const Model& model, const int (&body)[2], const Vec3 (&point)[2]);
+
+// Per joint, whether it has no row of its own: a driver's row replaces it, or it is a cylinder.
+std::vector<bool> rowless_joints(const Model& model);
 bool has_spatial_bodies(const Model& model);
 bool is_spatial(const Model& model, int body);  // the ground is not
 // Of joints, drivers and couplers: the number of the multibody side's constraint equations.

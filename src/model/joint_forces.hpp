@@ -11,8 +11,8 @@
 namespace scree {
 
 // A coordinate c of a joint is what a driver could prescribe (model/joint_coordinates.hpp), an angle [rad] or
-// a displacement [m]; where none is named, the only one, or the first. An effort [N m, N] above 0 pushes c
-// up.
+// a displacement [m], or the length of a cylinder [m]; where none is named, the only one, or the first. An
+// effort [N m, N] above 0 pushes c up.
 
 // A function of c or of its rate by its points; past them it goes on with its rate there. Empty: 0.
 struct Curve {
@@ -32,6 +32,9 @@ struct Motor {
   // speed: gain e + integral_gain (integral of e), e = rate - c'
   TimeFunction rate;                 // wanted [rad/s, m/s]
   Real gain = 0, integral_gain = 0;  // [N m s/rad, N s/m], [N m/rad, N/m]
+  // position: position_gain e + rate_gain e', e = position - c
+  TimeFunction position;                  // wanted [rad, m]
+  Real position_gain = 0, rate_gain = 0;  // [N m/rad, N/m], [N m s/rad, N s/m]
   std::optional<JointCoordinate> coordinate{};
 };
 

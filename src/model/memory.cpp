@@ -102,12 +102,13 @@ ModelSize bodies_and_links(const DeckTable& deck) {
           count * ShapePlaces(shape, dimension).count();
   }
   std::map<std::string, std::int64_t> joints;
-  for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
+  for (const char* key : {"joints", "cylinders", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
     for (const DeckTable& table : deck.tables(key)) {
       const char* row = table.has("chain") ? "chain" : "each";
       const std::int64_t count = table.has(row) ? rows[table.text(row)] : 1;
-      if (key == std::string("joints")) joints[table.text("name")] = count;
-      size.links += count;
+      const bool cylinder = key == std::string("cylinders");
+      if (cylinder || key == std::string("joints")) joints[table.text("name")] = count;
+      size.links += cylinder ? (table.has("stop_stiffness") ? 3 : 2) * count : count;
     }
   }
   for (const char* key : {"drivers", "applied_forces", "couplers"})

@@ -220,6 +220,8 @@ Real fastest_rate(const Motor& motor, Real end) {
       return largest(motor.rate, end);
     case MotorKind::line:
       return largest(motor.command, end) * motor.free_rate;
+    case MotorKind::position:
+      return fastest_rate(motor.position, end);
     case MotorKind::effort:
       return 0;
   }

@@ -81,6 +81,7 @@ std::string multibody_lines(const Model& model) {
         body.shapes.empty() && body.meshes.empty() && body.drawn_shapes.empty() && body.drawn_meshes.empty();
   }
   const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
+  const std::int64_t cylinders = std::ranges::count(model.joints, true, &Joint::telescopes);
   const std::int64_t elements =
       std::ssize(model.spring_dampers) + std::ssize(model.torsional_spring_dampers) +
       std::ssize(model.bushings) + std::ssize(model.applied_forces) + std::ssize(model.motors) +
@@ -89,7 +90,7 @@ std::string multibody_lines(const Model& model) {
       fmt::format("bodies         {} with {}{}, {}, {}, {}\n", model.bodies.size(),
                   counted(shapes + drawn_shapes, "shape", "shapes"),
                   meshes + drawn_meshes == 0 ? "" : ", " + counted(meshes + drawn_meshes, "mesh", "meshes"),
-                  counted(std::ssize(model.joints), "joint", "joints"),
+                  counted(std::ssize(model.joints) - cylinders, "joint", "joints"),
                   counted(std::ssize(model.drivers), "driver", "drivers"),
                   counted(elements, "force element", "force elements"));
   if (drawn_shapes + drawn_meshes > 0)

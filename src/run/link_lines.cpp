@@ -27,8 +27,9 @@ Mat3 axes_of(const Bushing& bushing, std::span<const BodyMotion> motion) {
 
 LinkLines::LinkLines(const Model& model) : model_(model), subdomain_(model.space) {
   for (const Joint& joint : model.joints)
-    points_coincide(joint) ? add_pin(joint.name, LinkKind::joint, joint.body, joint.point)
-                           : add(joint.name, LinkKind::joint, joint.body, joint.point);
+    points_coincide(joint)
+        ? add_pin(joint.name, LinkKind::joint, joint.body, joint.point)
+        : add(joint.name, joint.telescopes ? LinkKind::actuator : LinkKind::joint, joint.body, joint.point);
   for (const SpringDamper& e : model.spring_dampers)
     add(e.name, acts(e.actuator) ? LinkKind::actuator : LinkKind::spring_damper, e.body, e.point);
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) {
@@ -83,8 +84,12 @@ void LinkLines::add_forces(const Multibody& multibody, const MultibodyState& sta
   };
   std::vector<Reaction> reactions;
   if (!model_.joints.empty()) reactions = multibody.reactions(state, t);
-  for (std::size_t k = 0; k < model_.joints.size(); ++k)
-    add(norm(reactions[k].force), norm(reactions[k].torque), reactions[k].force);
+  for (std::size_t k = 0; k < model_.joints.size(); ++k) {
+    const Vec3 along = look.ends[2 * k + 1] - look.ends[2 * k];
+    const bool pushes = dot(reactions[k].force, along) > 0;
+    const Real size = norm(reactions[k].force);
+    add(model_.joints[k].telescopes && pushes ? -size : size, norm(reactions[k].torque), reactions[k].force);
+  }
   const std::vector<Real> efforts = multibody.spring_efforts(state, t);
   const std::size_t springs = model_.spring_dampers.size();
   for (std::size_t k = 0; k < efforts.size(); ++k) {
@@ -105,15 +110,20 @@ LineSnapshot LinkLines::Look::snapshot() const {
     out.fields.push_back(field_of(name, label, values));
   };
   add("link", {"1", "number of the joint or force element, which counts the names"}, link);
-  add("kind", {"1", "0 joint, 1 spring-damper, 2 one with an actuator, 3 bushing, 4 torsional spring-damper"},
+  add("kind",
+      {"1",
+       "0 joint, 1 spring-damper, 2 cylinder or spring-damper with an actuator, 3 bushing, 4 torsional "
+       "spring-damper"},
       kind);
-  add("force", {"N", "size of a joint's reaction and a bushing's force; tension of a spring-damper"}, force);
+  add("force",
+      {"N", "size of a joint's reaction and a bushing's force; tension of a spring-damper and a cylinder"},
+      force);
   add("torque",
       {"N m",
        "size of a joint's reaction torque and a bushing's; of a torsional spring-damper that on its second "
        "body"},
       torque);
-  add("length", {"m", "of the line; of a spring-damper between its points"}, length);
+  add("length", {"m", "of the line; of a spring-damper and a cylinder between its points"}, length);
   add("reaction", {"N", "force on the second body, global axes"}, reaction);
   return out;
 }

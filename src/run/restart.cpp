@@ -43,6 +43,7 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "bodies",
                                                "joints",
                                                "drivers",
+                                               "cylinders",
                                                "motors",
                                                "joint_frictions",
                                                "couplers",
@@ -56,6 +57,9 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "joints.*.chain",
                                                "joints.*.each",
                                                "drivers.*.joint",
+                                               "cylinders.*.type",
+                                               "cylinders.*.chain",
+                                               "cylinders.*.each",
                                                "motors.*.type",
                                                "joint_frictions.*.joint",
                                                "couplers.*.type",
@@ -82,8 +86,12 @@ class SameFunctions {
   SameFunctions(const Deck& before, const Deck& after, Real t) : t_(t) {
     compare(before, after, "drivers", {"motion"}, build_motion);
     compare(before, after, "spring_dampers", {"actuator"}, build_force);
-    compare(before, after, "applied_forces", {"fx", "fy", "torque"}, build_force);
+    compare(before, after, "applied_forces", {"fx", "fy", "fz", "torque_x", "torque_y", "torque_z"},
+            build_force);
     compare(before, after, "motors", {"effort", "command", "rate"}, build_force);
+    compare(before, after, "motors", {"position"}, build_motion);
+    compare(before, after, "cylinders", {"force", "speed"}, build_force);
+    compare(before, after, "cylinders", {"length"}, build_motion);
   }
   bool hold(const DeckDifference& difference) const {
     return std::any_of(keys_.begin(), keys_.end(),

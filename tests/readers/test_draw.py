@@ -247,7 +247,7 @@ class ExampleTest(unittest.TestCase):
         def lengths(snapshot):
             rods = mechanism.draw(snapshot)[0]["rod"]
             return np.linalg.norm(rods[:, 1] - rods[:, 0], axis=1)
-        # Actuators over stiffness at 0.9 s; loads and speeds take some mm.
+        # What the cylinders want at 0.9 s; loads take some mm.
         np.testing.assert_allclose(lengths(last) - lengths(0), [-0.04, 0.0122, -0.0012], atol=0.004)
 
     def test_a_screw_is_turned_by_its_motor(self):

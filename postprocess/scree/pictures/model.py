@@ -207,6 +207,8 @@ class Model:
 
         for table in deck.get("joints", []):
             add(table["type"], table, common=table["type"] != "distance")
+        for table in deck.get("cylinders", []):
+            add("cylinder", table, common=False)
         for key, kind in SPRING_TABLES.items():
             for table in deck.get(key, []):
                 add(kind if table.get("actuator") in UNDRIVEN else "cylinder", table, common=False)

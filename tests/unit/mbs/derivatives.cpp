@@ -75,6 +75,11 @@ std::vector<std::pair<std::string, Model>> samples() {
       add_efforts(model, sine());
       all.emplace_back("efforts on joint " + std::to_string(static_cast<int>(kind)) + ends, model);
     }
+    Model cylinder = two_bodies();
+    cylinder.joints.push_back(joint_between(JointKind::distance, first, second));
+    cylinder.joints[0].telescopes = true;
+    add_efforts(cylinder, sine());
+    all.emplace_back("cylinder" + ends, cylinder);
     Model spring = two_bodies();
     SpringDamper element{"spring", {first, second}, {{0.31, -0.17, 0}, {-0.23, 0.12, 0}}, 70, 9, 0.4, sine()};
     spring.spring_dampers.push_back(element);

@@ -14,7 +14,10 @@ inline void add_efforts(Model& model, const TimeFunction& function,
   Motor speed;
   speed.kind = MotorKind::speed;
   speed.gain = 2, speed.integral_gain = 5, speed.rate = function;
-  model.motors = {line, speed};
+  Motor servo;
+  servo.kind = MotorKind::position;
+  servo.position_gain = 8, servo.rate_gain = 1.5, servo.position = function;
+  model.motors = {line, speed, servo};
   const Curve elastic{{-3, -1, 0, 1, 3}, {-2, -1, 0.5, 1, 4}, Interpolation::natural};
   const Curve dissipative{{-9, -1, 0, 2, 9}, {-3, -1, 0, 1, 5}, Interpolation::monotone};
   model.joint_springs = {{"spring", 0, 7, 3, 0.2, elastic, dissipative}};

@@ -38,6 +38,13 @@ Motor any_motor(Numbers& number, bool integrates) {
   return motor;
 }
 
+Motor any_servo(Numbers& number) {
+  Motor motor = any_motor(number, false);
+  motor.kind = MotorKind::position, motor.position = motor.rate;
+  motor.position_gain = number(0.1, 5), motor.rate_gain = number(0, 3);
+  return motor;
+}
+
 // A step as the method takes it: with the mean of the rates.
 LawStep any_step(Numbers& number, Real memory) {
   LawStep step{{0.3, number(-1, 1), number(-2, 2), number(0, 5)}, memory, number(1e-3, 0.3)};
@@ -75,6 +82,11 @@ TEST_CASE("the effort of a step is a continuous function of its end, with these 
     const std::unique_ptr<JointLaw> motor = make_joint_law(any_motor(number, i % 5 != 0), 10);
     const LawStep other = any_step(number, number(-2, 2));
     check_derivatives(*motor, other, end_of(other, number));
+  }
+  for (int i = 0; i < 5000; ++i) {
+    const std::unique_ptr<JointLaw> servo = make_joint_law(any_servo(number), 10);
+    const LawStep step = any_step(number, 0);
+    check_derivatives(*servo, step, end_of(step, number));
   }
 }
 

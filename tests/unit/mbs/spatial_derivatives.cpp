@@ -90,7 +90,11 @@ std::vector<std::pair<std::string, Model>> samples() {
         model.drivers.clear();
         add_efforts(model, sine(), coordinate);
         all.emplace_back("efforts on " + title, model);
-        if (coordinate == JointCoordinate::length) continue;
+        if (coordinate == JointCoordinate::length) {
+          model.joints[0].telescopes = true;
+          all.emplace_back("cylinder" + ends, model);
+          continue;
+        }
         model = two_bodies();
         model.joints = {joint_between(kind.value, first, second)};
         model.joints.push_back(joint_between(JointKind::cylindrical, kGround, 0));

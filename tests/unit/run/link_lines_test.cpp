@@ -88,6 +88,32 @@ free_angle = 0.5
   CHECK(near(shown.at.length[0], 0.5, {.relative = 1e-14}));
 }
 
+TEST_CASE("the line of a cylinder has its tension, which the history knows as a reaction") {
+  for (const Real force : {25.0, -25.0}) {
+    Shown shown(kSmallDeck + body("one", "[0.3, 0.4]") + body("two", "[0.3, 0.9]") +
+                R"([[spring_dampers]]
+name = "spring"
+bodies = ["ground", "one"]
+local_points = [[0.0, 0.0], [0.0, 0.0]]
+stiffness = 100.0
+free_length = 0.2
+[[cylinders]]
+name = "lift"
+bodies = ["one", "two"]
+type = "force"
+force = )" + std::to_string(force));
+    CHECK(shown.lines.names() == std::vector<std::string>{"lift", "spring"});
+    CHECK(shown.at.kind == std::vector{2, 1});
+    CHECK(near(shown.at.force[0], -force, {.relative = 1e-14}));
+    CHECK(near(shown.at.reaction[0], {0, force, 0}, {.relative = 1e-14}));
+    CHECK(near(shown.at.length[0], 0.5, {.relative = 1e-14}));
+    CHECK(near(shown.at.force[1], 100 * (0.5 - 0.2), {.relative = 1e-14}));
+    const std::vector<Reaction> reactions =
+        shown.run.multibody().reactions(shown.run.bodies(), shown.run.time());
+    CHECK(reactions.at(0).joint == "lift");
+  }
+}
+
 TEST_CASE("the line of a bushing has its load along the global axes") {
   Shown shown(R"([space]
 dimension = 3

@@ -117,6 +117,23 @@ TEST_CASE("a motor that its limit lets go within a step turns as far as the clos
   }
 }
 
+TEST_CASE("a servo that its limit lets go within a step turns as far as the closed form says") {
+  // At the limit w = 10 t until 0.05 (2 - 5 t^2) - 0.2 t = 0.05, at 0.2 s; then e = c - 2 follows
+  // J e'' + D e' + P e = 0 from e = -1.8, e' = 2: J = 0.005, P = 0.05, D = 0.02.
+  const Real end = 0.9137, s = end - 0.2, w = std::sqrt(6.0), b = (2 - 2 * 1.8) / w;
+  const Real exact = 2 + std::exp(-2 * s) * (-1.8 * std::cos(w * s) + b * std::sin(w * s));
+  Motor servo;
+  servo.name = "servo", servo.kind = MotorKind::position, servo.limit = 0.05;
+  servo.position.value = 2, servo.position_gain = 0.05, servo.rate_gain = 0.02;
+  for (const Real alpha : {0.0, -0.05, -0.3}) {
+    INFO("alpha = " << alpha);
+    Model model = wheel(alpha);
+    model.motors = {servo};
+    check_orders(model, 2, end / 317, end, exact);
+    CHECK(outcome_of(model, 2, end / 317, end).gap < 1e-12);
+  }
+}
+
 TEST_CASE("a motor that its limit holds back and lets go again and again is of second order") {
   for (const Real alpha : {0.0, -0.05, -0.3}) {
     INFO("alpha = " << alpha);

@@ -86,6 +86,27 @@ name = "effort"
 joint = "hinge"
 type = "effort"
 effort = { kind = "sine", amplitude = 6.0, frequency = 1.5 }
+[[motors]]
+name = "servo"
+joint = "hinge"
+type = "position"
+position = { kind = "sine", amplitude = 1.0, frequency = 1.0 }
+position_gain = 4.0
+rate_gain = 0.2
+limit = 1.5
+[[cylinders]]
+name = "cylinder"
+bodies = ["ground", "slider"]
+points = [[0.0, -0.7, 0.1], [0.5, 0.1, 0.0]]
+type = "speed"
+speed = { kind = "sine", amplitude = 1.0, frequency = 2.0 }
+gain = 3.0
+integral_gain = 20.0
+limit = 2.0
+min_length = 0.5
+max_length = 1.2
+stop_stiffness = 2000.0
+stop_damping = 3.0
 )";
 const std::string kSprings = R"(
 [[joint_springs]]
