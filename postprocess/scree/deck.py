@@ -59,6 +59,7 @@ class Deck(MutableMapping[str, Any]):
         self._document = tomlkit.document()
         self.name = "deck"  # in messages
         self.folder = pathlib.Path.cwd()
+        self._file: pathlib.Path | None = None  # that was read or written last
         for key, value in tables.items():
             self[key] = value
 
@@ -69,7 +70,9 @@ class Deck(MutableMapping[str, Any]):
             text = pathlib.Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ScreeError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
-        return cls.parse(text, os.fspath(path), pathlib.Path(path).resolve().parent)
+        deck = cls.parse(text, os.fspath(path), pathlib.Path(path).resolve().parent)
+        deck._file = pathlib.Path(path).resolve()
+        return deck
 
     @classmethod
     def parse(cls, text: str, name: str = "deck", folder: Path = ".") -> Deck:
@@ -162,14 +165,27 @@ class Deck(MutableMapping[str, Any]):
         return f"<{self.name}: {', '.join(self) or 'an empty deck'}>"
 
     def write(self, path: Path) -> None:
-        """Files that the deck refers to by relative paths are referred to from the new place."""
-        target, written = pathlib.Path(path), self.copy()
-        folder = target.resolve().parent
+        """Files that the deck refers to by relative paths are referred to from the new place. Messages about the deck
+        are of this file from then on."""
+        pathlib.Path(path).write_text(self._text_in(pathlib.Path(path).resolve().parent), encoding="utf-8")
+        self.name, self._file = os.fspath(path), pathlib.Path(path).resolve()
+
+    def _text_in(self, folder: pathlib.Path) -> str:
+        """As a file in this folder has it."""
+        written = self.copy()
         lists = [written[key] for key in FILES if key in written and is_list_of_tables(written[key])]
         for table in itertools.chain(*lists):
             if folder != self.folder and not os.path.isabs(table.get("file", "/")):
                 table["file"] = os.path.relpath(self.folder / table["file"], folder)
-        target.write_text(str(written), encoding="utf-8")
+        return str(written)
+
+    def _unchanged_file(self) -> pathlib.Path | None:
+        """The file that was read or written last, if it has the deck as it is now."""
+        try:
+            same = self._file is not None and self._file.read_text(encoding="utf-8") == self._text_in(self._file.parent)
+        except (OSError, UnicodeDecodeError):
+            return None
+        return self._file if same else None
 
     def problems(self) -> list[str]:
         """What the deck's keys and their values break of the JSON schema, a line each. What they mean together only
@@ -194,10 +210,13 @@ class Deck(MutableMapping[str, Any]):
         return said
 
     def _said_by(self, where: pathlib.Path) -> str:
-        """By `scree check`."""
+        """By `scree check`, of the deck's file or of one of that text."""
+        file = self._unchanged_file()
+        if file is not None:
+            return program.call([where, "check", file], {str(file): self.name})
         with tempfile.TemporaryDirectory(prefix="scree_deck_") as folder:
             path = pathlib.Path(folder).resolve() / "deck.toml"
-            self.write(path)
+            path.write_text(self._text_in(path.parent), encoding="utf-8")
             return program.call([where, "check", path], {str(path): self.name})
 
     def run(self, directory: Path, *options: str, ranks: int = 1, backend: str = "auto", quiet: bool = False,
@@ -212,7 +231,7 @@ class Deck(MutableMapping[str, Any]):
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "deck.toml"
         earlier = path.read_bytes() if path.exists() else None
-        self.write(path)
+        path.write_text(self._text_in(path.resolve().parent), encoding="utf-8")
         several = [*launcher.split(), "-n", str(ranks)] if ranks > 1 else []
         words: list[Path] = [*several, where, "run", path, "--output", folder, "--backend", backend, *options]
         try:

@@ -6,6 +6,7 @@ Needs postprocess/requirements.txt."""
 
 import os
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -173,6 +174,25 @@ class CheckTest(FolderTest):
         first, *others = str(caught.exception).splitlines()
         self.assertRegex(first, r"^box.toml:\d+:\d+: time.end = -1: must be a number above 0 \[s\]$")
         self.assertEqual(others, ["box.toml: bodies.lid.mass = -2: must be a number above 0 [kg]"])
+
+    def test_messages_are_of_the_file_that_was_written(self):
+        deck, path = scree.Deck.read(DECK), self.folder / "fast.toml"
+        deck.add("meshes", name="gone", kind="file", file="gone.stl")
+        deck["time.end"] = -1
+        deck.write(path)
+        with self.assertRaises(scree.ScreeError) as caught:
+            deck.check(PROGRAM)
+        found = re.fullmatch(rf"{path}:(\d+):(\d+): time.end = -1: must be .*", str(caught.exception).splitlines()[0])
+        line = path.read_text().splitlines()[int(found[1]) - 1]
+        self.assertEqual(line[int(found[2]) - 1 :].split()[0], "-1")
+        deck["time.end"] = 1.0
+        with self.assertRaisesRegex(scree.ScreeError, rf"^{path}:\d+:\d+: "):
+            deck.check(PROGRAM)
+        with self.assertRaisesRegex(scree.ScreeError, rf"^{path}:\d+:\d+: "):
+            deck.run(self.folder / "run", quiet=True, scree=PROGRAM)
+        deck["time.end"] = -1
+        self.assertEqual(path.read_text(), str(scree.Deck.read(path)))
+        self.assertIn(f"{path}: time.end = -1", "\n".join(f"{deck.name}: {line}" for line in deck.problems()))
 
     def test_what_the_program_tells_too_is_told_once(self):
         for path, value in ("gravity", [0, 0, "down"]), ("space", None), ("particles.block.size", None):
