@@ -48,7 +48,7 @@ LEFT = 30  # [columns] where descriptions begin in the help of CLI11
 
 
 def said(*words):
-    return subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    return subprocess.run(words, capture_output=True, encoding="utf-8", check=True).stdout
 
 
 def plain(text):

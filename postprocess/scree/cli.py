@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import pathlib
 import sys
@@ -23,6 +24,8 @@ def main(words: Sequence[str] | None = None) -> int:
         describe(described)
         described.set_defaults(run=run)
     chosen = parser.parse_args(words)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # of names that the locale's letters cannot say
     try:
         return int(chosen.run(chosen))
     except BrokenPipeError:  # whoever reads the words has seen enough

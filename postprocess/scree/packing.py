@@ -35,7 +35,8 @@ def write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> dict[str, An
                 file[name] = np.asarray(values, dtype=float)
     else:
         rows = zip(*(np.asarray(values, dtype=float).tolist() for values in columns.values()))
-        target.write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+        target.write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n",
+                          encoding="utf-8")
     return {"kind": "file", "file": os.fspath(target)}
 
 

@@ -49,10 +49,11 @@ def message(said: str) -> str:
     return "\n".join(dict.fromkeys(errors)) or "\n".join(lines[-LINES:]) or "it says nothing"
 
 
-def call(words: Sequence[str | os.PathLike[str]], names: Mapping[str, str], output: int | IO[str] | None = PIPE) -> str:
+def call(words: Sequence[str | bytes | os.PathLike[str]], names: Mapping[str, str],
+         output: int | IO[str] | None = PIPE) -> str:
     """Returns what the program prints, unless it goes elsewhere: to a file, or, None, to be seen. names: what to call
     paths in messages. Throws ScreeError with the program's message, RefusedError where it did not begin."""
-    with subprocess.Popen(words, stdout=output, stderr=PIPE, text=True, errors="replace") as process:
+    with subprocess.Popen(words, stdout=output, stderr=PIPE, encoding="utf-8", errors="replace") as process:
         try:
             printed, said = process.communicate()
         except KeyboardInterrupt:  # the program has it, too, and ends with a checkpoint

@@ -20,7 +20,7 @@ def read_record(folder: pathlib.Path) -> dict[str, Any] | None:
     """None where there is none (yet)."""
     path = folder / RECORD
     try:
-        record: dict[str, Any] = json.loads(path.read_text())
+        record: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         return record
     except FileNotFoundError:
         return None
@@ -31,7 +31,8 @@ def read_record(folder: pathlib.Path) -> dict[str, Any] | None:
 def is_going_on(folder: pathlib.Path) -> bool:
     """Whether a run holds the folder. One on another host counts as alive for as long as its lock is there."""
     try:
-        owner = dict(line.split(maxsplit=1) for line in (folder / LOCK).read_text().splitlines() if " " in line)
+        lines = (folder / LOCK).read_text(encoding="utf-8", errors="replace").splitlines()
+        owner = dict(line.split(maxsplit=1) for line in lines if " " in line)
     except FileNotFoundError:
         return False
     here = owner.get("host") in (None, socket.gethostname())

@@ -18,7 +18,8 @@ LONGEST_VALUE = 60  # in a message
 @functools.cache
 def load() -> dict[str, Any]:
     """That of the program of this package's version, draft 2020-12."""
-    found: dict[str, Any] = json.loads((importlib.resources.files("scree") / "deck.schema.json").read_text())
+    file = importlib.resources.files("scree") / "deck.schema.json"
+    found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     return found
 
 

@@ -27,6 +27,27 @@ OF_LATER = CHECKPOINTS[:2]  # checkpoints that a run goes on from
 LOG, ERROR = "log.txt", "error: "  # of a run on this machine; how its line of an error begins
 
 
+def listed(path: Path) -> str:
+    """A path as a list has it: by the bytes of its name, whatever the locale makes of them."""
+    return os.fsencode(path).decode("utf-8", "surrogateescape")
+
+
+def given(text: str) -> bytes:
+    """Words of a list, for the program, which takes UTF-8 in every locale."""
+    return text.encode("utf-8", "surrogateescape")
+
+
+def path_of(line: str) -> pathlib.Path:
+    """Of the deck of a line."""
+    return pathlib.Path(os.fsdecode(given(line.split()[0])))
+
+
+def write_lines(path: Path, lines: Sequence[str]) -> int:
+    """Returns their number."""
+    pathlib.Path(path).write_bytes(given("".join(f"{line}\n" for line in lines)))
+    return len(lines)
+
+
 def word(value: Any) -> str:
     """As `--set` takes it, without blanks, at which a line of the list is cut into words."""
     if isinstance(value, bool):
@@ -43,15 +64,15 @@ def write_list(path: Path, deck: Path | Deck, keys: Mapping[str, Sequence[Any]])
     """Writes a line "DECK --set KEY=VALUE ..." for each combination of the keys' values, the last key's changing
     fastest; returns their number. keys: as --set names them, "contact.pairs.0.friction", with the values to try. A deck
     made in Python is written beside the list, under its name with .toml."""
-    file = deck
     if isinstance(deck, Deck):
-        file = pathlib.Path(path).with_suffix(".toml")
+        file: Path = pathlib.Path(path).with_suffix(".toml")
         deck.write(file)
+    else:
+        file = deck
     combinations = list(itertools.product(*keys.values()))
-    lines = [" ".join([word(str(file)), *(f"--set {key}={word(value)}" for key, value in zip(keys, values))])
+    lines = [" ".join([word(listed(file)), *(f"--set {key}={word(value)}" for key, value in zip(keys, values))])
              for values in combinations]
-    pathlib.Path(path).write_text("".join(f"{line}\n" for line in lines))
-    return len(lines)
+    return write_lines(path, lines)
 
 
 def write_decks(path: Path, decks: Mapping[str, Deck]) -> int:
@@ -59,16 +80,16 @@ def write_decks(path: Path, decks: Mapping[str, Deck]) -> int:
     line for each; returns their number. For studies that no keys can say."""
     folder = pathlib.Path(path).with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
-    lines = [word(str(folder / f"{name}.toml")) for name in decks]
+    lines = [word(listed(folder / f"{name}.toml")) for name in decks]
     for line, deck in zip(lines, decks.values()):
-        deck.write(line)
-    pathlib.Path(path).write_text("".join(f"{line}\n" for line in lines))
-    return len(lines)
+        deck.write(path_of(line))
+    return write_lines(path, lines)
 
 
 def elements(path: Path) -> Iterator[tuple[int, str]]:
     """Numbers, from 1, and lines of the list that name a deck."""
-    for number_of_line, line in enumerate(pathlib.Path(path).read_text().splitlines(), 1):
+    text = pathlib.Path(path).read_text(encoding="utf-8", errors="surrogateescape")
+    for number_of_line, line in enumerate(text.splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
             yield number_of_line, line.strip()
 
@@ -81,8 +102,7 @@ def is_done(line: str, folder: pathlib.Path) -> bool:
     words = str(record["run"]["command_line"]).split()[2:]
     own = {k for k, each in enumerate(words) for k in (k, k + 1) if each in OWN_OPTIONS}
     kept = [each for k, each in enumerate(words) if k not in own and each != "--overwrite"]
-    deck = pathlib.Path(line.split()[0])
-    return kept == line.split() and (folder / "run_record.json").stat().st_mtime > deck.stat().st_mtime
+    return kept == line.split() and (folder / "run_record.json").stat().st_mtime > path_of(line).stat().st_mtime
 
 
 def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path) -> str:
@@ -96,7 +116,8 @@ def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path)
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / LOG, "a", encoding="utf-8") as log:
         try:
-            program.call([where, "run", *line.split(), "--output", folder, "--backend", backend, *begun], {}, log)
+            words = map(given, line.split())
+            program.call([where, "run", *words, "--output", folder, "--backend", backend, *begun], {}, log)
         except ScreeError as error:
             log.write(f"{ERROR}{error}\n")
             raise
@@ -184,7 +205,7 @@ def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]
     several = len({line.split()[0] for line in lines.values()}) > 1
     rows = {}
     for element, line in lines.items():
-        row: dict[str, Any] = {"deck": pathlib.Path(line.split()[0]).stem} if several else {}
+        row: dict[str, Any] = {"deck": path_of(line).stem} if several else {}
         row |= {key: number(value) for key, value in settings(line).items()}
         folder = pathlib.Path(results) / str(element)
         try:

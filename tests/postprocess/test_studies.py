@@ -57,6 +57,34 @@ class ListTest(FolderTest):
             with self.assertRaisesRegex(scree.ScreeError, 'study/2: measure "nothing": '):
                 scree.sweep.table(path, study, steps | {"nothing": nothing})
 
+    def test_lists_are_the_same_in_every_locale(self):
+        """Python's encoding of texts in these is ASCII, as it is Latin-1 in a Latin-1 locale."""
+        script = self.folder / "study.py"
+        script.write_text("""if True:
+            import os, pathlib, sys, warnings
+            sys.path.insert(0, sys.argv[1])
+            import pandas, scree
+            warnings.simplefilter("error", EncodingWarning)
+            deck = scree.Deck.read(os.fsdecode(os.fsencode(sys.argv[2])))
+            deck.update({"time.end": 0.002, "time.step": 1e-3, "title": "Strömung λ"})
+            path = pathlib.Path(sys.argv[3])
+            count = scree.sweep.write_list(path, deck, {"title": ["größer", "λ"], "bodies.net.mass": [1.0, -1]})
+            failed = scree.sweep.run_local(path, path.with_name("runs"), quiet=True)
+            assert sorted(failed) == [2, 4] and "above 0" in failed[2], failed
+            assert scree.sweep.run_local(path, path.with_name("runs"), quiet=True).keys() == {2, 4}
+            table = scree.sweep.table(path, path.with_name("runs"), {"rows": lambda run: run.history.rows})
+            assert list(table["title"])[2] == "λ" and table["status"][1] == "done", table
+            assert scree.open(path.with_name("runs") / "1").title == "größer"
+        """, encoding="utf-8")
+        folder = os.fsencode(self.folder) + "/größe_λ".encode()
+        os.mkdir(folder)
+        words = [os.fsencode(ROOT / "postprocess"), os.fsencode(DECK), folder + "/liste_ö.txt".encode()]
+        for options, locale in ((["-X", "utf8=0"], "C"), (["-X", "utf8=1"], "C.utf8")):
+            found = subprocess.run([sys.executable, "-X", "warn_default_encoding", *options, script, *words],
+                                   env=os.environ | {"LC_ALL": locale, "PYTHONCOERCECLOCALE": "0", "SCREE": PROGRAM},
+                                   capture_output=True, text=True, errors="replace")
+            self.assertEqual(found.returncode, 0, found.stderr)
+
     def test_words_of_a_list_have_no_blanks(self):
         self.assertEqual([scree.sweep.word(value) for value in (True, 2, [0.5, 0], "hht")],
                          ["true", "2", "[0.5,0]", "hht"])

@@ -1,6 +1,7 @@
 """What the project's style says that a program can look up. Each check takes the root of a source tree and returns its
 findings, one line of text each."""
 
+import ast
 import concurrent.futures
 import os
 import pathlib
@@ -76,6 +77,22 @@ def long_python_lines(root):
         for number, line in enumerate((root / file).read_text().splitlines(), 1):
             if len(line) > MOST_COLUMNS:
                 findings.append(f"{file}:{number}: {len(line)} columns, at most {MOST_COLUMNS}")
+    return findings
+
+
+def texts_without_encoding(root):
+    """Where Python reads or writes a text by the encoding of the locale: in Latin-1 that is not the UTF-8 of decks."""
+    findings = []
+    for file in (file for under in ("postprocess", "jobs") for file in files(root, {".py"}, under)):
+        for call in ast.walk(ast.parse((root / file).read_text(encoding="utf-8"))):
+            if not isinstance(call, ast.Call) or any(word.arg == "encoding" for word in call.keywords):
+                continue
+            name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+            opens = isinstance(call.func, ast.Name) and name == "open"
+            binary = any("b" in str(getattr(mode, "value", "")) for mode in call.args[1:2])
+            decodes = any(word.arg == "text" for word in call.keywords)
+            if name in ("read_text", "write_text") or (opens and not binary) or decodes:
+                findings.append(f"{file}:{call.lineno}: a text without encoding=")
     return findings
 
 

@@ -44,6 +44,9 @@ class Project(unittest.TestCase):
     def test_python_lines_are_short(self):
         self.assert_none(checks.long_python_lines(ROOT))
 
+    def test_texts_have_an_encoding(self):
+        self.assert_none(checks.texts_without_encoding(ROOT))
+
     def test_cpp_and_cuda_are_formatted(self):
         self.assert_none(checks.unformatted(ROOT))
 
@@ -91,6 +94,12 @@ class Checks(unittest.TestCase):
                 self.assertEqual(checks.long_files(root), [f"a.{suffix}: 401 lines, at most 400"])
         with tree(a_DOT_py="\n" + "x" * 121 + "\n") as root:
             self.assertEqual(checks.long_python_lines(root), ["a.py:2: 121 columns, at most 120"])
+
+    def test_encodings(self):
+        right = 'open("a", "rb"); open("a", encoding="utf-8"); p.read_text(encoding="utf-8"); run.open("folder")\n'
+        for wrong in ('open("a")', 'open("a", "w")', "p.read_text()", 'p.write_text("a")', "run(words, text=True)"):
+            with tree(postprocess__a_DOT_py=right + wrong, jobs__b_DOT_py=right, tests__c_DOT_py=wrong) as root:
+                self.assertEqual(checks.texts_without_encoding(root), ["postprocess/a.py:2: a text without encoding="])
 
     def test_format(self):
         style = "BasedOnStyle: Google\n"

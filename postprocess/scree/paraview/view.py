@@ -75,7 +75,7 @@ def open_series(folder, name):
     reads = (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)  # points, lines and triangles over time
     if reads and os.path.exists(data):
         source = simple.OpenDataFile(data)
-    elif os.path.exists(text) and "<Time" in open(text).read(4096):  # one without snapshots cannot be read
+    elif os.path.exists(text) and b"<Time" in open(text, "rb").read(4096):  # one without snapshots cannot be read
         source = simple.Xdmf3ReaderS(FileName=[text])
     else:
         return None
@@ -368,7 +368,7 @@ def folder_at_hand():
     name = getattr(source, "FileName", None) or getattr(source, "FileNames", None) or ""
     opened = name if isinstance(name, str) else name[0]
     for folder in (FOLDER, os.path.dirname(opened), os.getcwd()):
-        if folder and os.path.exists(os.path.join(folder, "particles.vtkhdf")):
+        if os.path.isdir(folder or "") and any(name.endswith((".vtkhdf", ".xdmf")) for name in os.listdir(folder)):
             return folder
     raise Trouble("no results to show: open a run's particles.xdmf or particles.vtkhdf first, or show a view.py that "
                   "scree-post paraview RESULT_DIR makes")
