@@ -125,6 +125,14 @@ def stages(record: dict[str, Any]) -> str:
 
 
 def pictures(run: Run, look: Look) -> str:
+    """The last state, or why there is no picture of it: the rest of the page needs none."""
+    try:
+        return last_state(run, look)
+    except ScreeError as error:
+        return f'{heading("The last state")}<p class="warning">No picture: {escaped(error)}</p>'
+
+
+def last_state(run: Run, look: Look) -> str:
     if not len(run.snapshots):
         return "<p>The run has no snapshots.</p>"
     drawn = DrawnRun(run)

@@ -115,6 +115,9 @@ class Run:
         """Of the record, and lost_start."""
         return [self.lost_start] * bool(self.lost_start) + (list(self.record["warnings"]) if self.record else [])
 
+    def _names(self, kind: str, what: str) -> list[str]:
+        return self._series[kind].names(what) if kind in self._series else []
+
     @property
     def body_names(self) -> list[str]:
         """In the order in which fields count them."""
@@ -124,12 +127,12 @@ class Run:
     @property
     def material_names(self) -> list[str]:
         """Likewise, as the field "material" of particles and surfaces."""
-        return self._series["particles"].names("materials") if self._series else []
+        return self._names("particles", "materials")
 
     @property
     def group_names(self) -> list[str]:
         """Of [[particles]], likewise, as the field "group"; its number where the deck gives none."""
-        return self._series["particles"].names("groups") if self._series else []
+        return self._names("particles", "groups")
 
     @property
     def wall_names(self) -> list[str]:
@@ -142,8 +145,7 @@ class Run:
     @property
     def link_names(self) -> list[str]:
         """Of joints and force elements, in the order in which the field "link" counts them."""
-        found = self._series.get("links")
-        return found.names("names") if found else []
+        return self._names("links", "names")
 
     def to_dataframe(self, *patterns: str) -> pandas.DataFrame:
         """The history's."""
@@ -163,6 +165,8 @@ def open_run(folder: Folder, *later: Folder, earlier: bool = True) -> Run:
     """
     folders = [pathlib.Path(path).resolve() for path in (folder, *later)]
     for path in folders:
+        if path.is_file():
+            raise ScreeError(f"{path}: is a file; a run is opened by its folder, which here is {path.parent}")
         if not path.is_dir():
             raise ScreeError(f"{path}: no such folder")
     if earlier and not later:

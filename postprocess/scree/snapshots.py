@@ -132,7 +132,7 @@ class Snapshot:
     @property
     def time(self) -> float:
         """[s]"""
-        return float(self._series["particles"].times[self.number])
+        return float(next(iter(self._series.values())).times[self.number])
 
     def _points(self, kind: str) -> Points:
         if kind not in self._series:
@@ -146,6 +146,7 @@ class Snapshot:
 
     @property
     def particles(self) -> Points:
+        """Throws ScreeError where particles.vtkhdf is not there."""
         return self._points("particles")
 
     @property
@@ -189,7 +190,7 @@ class Snapshots(Sequence[Snapshot]):
 
     def __init__(self, series: Mapping[str, Series]) -> None:
         self._series = series
-        self.times = series["particles"].times if series else np.empty(0)  # [s]
+        self.times = next(iter(series.values())).times if series else np.empty(0)  # [s], of all alike
 
     def __len__(self) -> int:
         return len(self.times)

@@ -28,7 +28,8 @@ def run(words: argparse.Namespace) -> int:
     opened = open_run(words.folder)
     if words.list:
         return plot.print_columns(opened)
-    if words.only != "pictures":
+    has_history = opened.history.rows > 0 or words.only == "history" or words.columns
+    if words.only != "pictures" and has_history:
         print(plot.save(opened, words.columns, True, words.folder / "history.png"))
     if words.only == "history":
         return 0

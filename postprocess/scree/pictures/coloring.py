@@ -70,7 +70,8 @@ def coloring(particles: Series, field: str, snapshots: Sequence[int], gravity: f
     ScreeError where there is no such field."""
     if not particles.has(field):
         raise ScreeError(f"particles have no field {field}; there are "
-                         f"{', '.join(name for name in particles.fields(0) if name != 'position')}")
+                         f"{', '.join(name for name in particles.fields(0) if name != 'position')}; the run's "
+                         "output.fields must name it, or --color another one")
     names = particles.names({"group": "groups", "material": "materials"}.get(field, ""))
     unit, _ = particles.label(field)
     words = "speed" if field == SPEED else field.replace("_", " ")

@@ -58,7 +58,8 @@ class DrawnRun:
         self.title, self.model = run.title, Model(run.deck)
         particles = run.series("particles")
         if particles is None:
-            raise ScreeError(f"{run.folder}: holds no snapshots")
+            missing = "particles.vtkhdf, which pictures need" if len(run.snapshots) else "snapshots"
+            raise ScreeError(f"{run.folder}: holds no {missing}")
         self.particles = particles
         self.bodies = run.series("bodies")
         surfaces = run.series("surfaces")
