@@ -22,6 +22,34 @@ std::size_t terminal_width() {
 }
 
 constexpr std::size_t kLongest = 1200;  // of a warning or an error [B]
+constexpr std::size_t kMostOfAKind = 10, kShownOfFirst = 120;
+constexpr std::size_t kTelling = 60;  // bytes of common words that tell one kind from others
+
+// What warnings of one kind have in common: their first words, less what stands in quotes, words with digits
+// and the place in the deck but for its table ("deck.toml:3:1: bodies.arm.mass").
+std::string common_words(const std::string& message) {
+  std::string words, word;
+  char quote = 0;
+  const auto close = [&] {
+    const bool counts = word.find_first_of("0123456789/=") == word.npos;
+    if (counts && !word.empty()) words += word.substr(0, word.find('.')) + ' ';
+    word.clear();
+  };
+  for (const char c : message) {
+    if (words.size() >= kTelling) break;
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || (c == '\'' && word.empty())) {
+      quote = c;
+    } else if (c == ' ' || c == ',') {
+      close();
+    } else {
+      word += c;
+    }
+  }
+  close();
+  return words;
+}
 
 }  // namespace
 
@@ -49,8 +77,25 @@ std::string message_line(const std::string& kind, const std::string& message) {
 }
 
 void Log::warning(const std::string& message) {
+  Kind& kind = kinds_[common_words(message)];
+  if (kind.shown == kMostOfAKind) {
+    ++kind.left_out;
+    return;
+  }
+  if (kind.shown++ == 0) kind.first = message;
   warnings_.push_back(message);
   complain("warning", message);
+}
+
+void Log::tell_left_out() {
+  for (auto& [words, kind] : kinds_) {
+    if (kind.left_out == 0) continue;
+    warnings_.push_back(std::to_string(kind.left_out) +
+                        (kind.left_out == 1 ? " more warning" : " more warnings") +
+                        " as this one: " + shortened(printable(kind.first), kShownOfFirst));
+    complain("warning", warnings_.back());
+    kind.left_out = 0;
+  }
 }
 
 void Log::error(const std::string& message) { complain("error", message); }

@@ -1,6 +1,7 @@
 // Messages to the user: warnings are kept for the run record, information goes to the terminal.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,13 @@ class Log {
   // quiet: nothing goes to the terminal (ranks other than 0, tests).
   explicit Log(bool quiet = false) : quiet_(quiet) {}
 
-  void info(const std::string& message);     // to standard output
-  void warning(const std::string& message);  // to standard error, and kept
-  void error(const std::string& message);    // to standard error
+  void info(const std::string& message);  // to standard output
+  // To standard error, and kept. Of warnings that differ in names and numbers alone only the first ten are
+  // shown and kept; tell_left_out() says how many more there were, in a warning each, and begins to count
+  // anew.
+  void warning(const std::string& message);
+  void tell_left_out();
+  void error(const std::string& message);  // to standard error
   // Rewrites the progress line in place on a terminal; elsewhere prints a line if `force`, or nothing.
   void progress(const std::string& line, bool force = false);
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -27,7 +32,12 @@ class Log {
 
   bool quiet_ = false;
   bool progress_line_open_ = false;
+  struct Kind {
+    std::size_t shown = 0, left_out = 0;
+    std::string first;  // of its warnings
+  };
   std::vector<std::string> warnings_;
+  std::map<std::string, Kind> kinds_;  // by what their warnings have in common
 };
 
 }  // namespace scree

@@ -109,6 +109,7 @@ ExitCode run(const Order& order) {
   if (petsc)
     for (const std::string& option : petsc->unused_options())
       log.warning("PETSc option " + option + " was not used");
+  log.tell_left_out();
   return code;
 }
 
@@ -119,6 +120,7 @@ std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
   ranks.on_root([&] {
     Multibody multibody(model);
     for (const std::string& warning : multibody.start_warnings()) log.warning(warning);
+    log.tell_left_out();
     const std::string& change = multibody.start_change();
     report = "solver         " + multibody.solver_description();
     if (!multibody.redundancy().empty())

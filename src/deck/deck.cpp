@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/file_kinds.hpp"
 #include "base/input_file.hpp"
 #include "deck/nesting.hpp"
 #include "deck/overrides.hpp"
@@ -68,6 +69,18 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
   }
 }
 
+namespace {
+
+// What to do with some files that are no decks; "" of others.
+std::string way_to_a_deck(const std::string& path, const std::string& kind) {
+  if (kind == "a robot (URDF)") return fmt::format(": scree-post urdf {} makes one of it", path);
+  if (kind == "an HDF5 file") return "; a run goes on with its deck and --restart CHECKPOINT";
+  if (kind.starts_with("a triangle mesh")) return ", which names meshes by meshes.file";
+  return "";
+}
+
+}  // namespace
+
 Deck load_deck(const std::string& path, const std::vector<std::string>& overrides) {
   if (std::filesystem::is_directory(path)) throw IoError("deck " + path + ": is a folder; must be a file");
   errno = 0;
@@ -76,6 +89,9 @@ Deck load_deck(const std::string& path, const std::vector<std::string>& override
   std::stringstream text;
   text << file.rdbuf();
   if (is_lfs_pointer(text.view())) throw IoError(fmt::format("deck {}: {}", path, kLfsPointerTrouble));
+  if (const std::string kind = kind_of_file(text.view().substr(0, kFileBeginning)); !kind.empty())
+    throw InputError(
+        fmt::format("deck {}: is {}; a deck is text in TOML{}", path, kind, way_to_a_deck(path, kind)));
   return parse_deck(text.str(), path, overrides);
 }
 

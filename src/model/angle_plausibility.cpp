@@ -13,16 +13,12 @@ namespace scree {
 
 namespace {
 
-constexpr std::size_t kShown = 5;
 constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
 
 class Search {
  public:
   explicit Search(const DeckTable& deck) : deck_(deck) { look(deck); }
-  std::vector<std::string> findings() && {
-    if (found_ > kShown) findings_.back() += fmt::format("; and {} more keys like this one", found_ - kShown);
-    return std::move(findings_);
-  }
+  std::vector<std::string> findings() && { return std::move(findings_); }
 
  private:
   void look(const DeckTable& table) {
@@ -39,7 +35,7 @@ class Search {
     if (!(std::abs(value) > kTurn) || !std::isfinite(value)) return;
     const bool meant =
         key.unit == "rad" || (key.unit == "rad or m" && std::floor(value) == value && is_of_angle(table));
-    if (!meant || ++found_ > kShown) return;
+    if (!meant) return;
     findings_.push_back(fmt::format(
         "{}: {}.{} = {}: {:g} rad are {:.3g} turns; angles are in radians: {:g} degrees are {:.6g}",
         given.place, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
@@ -57,7 +53,6 @@ class Search {
   }
 
   const DeckTable& deck_;
-  std::size_t found_ = 0;
   std::vector<std::string> findings_;
 };
 

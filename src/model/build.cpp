@@ -90,6 +90,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
     for (const std::string& finding : angles_in_degrees(root)) log.warning(finding);
   });
+  log.tell_left_out();
   return model;
 }
 

@@ -10,8 +10,10 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/file_kinds.hpp"
 #include "deck/suggestion.hpp"
 #include "model/hdf5_open.hpp"
+#include "model/memory.hpp"
 
 namespace scree {
 
@@ -22,17 +24,47 @@ std::vector<std::string> known_columns(int dimension) {
   return {"x", "y", "z", "vx", "vy", "vz", "radius", "mass", "inertia_factor"};
 }
 
+// Cells of a line of CSV, without the blanks around them: commas between, a cell in quotes may hold commas,
+// and two quotes for one (RFC 4180).
 std::vector<std::string> split_line(const std::string& line) {
   std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back() += line[++i];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
       cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r') {
+    } else {
       cells.back() += c;
     }
   }
+  for (std::string& cell : cells) {
+    constexpr const char* kBlanks = " \t\r";
+    cell.erase(0, std::min(cell.find_first_not_of(kBlanks), cell.size()));
+    cell.erase(cell.find_last_not_of(kBlanks) + 1);
+  }
   return cells;
 }
+
+// What separates columns in the place of commas; "" where nothing seems to.
+std::string separator_of(const std::string& cell) {
+  return cell.find(';') != cell.npos             ? "semicolons"
+         : cell.find('\t') != cell.npos          ? "tabs"
+         : cell.find_first_of(" |") == cell.npos ? ""
+         : cell.find('|') != cell.npos           ? "bars"
+                                                 : "blanks";
+}
+
+bool is_number(const std::string& cell) {
+  Real value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size();
+}
+
+std::string example_header(int dimension) { return dimension == 2 ? "x,y,radius" : "x,y,z,radius"; }
 
 bool is_positive(const std::string& column) {
   return column == "radius" || column == "mass" || column == "inertia_factor";
@@ -49,8 +81,8 @@ std::string value_trouble(const std::string& column, Real value) {
 Real parse_cell(const std::string& cell, const std::string& column) {
   Real value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  const bool is_number = error == std::errc() && end == cell.data() + cell.size();
-  const std::string trouble = is_number ? value_trouble(column, value) : "must be a number";
+  const bool read = error == std::errc() && end == cell.data() + cell.size();
+  const std::string trouble = read ? value_trouble(column, value) : "must be a number";
   if (!trouble.empty()) throw InputError(fmt::format("column {} = {}: {}", column, cell, trouble));
   return value;
 }
@@ -59,6 +91,16 @@ std::vector<std::string> parse_header(const std::vector<std::string>& cells, int
                                       const std::string& place) {
   const std::vector<std::string> known = known_columns(dimension);
   std::set<std::string> seen;
+  if (const std::string separator = separator_of(cells.front()); cells.size() == 1 && !separator.empty())
+    throw InputError(
+        fmt::format("{}: columns must be separated by commas, after a header line that names them, as {}; "
+                    "here {} stand between "
+                    "them",
+                    place, example_header(dimension), separator));
+  if (std::all_of(cells.begin(), cells.end(), is_number))
+    throw InputError(
+        fmt::format("{}: the first line that is no comment must name the columns, as {}; it has numbers",
+                    place, example_header(dimension)));
   for (const std::string& name : cells) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       throw InputError(fmt::format("{}: unknown column \"{}\"{}", place, name, suggestion(name, known)));
@@ -102,8 +144,10 @@ std::vector<std::string> look_through_csv(const std::string& path, int dimension
   header = parse_header(cells, dimension, table.place());
   for (count = 0; table.next(cells); ++count) {
     if (cells.size() == header.size()) continue;
-    throw InputError(
-        fmt::format("{}: {} values; must be {}, as the header", table.place(), cells.size(), header.size()));
+    const std::string separator = cells.size() == 1 ? separator_of(cells.front()) : "";
+    throw InputError(fmt::format("{}: {}; must be {}, as the header{}", table.place(),
+                                 counted(std::ssize(cells), "value", "values"), header.size(),
+                                 separator.empty() ? "" : fmt::format(", and {} are no commas", separator)));
   }
   return header;
 }
@@ -168,11 +212,26 @@ Handle open_file(const std::string& path) {
   throw InputError(fmt::format("{}: dataset {} must hold numbers, one per particle", path, name));
 }
 
+// Files that the program has written itself: what to do in the place of giving them as particles; "" of
+// others.
+std::string advice_of_own(hid_t file) {
+  constexpr const char* kSettled =
+      "scree.packing.settled in Python makes particle files of a run's last snapshot, with what a deck says "
+      "of them";
+  if (H5Lexists(file, "VTKHDF", H5P_DEFAULT) > 0)
+    return fmt::format("is a snapshot file (VTKHDF): {}", kSettled);
+  if (H5Aexists(file, "format") > 0 && H5Lexists(file, "reals", H5P_DEFAULT) > 0)
+    return fmt::format("is a checkpoint, which --restart goes on from: {}", kSettled);
+  return "";
+}
+
 // Lengths of the columns that the file has.
 std::map<std::string, std::int64_t> look_through_hdf5(const std::string& path, int dimension) {
   const QuietHdf5 quiet;
   const Handle file = open_file(path);
   if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
+  if (const std::string advice = advice_of_own(file.get()); !advice.empty())
+    throw InputError(path + ": " + advice);
   std::map<std::string, std::int64_t> lengths;
   for (const std::string& name : known_columns(dimension)) {
     if (H5Lexists(file.get(), name.c_str(), H5P_DEFAULT) <= 0) continue;
@@ -238,7 +297,14 @@ void check_values(const ParticleColumns& columns, std::int64_t first, const std:
 
 ParticleFile::ParticleFile(const std::string& path, int dimension)
     : path_(path), hdf5_(path.ends_with(".h5") || path.ends_with(".hdf5")) {
+  const std::string beginning = beginning_of_file(path), kind = kind_of_file(beginning);
+  hdf5_ = hdf5_ || is_hdf5(beginning);
+  if (!kind.empty() && !is_hdf5(beginning))
+    throw InputError(fmt::format("{}: is {}; must be CSV, with a header line as {}, or HDF5", path, kind,
+                                 example_header(dimension)));
   if (!hdf5_) {
+    if (beginning.find('\r') != beginning.npos && beginning.find('\n') == beginning.npos)
+      throw InputError(path + ": its lines end in a carriage return alone; they must end in a line feed");
     columns_ = look_through_csv(path, dimension, count_);
     check_names(columns_, dimension, path);
     return;

@@ -14,10 +14,11 @@ namespace scree {
 // inertia_factor where the file has them. vx and vy (and vz in 3D) come together.
 using ParticleColumns = std::map<std::string, std::vector<Real>>;
 
-// CSV: a header line with the columns' names, then one line per particle; commas between, blanks and lines
-// that start with # are skipped. HDF5 (names that end in .h5 or .hdf5): one dataset of numbers per column.
-// Throws InputError naming file, line, column and value on contents that are no such table; IoError where the
-// file cannot be read. A CSV is looked through as a whole whichever rows are wanted, HDF5 is not.
+// CSV: a header line with the columns' names, then one line per particle; commas between, cells may stand in
+// quotes, blanks around them, empty lines and lines that start with # are skipped. HDF5 (by its contents, or
+// names that end in .h5 or .hdf5): one dataset of numbers per column. Throws InputError naming file, line,
+// column and value on contents that are no such table; IoError where the file cannot be read. A CSV is looked
+// through as a whole whichever rows are wanted, HDF5 is not.
 class ParticleFile {
  public:
   ParticleFile(const std::string& path, int dimension);

@@ -304,6 +304,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));
   summarize();  // what it warns of goes into the record
+  log_.tell_left_out();
   ranks_.on_root([&] { write_record(status, code); });
   show_status(status);
   return code;

@@ -46,6 +46,56 @@ void write_hdf5(const std::string& path, const std::map<std::string, std::vector
 
 }  // namespace
 
+TEST_CASE("cells of CSV may stand in quotes, with commas and quotes in them") {
+  const Folder folder;
+  const std::string path = folder.write("q.csv", "\"x\", \"y\" ,\"radius\"\r\n\"0.1\",\"-2e-1\",0.05\r\n");
+  const ParticleColumns columns = read_particle_file(path, 2);
+  CHECK(columns.at("y") == std::vector<Real>{-0.2});
+  CHECK(columns.at("radius") == std::vector<Real>{0.05});
+  CHECK_THROWS_WITH(read_particle_file(folder.write("c.csv", "x,\"a,\"\"b\"\"\"\n"), 2),
+                    Catch::Contains("unknown column \"a,\"b\"\""));
+}
+
+TEST_CASE("tables of another kind are told what they are and what CSV is") {
+  const Folder folder;
+  const auto trouble = [&](const std::string& name, const std::string& text) {
+    try {
+      read_particle_file(folder.write(name, text), 3);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).substr(folder.file(name).size());
+    }
+    return std::string();
+  };
+  const std::string wanted =
+      "columns must be separated by commas, after a header line that names them, as x,y,z,radius; ";
+  CHECK(trouble("a.csv", "x;y;z\n0.1;0.1;0.8\n") == ":1: " + wanted + "here semicolons stand between them");
+  CHECK(trouble("b.txt", "# x y z r\n0.1 0.1 0.8 0.05\n") ==
+        ":2: " + wanted + "here blanks stand between them");
+  CHECK(trouble("c.tsv", "x\ty\tz\n1\t2\t3\n") == ":1: " + wanted + "here tabs stand between them");
+  CHECK(trouble("d.csv", "# x,y,z\n1,2,3\n") ==
+        ":2: the first line that is no comment must name the columns, as x,y,z,radius; it has numbers");
+  CHECK(trouble("e.csv", "x,y,z\n1 2 3\n") ==
+        ":2: 1 value; must be 3, as the header, and blanks are no commas");
+  CHECK(trouble("f.csv", "x,y,z\n1,2 000,3\n") == ":2: column y = 2 000: must be a number");
+  CHECK(trouble("g.xlsx", "PK\x03\x04 and more").starts_with(": is a ZIP archive, as spreadsheets are"));
+  CHECK(trouble("h.vtk", "# vtk DataFile Version 3.0\nx\nASCII\n")
+            .starts_with(": is a legacy VTK file; must be CSV"));
+  CHECK(trouble("i.csv", "x,y,z\r1,2,3\r") ==
+        ": its lines end in a carriage return alone; they must end in a line feed");
+}
+
+TEST_CASE("HDF5 is known by its contents, and files of the program's own say what to do") {
+  const Folder folder;
+  write_hdf5(folder.file("rows.dat"), {{"x", {1, 2}}, {"y", {3, 4}}});
+  CHECK(read_particle_file(folder.file("rows.dat"), 2).at("y") == std::vector<Real>{3, 4});
+  const hid_t file =
+      H5Fcreate(folder.file("particles.vtkhdf").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  H5Gclose(H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  H5Fclose(file);
+  CHECK_THROWS_WITH(read_particle_file(folder.file("particles.vtkhdf"), 3),
+                    Catch::Contains("is a snapshot file (VTKHDF): scree.packing.settled in Python makes"));
+}
+
 TEST_CASE("particles from CSV") {
   const Folder folder;
   const std::string path =

@@ -1,0 +1,40 @@
+// Warnings of one kind.
+#include "base/log.hpp"
+
+#include "support/catch.hpp"
+
+namespace scree {
+
+TEST_CASE("of warnings of one kind ten are kept, and the others counted") {
+  Log log(true);
+  for (int i = 0; i < 67; ++i)
+    log.warning("mesh \"link " + std::to_string(i) +
+                "\": its triangles are small beside the particles: near " + std::to_string(3 * i) +
+                " of them");
+  for (int i = 0; i < 11; ++i)
+    log.warning("robot.toml:" + std::to_string(i) + ":3: bodies.arm" +
+                std::string(1, static_cast<char>('a' + i)) + ".density: no material has it");
+  for (int i = 0; i < 10; ++i) log.warning("body \"" + std::to_string(i) + "\": is far away");
+  CHECK(log.warnings().size() == 30);
+  log.tell_left_out();
+  REQUIRE(log.warnings().size() == 32);
+  CHECK(log.warnings()[30] ==
+        "1 more warning as this one: robot.toml:0:3: bodies.arma.density: no material has it");
+  CHECK(log.warnings()[31].starts_with(
+      "57 more warnings as this one: mesh \"link 0\": its triangles are small"));
+  log.tell_left_out();
+  CHECK(log.warnings().size() == 32);
+  log.warning("mesh \"late\": its triangles are small beside the particles: near 2 of them");
+  log.tell_left_out();
+  CHECK(log.warnings().size() == 33);
+}
+
+TEST_CASE("warnings that differ in their words are of different kinds") {
+  Log log(true);
+  for (int i = 0; i < 8; ++i)
+    log.warning("mesh \"a\": its facets are coarse"), log.warning("mesh \"a\": its shells cross");
+  for (int i = 0; i < 8; ++i) log.warning("walls.b: its facets are coarse");
+  CHECK(log.warnings().size() == 24);
+}
+
+}  // namespace scree
