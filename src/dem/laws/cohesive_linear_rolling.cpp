@@ -1,4 +1,5 @@
 #include "dem/contact_kernels_impl.hpp"
+#include "physics/cohesion.hpp"
 
 namespace scree {
 
