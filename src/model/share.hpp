@@ -20,6 +20,7 @@ struct StartItem {
   Real radius = 0;          // [m]
   std::int64_t number = 0;  // a particle's global id; shapes count on
   int material = 0;
+  bool is_own = true;  // of this rank, and of no other one
 };
 
 class Share {
@@ -41,7 +42,7 @@ class Share {
   // The items of all ranks, on every rank.
   virtual std::vector<StartItem> everywhere(std::vector<StartItem> own) const { return own; }
   // Deals the items out, some of them to several ranks, so that any two that come within `reach` [m] of each
-  // other, across periodic sides included, meet on some rank.
+  // other, across periodic sides included, meet on the ranks that own them then.
   virtual std::vector<StartItem> near_each_other(std::vector<StartItem> own, const Space&,
                                                  Real /*reach*/) const {
     return own;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "base/rotation.hpp"
 #include "model/build_parts.hpp"
@@ -22,14 +24,19 @@ namespace scree {
 
 namespace {
 
+std::string point_text(const Space& space, Vec3 p) {
+  return space.dimension == 2 ? fmt::format("({}, {})", p.x, p.y)
+                              : fmt::format("({}, {}, {})", p.x, p.y, p.z);
+}
+
 // Numbers of items: particles by their ids, then shapes, then walls, then meshes of bodies.
 class ItemNames {
  public:
   explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.count) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       body_.insert(body_.end(), model.bodies[b].shapes.size(), static_cast<int>(b));
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
-      with_mesh_.insert(with_mesh_.end(), model.bodies[b].meshes.size(), b);
+      for (const MeshShape& shape : model.bodies[b].meshes) meshes_.emplace_back(b, shape.mesh);
+    }
   }
   // Of a shape; kGround for a particle.
   int body(std::int64_t number) const {
@@ -43,34 +50,64 @@ class ItemNames {
       return fmt::format("body \"{}\"", model_.bodies[static_cast<std::size_t>(body(number))].name);
     if (number < first_mesh())
       return fmt::format("wall \"{}\"", model_.walls[static_cast<std::size_t>(number - first_wall())].name);
-    return fmt::format("body \"{}\"",
-                       model_.bodies[with_mesh_[static_cast<std::size_t>(number - first_mesh())]].name);
+    return fmt::format("body \"{}\"", model_.bodies[meshes_[mesh_number(number)].first].name);
+  }
+  bool is_particle(std::int64_t number) const { return number < particles_; }
+  // Index into Model::meshes; -1 where the item is none.
+  int mesh(std::int64_t number) const {
+    if (number < first_wall()) return -1;
+    if (number < first_mesh()) return model_.walls[static_cast<std::size_t>(number - first_wall())].mesh;
+    return meshes_[mesh_number(number)].second;
+  }
+  // "its shape 2 (from 0)", "its mesh "tooth"": which of a body it is, where it has several; or "".
+  std::string part(std::int64_t number) const {
+    if (number < particles_) return "";
+    if (number < first_wall()) {
+      const auto first = std::ranges::find(body_, body(number)) - body_.begin();
+      const bool alone = model_.bodies[static_cast<std::size_t>(body(number))].shapes.size() == 1;
+      return alone ? "its shape" : fmt::format("its shape {} (from 0)", number - particles_ - first);
+    }
+    if (number < first_mesh()) return "";
+    return fmt::format("its mesh \"{}\"", model_.meshes[static_cast<std::size_t>(mesh(number))].name);
   }
 
  private:
+  std::size_t mesh_number(std::int64_t number) const {
+    return static_cast<std::size_t>(number - first_mesh());
+  }
+
   const Model& model_;
   std::int64_t particles_;
-  std::vector<int> body_;               // of each shape
-  std::vector<std::size_t> with_mesh_;  // bodies, of each of their meshes
+  std::vector<int> body_;                            // of each shape
+  std::vector<std::pair<std::size_t, int>> meshes_;  // of each mesh of a body: the body, and Model::meshes
 };
 
-// The largest overlap so far, over the smaller radius; of equal ones the first by number.
-struct WorstOverlap {
+constexpr Real kRoundOff = 1e-9;  // of exactly touching neighbours
+
+// The largest overlap so far, over the smaller radius; of equal ones the first by number. How many there are.
+struct Overlaps {
+  Real limit;  // the largest that is allowed
   Real ratio = 0;
   std::int64_t first = 0, second = 0;
-  void meet(Real other, std::int64_t a, std::int64_t b) {
+  std::int64_t count = 0, above_limit = 0;  // of those that are this rank's
+
+  void meet(Real other, std::int64_t a, std::int64_t b, bool is_own = true) {
     if (other > ratio || (other == ratio && ratio > 0 && std::pair(b, a) < std::pair(second, first)))
       ratio = other, first = a, second = b;
+    if (!is_own) return;
+    count += other > kRoundOff;
+    above_limit += other > limit;
   }
 };
 
 // Of all ranks.
-WorstOverlap worst_of_all(const WorstOverlap& own, const Share& share) {
+Overlaps overlaps_of_all(const Overlaps& own, const Share& share) {
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
-  WorstOverlap worst{share.max(own.ratio), 0, 0};
-  worst.second = share.min(own.ratio == worst.ratio ? own.second : kNone);
-  worst.first = share.min(own.ratio == worst.ratio && own.second == worst.second ? own.first : kNone);
-  return worst;
+  Overlaps all{own.limit, share.max(own.ratio)};
+  all.second = share.min(own.ratio == all.ratio ? own.second : kNone);
+  all.first = share.min(own.ratio == all.ratio && own.second == all.second ? own.first : kNone);
+  all.count = share.sum(own.count), all.above_limit = share.sum(own.above_limit);
+  return all;
 }
 
 // This rank's particles; the last rank has the shapes, too.
@@ -91,10 +128,7 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
 
 // name: of what starts at p, outside the space.
 std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
-  const auto text = [&](Vec3 a) {
-    return space.dimension == 2 ? fmt::format("({}, {})", a.x, a.y)
-                                : fmt::format("({}, {}, {})", a.x, a.y, a.z);
-  };
+  const auto text = [&](Vec3 a) { return point_text(space, a); };
   const Box allowed = start_box(space);
   const Vec3 below = allowed.min - p, above = p - allowed.max;
   const Real beyond[] = {below.x, above.x, below.y, above.y, below.z, above.z};
@@ -136,7 +170,7 @@ Box box_around(const std::vector<StartItem>& items) {
 
 // reach: two items farther away from each other than this do not overlap [m].
 void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items, Real reach,
-                        WorstOverlap& worst) {
+                        Overlaps& overlaps) {
   if (items.empty()) return;
   const ItemNames names(model);
   const TouchRule rule(model);
@@ -151,15 +185,15 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
         const Real touching = item.radius + other.radius;
         if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
         const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
-        if (ratio >= worst.ratio && ratio > 0 && model.contact.law(item.material, other.material).acts() &&
+        if (ratio > kRoundOff && model.contact.law(item.material, other.material).acts() &&
             rule.may_touch(names.body(item.number), names.body(other.number)))
-          worst.meet(ratio, other.number, item.number);
+          overlaps.meet(ratio, other.number, item.number, item.is_own);
       });
     }
   }
 }
 
-void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items, WorstOverlap& worst) {
+void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items, Overlaps& overlaps) {
   const std::int64_t first_wall = ItemNames(model).first_wall();
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
     const Wall& wall = model.walls[w];
@@ -167,12 +201,12 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
     for (const StartItem& item : items) {
       if (!model.contact.law(item.material, wall.material).acts()) continue;
       const Real overlap = item.radius - dot(wall.normal, item.position - wall.point);
-      worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
+      overlaps.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
   }
 }
 
-void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items, WorstOverlap& worst) {
+void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items, Overlaps& overlaps) {
   const ItemNames names(model);
   const StartMeshes meshes(model);
   const TouchRule rule(model);
@@ -182,12 +216,12 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
     for (const StartItem& item : items)
       if (rule.may_touch(names.body(item.number), mesh.body) &&
           model.contact.law(item.material, mesh.material).acts())
-        worst.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
+        overlaps.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
   }
 }
 
 // Overlaps of the corners of bodies' meshes with planes, over the meshes' effective radii.
-void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
+void find_corner_overlaps(const Model& model, Overlaps& overlaps) {
   const ItemNames names(model);
   std::int64_t number = names.first_mesh();
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -195,17 +229,53 @@ void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
       const std::int64_t of_mesh = number++;
       if (!meets_planes(model, b, shape)) continue;
       const HullCorners& hull = *model.meshes[static_cast<std::size_t>(shape.mesh)].corners;
-      for (const Vec3 corner : hull.corners) {
-        const Vec3 place =
-            in_periodic_box(model.space, to_global_point(model, static_cast<int>(b), shape.offset + corner));
-        for (std::size_t w = 0; w < model.walls.size(); ++w) {
-          const Wall& wall = model.walls[w];
-          if (wall.mesh >= 0 || !model.contact.law(shape.material, wall.material).acts()) continue;
-          worst.meet(-dot(wall.normal, place - wall.point) / hull.radius, of_mesh,
-                     names.first_wall() + static_cast<std::int64_t>(w));
+      for (std::size_t w = 0; w < model.walls.size(); ++w) {
+        const Wall& wall = model.walls[w];
+        if (wall.mesh >= 0 || !model.contact.law(shape.material, wall.material).acts()) continue;
+        Real deepest = 0;
+        for (const Vec3 corner : hull.corners) {
+          const Vec3 at = in_periodic_box(model.space,
+                                          to_global_point(model, static_cast<int>(b), shape.offset + corner));
+          deepest = std::max(deepest, -dot(wall.normal, at - wall.point));
         }
+        overlaps.meet(deepest / hull.radius, of_mesh, names.first_wall() + static_cast<std::int64_t>(w));
       }
     }
+}
+
+// Of particles and shapes the numbers given, on all ranks.
+std::vector<StartItem> items_of(const Model& model, const Share& share,
+                                std::initializer_list<std::int64_t> numbers) {
+  std::vector<StartItem> items = collect_items(model, share);
+  std::erase_if(
+      items, [&](const StartItem& item) { return std::ranges::find(numbers, item.number) == numbers.end(); });
+  return share.everywhere(std::move(items));
+}
+
+// "; particle 3: of particles.grains, at (0.1, 0.2), radius 0.05 m"; of a plane "".
+std::string item_text(const DeckTable& deck, const Model& model, const std::vector<StartItem>& items,
+                      std::int64_t number) {
+  const ItemNames names(model);
+  const auto item = std::ranges::find(items, number, &StartItem::number);
+  std::string text =
+      names.is_particle(number) ? "of " + group_of(deck, model, number).path() : names.part(number);
+  if (item != items.end())
+    text += fmt::format(" at {}, radius {:.6g} m", point_text(model.space, item->position), item->radius);
+  return text.empty() ? "" : fmt::format("; {}: {}", names.name(number), text);
+}
+
+// What is said of an item that is inside a closed mesh; else "".
+std::string inside_text(const DeckTable& deck, const Model& model, const Overlaps& overlaps) {
+  const ItemNames names(model);
+  const int mesh = names.mesh(overlaps.second);
+  // Outside at most the radius overlaps.
+  if (mesh < 0 || names.mesh(overlaps.first) >= 0 || !(overlaps.ratio > 1)) return "";
+  const DeckTable& table = deck.tables("meshes")[static_cast<std::size_t>(mesh)];
+  const std::string finding = fmt::format("; the centre of {} is inside the solid that mesh \"{}\" encloses",
+                                          names.name(overlaps.first), table.text("name"));
+  if (!table.has("file")) return finding;
+  return finding +
+         fmt::format(": sheet = true in {} makes it a container, touched from inside, too", table.path());
 }
 
 }  // namespace
@@ -233,33 +303,40 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
 }
 
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log) {
-  // Round-off of exactly touching neighbours.
-  constexpr Real kRoundOff = 1e-9;
   share.together([&] { check_particles_inside(deck, model); });
   std::vector<StartItem> items = collect_items(model, share);
   // As a run does it: a particle may start many periods outside the space.
   for (StartItem& item : items) item.position = in_periodic_box(model.space, item.position);
-  WorstOverlap own;
+  const DeckTable& contact = deck.table("contact");
+  const Real limit = contact.real("max_start_overlap");
+  Overlaps own{limit};
   find_wall_overlaps(model, items, own);
-  find_corner_overlaps(model, own);
+  if (share.rank() == 0) find_corner_overlaps(model, own);
   warn_of_meshes_across(model, log);
   find_mesh_overlaps(model, items, own);
   const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);
   share.together([&] { find_pair_overlaps(model, items, reach, own); });
-  const WorstOverlap worst = worst_of_all(own, share);
-  if (worst.ratio <= kRoundOff) return;
-  const DeckTable& contact = deck.table("contact");
+  const Overlaps all = overlaps_of_all(own, share);
+  if (all.ratio <= kRoundOff) return;
   const ItemNames names(model);
   // Elsewhere the second one is a mesh, if one is.
-  const bool on_corners = worst.first >= names.first_mesh();
+  const bool on_corners = all.first >= names.first_mesh();
   const std::string finding = fmt::format(
-      "{} and {} overlap at t = 0 by {:.6g} of the {}", names.name(worst.first), names.name(worst.second),
-      worst.ratio, on_corners ? "radius that the mesh counts with on planes" : "smaller radius");
-  const Real limit = contact.real("max_start_overlap");
-  if (worst.ratio > limit)
-    contact.fail("max_start_overlap", fmt::format("{}; allowed: at most {}", finding, limit));
-  log.warning(finding + ", the worst of all pairs");
+      "{} and {} overlap at t = 0 by {:.6g} of the {}", names.name(all.first), names.name(all.second),
+      all.ratio, on_corners ? "radius that the mesh counts with on planes" : "smaller radius");
+  const std::vector<StartItem> both = items_of(model, share, {all.first, all.second});
+  const std::string details = item_text(deck, model, both, all.first) +
+                              item_text(deck, model, both, all.second) + inside_text(deck, model, all);
+  if (all.ratio > limit)
+    contact.fail(
+        "max_start_overlap",
+        fmt::format(
+            "{}; allowed: at most {}{}{}", finding, limit,
+            all.count == 1 ? "" : fmt::format("; of {} overlaps {} are above it", all.count, all.above_limit),
+            details));
+  log.warning(finding + (all.count == 1 ? "" : fmt::format(", the largest of {} overlaps", all.count)) +
+              details);
 }
 
 }  // namespace scree

@@ -16,7 +16,7 @@ class Receivers {
       boxes_.push_back(decomposition.box(static_cast<int>(r), Subdomain(space)));
   }
 
-  // Calls visit(rank) once for each.
+  // Calls visit(rank) once for each, first for the one whose box it is in.
   template <class Visit>
   void for_each_of(Vec3 p, const Visit& visit) const {
     const int owner = decomposition_.owner(p);
@@ -63,8 +63,13 @@ std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, c
   for (std::size_t r = 1; r < next.size(); ++r)
     next[r] = next[r - 1] + static_cast<std::size_t>(counts[r - 1]);
   std::vector<StartItem> sent(next.back() + static_cast<std::size_t>(counts.back()));
-  for (const StartItem& item : own)
-    receivers.for_each_of(item.position, [&](int r) { sent[next[static_cast<std::size_t>(r)]++] = item; });
+  for (StartItem item : own) {
+    item.is_own = true;  // of the first that gets it
+    receivers.for_each_of(item.position, [&](int r) {
+      sent[next[static_cast<std::size_t>(r)]++] = item;
+      item.is_own = false;
+    });
+  }
   own = {};
   return ranks_.deal_out(std::span<const StartItem>(sent), counts);
 }

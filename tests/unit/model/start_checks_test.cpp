@@ -37,14 +37,21 @@ TEST_CASE("overlapping particles: a warning, past the limit an error") {
   CHECK(model_warnings(kDeck, {at("[[0, 0], [0.1, 0]]")}).empty());
   const std::vector<std::string> warnings = model_warnings(kDeck, {at("[[0, 0], [0.0995, 0], [0, 0.099]]")});
   REQUIRE(warnings.size() == 1);
-  CHECK(warnings[0] ==
-        "particle 0 and particle 2 overlap at t = 0 by 0.02 of the smaller radius, the worst of all pairs");
+  CHECK(
+      warnings[0] ==
+      "particle 0 and particle 2 overlap at t = 0 by 0.02 of the smaller radius, the largest of 2 overlaps; "
+      "particle 0: of particles.0 at (0, 0), radius 0.05 m; particle 2: of particles.0 at (0, 0.099), radius "
+      "0.05 m");
   const std::string message = model_error(kDeck, {at("[[0, 0], [0.09, 0]]")});
   CHECK(contains(message, "contact.max_start_overlap = 0.05"));
   CHECK(contains(
       message,
       "particle 0 and particle 1 overlap at t = 0 by 0.2 of the smaller radius; allowed: at most 0.05"));
   CHECK(model_error(kDeck, {at("[[0, 0], [0.09, 0]]"), "contact.max_start_overlap=0.3"}).empty());
+  // A row of six in contact by turns: four of five gaps, two of them too small.
+  CHECK(
+      contains(model_error(kDeck, {at("[[0, 0], [0.09, 0], [0.189, 0], [0.279, 0], [0.378, 0], [0.5, 0]]")}),
+               "allowed: at most 0.05; of 4 overlaps 2 are above it; particle 0: of particles.0 at (0, 0)"));
 }
 
 TEST_CASE("what does not interact may overlap at the start") {
@@ -104,7 +111,15 @@ position = [-0.5, -0.5]
 shapes = [{ radius = 0.05 }]
 )";
   const std::string springs = "[[spring_dampers]]\nname = \"s\"\nchain = \"row\"\n";
-  CHECK(contains(model_error(kDeck + bodies), "body \"row.0\" and body \"row.1\" overlap"));
+  const std::string touching = model_error(kDeck + bodies);
+  CHECK(contains(touching, "body \"row.0\" and body \"row.1\" overlap"));
+  CHECK(
+      contains(touching,
+               "of 2 overlaps 2 are above it; body \"row.0\": its shape at (-0.5, -0.5), radius 0.05 m; body "
+               "\"row.1\": its shape at (-0.42, -0.5)"));
+  CHECK(contains(
+      model_error(kDeck + bodies, {"bodies.row.shapes=[{radius=0.01},{radius=0.05,offset=[0,0.1]}]"}),
+      "body \"row.0\": its shape 1 (from 0) at (-0.5, -0.4), radius 0.05 m"));
   CHECK(model_error(kDeck + bodies + springs).empty());
   CHECK(contains(model_error(kDeck + bodies + springs, {"contact.connected_bodies_touch=true"}),
                  "overlap at t = 0"));
