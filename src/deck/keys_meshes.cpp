@@ -141,7 +141,9 @@ const TableKeys& mesh_keys() {
          boolean("closed").only_for(lines).otherwise("false").about(
              "Whether the last point is joined to the first, counterclockwise around what is solid."),
          boolean("sheet").only_for(files).otherwise("false").about(
-             "Whether the surface has two sides and may have free edges; else it encloses a solid."),
+             "Whether the surface has two sides and may have free edges, as a container that holds grains; "
+             "else "
+             "it encloses a solid."),
          real("coarsen", "m")
              .only_for(files)
              .above(0)

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "mesh/mesh_mass.hpp"
 #include "mesh/mesh_shells.hpp"
 #include "mesh/mesh_sides.hpp"
 #include "mesh/shell_crossings.hpp"
+#include "mesh/without_area.hpp"
 
 namespace scree {
 
@@ -76,13 +76,8 @@ class Checker {
 
  private:
   Index number(Index triangle) const { return numbers_.empty() ? triangle : numbers_[triangle]; }
-  std::array<Vec3, 3> corners(Index triangle) const {
-    const std::array<Index, 3>& t = mesh_.triangles[triangle];
-    return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-  }
-  std::string triangle_text(Index triangle) const {
-    const auto [a, b, c] = corners(triangle);
-    return fmt::format("triangle {} {} {} {}", number(triangle), text_of(a), text_of(b), text_of(c));
+  std::string text_of_triangle(Index triangle) const {
+    return triangle_text(mesh_, triangle, number(triangle));
   }
   std::string edge_text(const Side* first, const Side* last) const {
     std::string text = fmt::format("{} to {} of triangle{} {}", text_of(mesh_.vertices[first->low]),
@@ -96,23 +91,17 @@ class Checker {
   void check_numbers() {
     Places places;
     for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
-      const auto [a, b, c] = corners(i);
-      if (!is_finite(a) || !is_finite(b) || !is_finite(c)) places.add([&] { return triangle_text(i); });
+      const auto [a, b, c] = corners_of(mesh_, i);
+      if (!is_finite(a) || !is_finite(b) || !is_finite(c)) places.add([&] { return text_of_triangle(i); });
     }
     places.report("a triangle has a coordinate that is no finite number",
                   "triangles have coordinates that are no finite numbers", "all must be", troubles_);
   }
 
-  // No area: so low over its longest side that round-off alone turns its normal.
   void check_areas() {
-    constexpr Real kLeastHeight = 1e-12;
     Places places;
-    for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
-      const auto [a, b, c] = corners(i);
-      const Vec3 ab = b - a, bc = c - b, ca = a - c;
-      const Real longest2 = std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
-      if (!(norm(cross(ab, ca)) > kLeastHeight * longest2)) places.add([&] { return triangle_text(i); });
-    }
+    for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i)
+      if (!has_area(corners_of(mesh_, i))) places.add([&] { return text_of_triangle(i); });
     places.report("a triangle has no area", "triangles have no area", "each must span a plane", troubles_);
   }
 
@@ -128,7 +117,7 @@ class Checker {
     for (std::size_t i = 1; i < rows.size(); ++i) {
       if (!std::equal(rows[i].begin(), rows[i].begin() + 3, rows[i - 1].begin())) continue;
       places.add([&] {
-        return fmt::format("triangle {} and {}", number(rows[i - 1][3]), triangle_text(rows[i][3]));
+        return fmt::format("triangle {} and {}", number(rows[i - 1][3]), text_of_triangle(rows[i][3]));
       });
     }
     places.report("a triangle has the corners of another", "triangles have the corners of others",
@@ -142,7 +131,7 @@ class Checker {
       const auto text = [&] { return edge_text(first, last); };
       if (last - first == 1 && !sheet) open.add(text), free.push_back(*first);
       if (last - first > 2 && !sheet) crowded.add(text);
-      if (last - first == 2 && first[0].forward == first[1].forward) turned.add(text);
+      if (last - first == 2 && first[0].forward == first[1].forward && !sheet) turned.add(text);
     });
     open.report(
         "an edge has one triangle", "edges have one triangle",
@@ -170,13 +159,10 @@ class Checker {
   void check_shells() {
     Places inverted, inner;
     const std::vector<Index> shell = shells_of(mesh_);
-    std::set<Index> crossing;
-    for (const ShellCrossing& c : shell_crossings(mesh_, shell)) crossing.insert({c.shell[0], c.shell[1]});
-    for (const MisplacedShell& misplaced :
-         misplaced_shells(mesh_, shell, {crossing.begin(), crossing.end()})) {
+    for (const MisplacedShell& misplaced : misplaced_shells(mesh_, shell, crossing_shells(mesh_, shell))) {
       const auto text = [&] {
         const auto first = std::find(shell.begin(), shell.end(), misplaced.shell) - shell.begin();
-        return fmt::format("that of {}", triangle_text(static_cast<Index>(first)));
+        return fmt::format("that of {}", text_of_triangle(static_cast<Index>(first)));
       };
       (misplaced.volume < 0 ? inverted : inner).add(text);
     }
@@ -193,6 +179,11 @@ class Checker {
 };
 
 }  // namespace
+
+std::string triangle_text(const TriangleMesh& mesh, Index triangle, Index number) {
+  const auto [a, b, c] = corners_of(mesh, triangle);
+  return fmt::format("triangle {} {} {} {}", number, text_of(a), text_of(b), text_of(c));
+}
 
 std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
                                        const std::vector<Index>& numbers) {

@@ -85,6 +85,9 @@ class FeatureFinder {
       patches.push_back(parts_.parts[id].patch);
       outward += parts_.parts[id].normal;
     }
+    // What tells edges of two faces from others is the number of tests: where the two run against each other
+    // there are no sides either, and the first is asked twice.
+    if (edge.uses == 2 && !topology_.joins_two(edge)) tests.push_back(tests.front());
     add(edge.low, edge.high, tests, patches, outward, tests.front() < 0 ? ~tests.front() : tests.front());
   }
 

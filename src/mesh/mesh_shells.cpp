@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "mesh/box_tree.hpp"
 #include "mesh/mesh_sides.hpp"
@@ -99,7 +100,58 @@ Vec3 behind(const TriangleMesh& mesh, Index triangle, Real depth) {
   return Real(1) / 3 * (c[0] + c[1] + c[2]) - depth / norm(normal) * normal;
 }
 
+std::vector<Shell> pieces_of(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle) {
+  std::vector<Shell> shells(1 + static_cast<std::size_t>(*std::ranges::max_element(shell_of_triangle)));
+  for (Index t = 0; t < static_cast<Index>(mesh.triangles.size()); ++t)
+    shells[shell_of_triangle[t]].add(corners_of(mesh, t));
+  return shells;
+}
+
+// How deep a point under the surface of a shell may be for sure [m]; depth: at the most.
+Real depth_under(const Shell& shell, Real depth) {
+  return std::min(depth, kShareOfThickness * std::abs(shell.volume()) / shell.area());
+}
+
+// Whether the shell goes around most of the points.
+bool encloses(const Shell& shell, const std::vector<Vec3>& points) {
+  const auto inside =
+      std::ranges::count_if(points, [&](Vec3 p) { return std::abs(turns_around(p, shell)) > Real(0.5); });
+  return 2 * inside > std::ssize(points);
+}
+
 }  // namespace
+
+std::vector<Real> shell_volumes(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle) {
+  std::vector<Real> volumes;
+  for (const Shell& shell : pieces_of(mesh, shell_of_triangle)) volumes.push_back(shell.volume());
+  return volumes;
+}
+
+ShellNesting shell_nesting(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle) {
+  constexpr std::size_t kMostPoints = 5;
+  const std::vector<Shell> shells = pieces_of(mesh, shell_of_triangle);
+  const std::size_t count = shells.size();
+  ShellNesting nesting{{}, std::vector<std::vector<Index>>(count)};
+  for (const Shell& shell : shells) nesting.volume.push_back(shell.volume());
+  if (count == 1 || count > kMostShells) return nesting;
+  std::vector<std::vector<Index>> triangles(count);
+  for (Index t = 0; t < static_cast<Index>(shell_of_triangle.size()); ++t)
+    triangles[shell_of_triangle[t]].push_back(t);
+  const Real depth = kCrossingTolerance * extent_of(boxes_of(mesh));
+  const std::size_t most = std::min(kMostPoints, points_to_judge(mesh.triangles.size(), count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Real under = depth_under(shells[i], depth);
+    std::vector<Vec3> points;
+    for (const Index t : largest_of_parts(mesh, triangles[i], most))
+      points.push_back(behind(mesh, t, nesting.volume[i] < 0 ? -under : under));
+    // What is smaller and touches it from inside does not enclose it.
+    const auto size = [&](std::size_t k) { return std::pair(std::abs(nesting.volume[k]), count - k); };
+    for (std::size_t j = 0; j < count; ++j)
+      if (size(j) > size(i) && encloses(shells[j], points))
+        nesting.around[i].push_back(static_cast<Index>(j));
+  }
+  return nesting;
+}
 
 std::vector<Index> shells_of(const TriangleMesh& mesh) {
   std::vector<Index> parent(mesh.triangles.size());
@@ -128,11 +180,7 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
                                              const std::vector<Index>& crossing) {
   const Index count = 1 + *std::max_element(shell_of_triangle.begin(), shell_of_triangle.end());
   if (count == 1 || static_cast<std::size_t>(count) > kMostShells) return {};
-  std::vector<Shell> shells(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto [a, b, c] = mesh.triangles[i];
-    shells[shell_of_triangle[i]].add({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  }
+  const std::vector<Shell> shells = pieces_of(mesh, shell_of_triangle);
   const std::vector<MeshBox> boxes = boxes_of(mesh);
   std::vector<std::vector<Index>> near(shells.size());
   for (const Index t : triangles_near_others(boxes, shell_of_triangle))
@@ -147,7 +195,7 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
     const Real around =
         volume[i] < 0 ? 1 : 0;  // how often the others must go around the solid behind the shell
     if (near[i].empty() && around != 0) misplaced.insert(i);
-    const Real under = std::min(depth, kShareOfThickness * std::abs(volume[i]) / shells[i].area());
+    const Real under = depth_under(shells[i], depth);
     for (const Index t : largest_of_parts(mesh, near[i], points)) {
       Real turns = 0;
       Index smallest = i;  // of two solids that share a volume

@@ -12,6 +12,18 @@ namespace scree {
 // 0 in the order of their first triangles.
 std::vector<Index> shells_of(const TriangleMesh& mesh);
 
+// Of each shell [m^3]; below 0 where its windings look inwards. mesh: closed.
+std::vector<Real> shell_volumes(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
+
+// How the shells of a closed mesh lie in each other, whatever their windings.
+struct ShellNesting {
+  std::vector<Real> volume;                // as shell_volumes() has them
+  std::vector<std::vector<Index>> around;  // of each shell, those that enclose it; of more than 10,000 none
+};
+// Judged by points just inside each shell, so that shells may touch; of those that cut through each other by
+// most of these points.
+ShellNesting shell_nesting(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
+
 struct MisplacedShell {
   Index shell;
   Real volume;  // [m^3]

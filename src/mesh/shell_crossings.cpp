@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "mesh/box_tree.hpp"
@@ -93,6 +94,34 @@ std::vector<ShellCrossing> shell_crossings(const TriangleMesh& mesh,
   std::vector<ShellCrossing> crossings;
   for (const auto& [shells_of_two, crossing] : found) crossings.push_back(crossing);
   return crossings;
+}
+
+std::optional<OwnCrossing> own_crossing(const TriangleMesh& mesh) {
+  const std::vector<MeshBox> boxes = boxes_of(mesh);
+  const Real tolerance = kCrossingTolerance * extent_of(boxes);
+  const BoxTree tree(boxes);
+  const auto adjoin = [&](Index t, Index u) {
+    return std::ranges::any_of(mesh.triangles[t], [&](Index v) {
+      return std::ranges::find(mesh.triangles[u], v) != mesh.triangles[u].end();
+    });
+  };
+  for (Index t = 0; t < static_cast<Index>(boxes.size()); ++t) {
+    std::optional<OwnCrossing> first;
+    tree.for_each_at(boxes[t], [&](Index u) {
+      if (u <= t || (first && first->triangle[1] < u) || adjoin(t, u)) return;
+      if (const std::optional<Vec3> p = crossing_of(corners_of(mesh, t), corners_of(mesh, u), tolerance))
+        first = {{t, u}, *p};
+    });
+    if (first) return first;
+  }
+  return std::nullopt;
+}
+
+std::vector<Index> crossing_shells(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle) {
+  std::set<Index> shells;
+  for (const ShellCrossing& c : shell_crossings(mesh, shell_of_triangle))
+    shells.insert({c.shell[0], c.shell[1]});
+  return {shells.begin(), shells.end()};
 }
 
 }  // namespace scree

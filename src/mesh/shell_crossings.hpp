@@ -1,6 +1,7 @@
-// Shells of one mesh that cut through each other.
+// Shells, and other parts, of one mesh that cut through each other.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/types.hpp"
@@ -23,5 +24,15 @@ struct ShellCrossing {
 std::vector<ShellCrossing> shell_crossings(const TriangleMesh& mesh,
                                            const std::vector<Index>& shell_of_triangle);
 inline constexpr Real kCrossingTolerance = 1e-6;
+
+// The first two triangles without a common vertex that cross, be they of one shell or of two.
+struct OwnCrossing {
+  Index triangle[2];  // the lower one first
+  Vec3 position;      // as of a ShellCrossing [m]
+};
+std::optional<OwnCrossing> own_crossing(const TriangleMesh& mesh);
+
+// The shells that cut through others, increasing.
+std::vector<Index> crossing_shells(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
 
 }  // namespace scree

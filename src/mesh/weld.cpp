@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <unordered_map>
+#include <utility>
 
 namespace scree {
 
@@ -97,7 +99,13 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return result;
 }
 
-LooselyWelded welded_within(const TriangleMesh& mesh, Real tolerance) {
+NumberedMesh numbered(TriangleMesh mesh) {
+  std::vector<Index> numbers(mesh.triangles.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return {std::move(mesh), std::move(numbers)};
+}
+
+NumberedMesh welded_within(const TriangleMesh& mesh, Real tolerance) {
   TriangleMesh exact = welded(mesh);
   std::vector<Index> kept(exact.vertices.size());
   NearPoints points(exact.vertices, tolerance);
@@ -108,7 +116,7 @@ LooselyWelded welded_within(const TriangleMesh& mesh, Real tolerance) {
   const auto shrunk = [](const std::array<Index, 3>& t) {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   };
-  LooselyWelded result;
+  NumberedMesh result;
   std::vector<std::array<Index, 3>> triangles;
   for (Index i = 0; i < static_cast<Index>(exact.triangles.size()); ++i) {
     std::array<Index, 3> triangle = exact.triangles[i];

@@ -12,12 +12,15 @@ namespace scree {
 // those that no triangle uses are left out. The triangles keep their order.
 TriangleMesh welded(const TriangleMesh& mesh);
 
-// The same, also for vertices at most `tolerance` [m] apart: each joins the first of those before it, in the
-// order above, that is near enough and kept. Triangles that shrink to an edge by this are left out.
-struct LooselyWelded {
+// Triangles with the numbers that they had before some of them were left out.
+struct NumberedMesh {
   TriangleMesh mesh;
-  std::vector<Index> numbers;  // of the triangles, in the mesh given
+  std::vector<Index> numbers;  // of each triangle
 };
-LooselyWelded welded_within(const TriangleMesh& mesh, Real tolerance);
+NumberedMesh numbered(TriangleMesh mesh);
+
+// welded(), also for vertices at most `tolerance` [m] apart: each joins the first of those before it, in the
+// order above, that is near enough and kept. Triangles that shrink to an edge by this are left out.
+NumberedMesh welded_within(const TriangleMesh& mesh, Real tolerance);
 
 }  // namespace scree

@@ -60,7 +60,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
   model.gravity = root.vector("gravity");
   model.consistent_velocities = root.choice<StartVelocities>("velocities") == StartVelocities::consistent;
   build_materials(root, model, names);
-  share.together([&] { build_meshes(root, model, names); });
+  share.together([&] { build_meshes(root, model, names, log); });
   build_space(root, names, model);
   build_time(root, model);
   check_time_tables(root, model.time.end, log);

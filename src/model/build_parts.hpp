@@ -11,7 +11,7 @@
 namespace scree {
 
 void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
-void build_meshes(const DeckTable& deck, Model& model, ModelNames& names);
+void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& log);
 // After bodies and walls.
 void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls

@@ -86,6 +86,25 @@ def ball(radius, inwards=False, around=48, up=24):
     return stl([face[::-1] for face in faces] if inwards else faces, corners)
 
 
+def cup(radius, inside, around=48, up=12):
+    """Half a hollow sphere about (0.5, 0, 0), in one piece."""
+    def ring(r, j):
+        angle = math.pi / 2 * (1 + j / up)
+        return [(0.5 + r * math.sin(angle) * math.cos(2 * math.pi * i / around),
+                 r * math.sin(angle) * math.sin(2 * math.pi * i / around), r * math.cos(angle)) for i in range(around)]
+    rings = [ring(inside, j) for j in range(up - 1, -1, -1)] + [ring(radius, j) for j in range(up)]
+    corners = [c for one in rings for c in one] + [(0.5, 0.0, -inside), (0.5, 0.0, -radius)]
+    faces = []
+    for k in range(len(rings) - 1):
+        for i in range(around):
+            a, b = k * around + i, k * around + (i + 1) % around
+            faces += [(a, b + around, b), (a, a + around, b + around)]
+    last = (len(rings) - 1) * around
+    for i in range(around):
+        faces += [(len(corners) - 2, i, (i + 1) % around), (len(corners) - 1, last + (i + 1) % around, last + i)]
+    return stl(faces, corners)
+
+
 def binary_stl(count, faces):
     data = b"\0" * 80 + struct.pack("<I", count)
     for face in faces:
@@ -115,17 +134,39 @@ class MeshTest(CommandLineTest):
 class BadFileTest(MeshTest):
     BAD = [
         ("a hole", stl(FACES[:3] + FACES[4:]), "3 edges have one triangle", "of triangle"),
-        ("a flipped face", stl(FACES[:5] + [FACES[5][::-1]] + FACES[6:]), "opposite windings", "of triangles 4 and 5"),
-        ("a duplicate", stl(FACES + FACES[:1]), "has the corners of another", "triangle 0 and triangle 12"),
+        ("a fin", stl(FACES + [(0, 1, 7)]), "an edge has more than two triangles", "of triangles 0, 4 and 12",
+         "sheet = true takes it"),
+        ("one in another", stl(FACES) + stl(FACES, [tuple(0.05 + x / 2 for x in c) for c in CORNERS]),
+         "a shell lies inside another", "that of triangle 12", "sheet = true takes it"),
+        ("nothing but points", stl([(0, 0, 1)]), "no triangles"),
         ("not a number", stl(FACES).replace("vertex 0.2 0.0 0.0", "vertex nan 0.0 0.0", 1),
          "rock.stl:6: coordinate \"nan\"", "must be a finite number"),
         ("no triangles", stl([]), "triangle", "no"),
         ("2^31 faces", binary_stl(2**31, FACES), "2147483648", "triangles"),
         ("a cut file", binary_stl(12, FACES)[:-30], "12", "triangle"),
         ("a cut text", stl(FACES)[:400], "rock.stl:27: ends before a coordinate"),
-        ("inside out", stl([face[::-1] for face in FACES]), "its volume is -0.008 m^3", "inside out"),
-        ("a point for a triangle", stl(FACES + [(0, 0, 1)]), "a triangle has no area", "triangle 12"),
     ]
+    # What is put right, each with its warning (test_mesh_repair.py has more).
+    REPAIRED = [
+        ("a flipped face", stl(FACES[:5] + [FACES[5][::-1]] + FACES[6:]), "1 of its 12 triangles is turned", "triangle 5 ("),
+        ("a duplicate", stl(FACES + FACES[:1]), "1 triangle with the corners of others is left out", "triangle 12 ("),
+        ("inside out", stl([face[::-1] for face in FACES]), "all of its 12 triangles ran clockwise", "sheet = true"),
+        ("a point for a triangle", stl(FACES + [(0, 0, 1)]), "1 triangle without area is left out", "triangle 12 ("),
+    ]
+
+    def test_what_is_put_right_is_warned_of_once_and_stands_in_the_run_record(self):
+        for name, content, *words in self.REPAIRED:
+            with self.subTest(name):
+                self.write("rock.stl", content)
+                result = self.expect(DONE, "check", self.deck)
+                self.assertIn("closed; (0, 0, 0) to (0.2, 0.2, 0.2) m, area 0.24 m^2, volume 0.008 m^3", result.stdout)
+                self.run_deck(DONE, "out")
+                warnings = json.loads((self.folder / "out/run_record.json").read_text())["warnings"]
+                for texts in (result.stderr.splitlines(), warnings):
+                    texts = [text for text in texts if 'mesh "rock" (rock.stl): ' in text]
+                    self.assertEqual(len(texts), 1, texts)
+                    for word in words:
+                        self.assertIn(word, texts[0])
 
     def test_every_bad_file_is_refused_with_its_place(self):
         for name, content, *words in self.BAD:
@@ -251,7 +292,17 @@ class ReportTest(MeshTest):
         self.write("rock.stl", ball(0.2) + ball(0.195, inwards=True))
         self.report("meshes.rock.coarsen=0.001")
         message = self.expect(BAD_INPUT, "check", self.deck, "--set", "meshes.rock.coarsen=0.05").stderr
-        self.assertIn("meshes.rock.coarsen=0.05: is too large, the coarser mesh is no surface: ", message)
+        self.assertIn("meshes.rock.coarsen=0.05: is too large: it brings parts of the mesh together, which cut through each "
+                      "other, first at (", message)
+        fits = re.search(r"\); (\S+) keeps them apart", message)[1]
+        self.report(f"meshes.rock.coarsen={fits}")
+        # A shell of one piece: a tray with walls as thin; as a sheet, two layers that hang together.
+        tray = cup(0.2, 0.195)
+        self.write("rock.stl", tray)
+        for settings in ((), ("meshes.rock.sheet=true",)):
+            self.report("meshes.rock.coarsen=0.001", *settings)
+            message = self.refusal("--set", "meshes.rock.coarsen=0.05", *(w for s in settings for w in ("--set", s)))
+            self.assertIn("it brings parts of the mesh together", message)
 
     def test_warnings(self):
         for settings, text in [

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
+#include "mesh/mesh_repair.hpp"
 #include "mesh/read_mesh.hpp"
 #include "mesh/weld.hpp"
 #include "mesh_files.hpp"
@@ -108,6 +109,13 @@ class Mutator {
   std::mt19937 random_;
 };
 
+// What was put right needs no more of it.
+void check_repair(const NumberedMesh& mesh, bool sheet) {
+  if (!mesh_troubles(mesh.mesh, sheet).empty()) return;
+  if (!sheet && !(mesh_volume(mesh.mesh) > 0)) throw std::logic_error("not sound");
+  if (!repair_text(repaired(mesh, sheet), sheet).empty()) throw std::logic_error("not put right");
+}
+
 // Whether the file is read.
 bool is_read(const std::string& bytes, const std::string& name) {
   try {
@@ -118,8 +126,7 @@ bool is_read(const std::string& bytes, const std::string& name) {
       for (const Index corner : triangle)
         if (!is_finite(read.vertices.at(static_cast<std::size_t>(corner))))
           throw std::logic_error("not finite");
-    const TriangleMesh mesh = welded(read);
-    if (mesh_troubles(mesh, false).empty() && !(mesh_volume(mesh) > 0)) throw std::logic_error("not sound");
+    for (const bool sheet : {false, true}) check_repair(repaired(numbered(welded(read)), sheet).mesh, sheet);
     return true;
   } catch (const InputError& error) {
     if (!std::string(error.what()).starts_with(name + ":")) throw std::logic_error(error.what());
