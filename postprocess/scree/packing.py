@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import os
 import pathlib
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,12 +17,15 @@ from typing import Any
 import h5py
 import numpy as np
 
-from scree.errors import ScreeError
+from scree import files
+from scree.errors import ScreeError, ScreeWarning
+from scree.record import CHECKPOINTS
 from scree.run import Run
 
 Path = str | os.PathLike[str]
 Numbers = Sequence[float] | np.ndarray
 AXES = "xyz"
+SAME_TIME = 1e-12  # of a time: by which a snapshot's may differ from that of a checkpoint
 
 
 def write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
@@ -167,12 +171,37 @@ def shared(groups: Sequence[Mapping[str, Any]], key: str) -> Any:
     return value.get("value") if isinstance(value, Mapping) else value
 
 
+def of_checkpoint(run: Run, number: int) -> dict[str, np.ndarray]:
+    """Spins [rad/s] and masses [kg] of a snapshot's particles, of a checkpoint at its time; empty where there is none,
+    and without spins where particles do not rotate."""
+    names = ("angular_velocity", "mass")
+
+    def take(file: h5py.File) -> tuple[float, np.ndarray, dict[str, np.ndarray]]:
+        rows = file["real_rows/particles"]
+        return (float(file["reals/clock/time"][0]), file["integer_rows/particles/global_id"][:],
+                {name: rows[name][:] for name in names if name in rows})
+
+    snapshot = run.snapshots[number]
+    wanted = snapshot.particles["global_id"].values
+    for path in (run.folder / name for name in CHECKPOINTS):
+        if path.exists():
+            time, ids, found = files.read(path, take)
+            if abs(time - snapshot.time) <= SAME_TIME * abs(time) and np.isin(wanted, ids).all():
+                order = np.argsort(ids)
+                rows = order[np.searchsorted(ids, wanted, sorter=order)]
+                return {name: values[rows] for name, values in found.items()}
+    return {}
+
+
 def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
     """The particles of a snapshot, the last one if not said, for another deck: a file for each material and what
-    [[particles]] says of it. Places, velocities and radii go along, spins and what contacts remember do not.
+    [[particles]] says of it. Positions, velocities, spins and radii go along, what contacts remember does not: springs
+    of friction begin anew.
 
-    Masses are those of the snapshot (output.fields with "mass"), else as the run's deck has one mass or density for all
-    particles of the material. Throws ScreeError where there is neither, or no radius.
+    Spins and masses are those of the snapshot (output.fields with "angular_velocity" and "mass"), else those of a
+    checkpoint of its time, as a run leaves at its end; masses, too, those of the run's deck, where that has one mass or
+    density for all particles of the material. Warns where particles rotate and no spins are known. Throws ScreeError
+    where there are no masses, or no radius.
     """
     particles, deck = run.snapshots[number].particles, run.deck
     for name in ("radius", "velocity"):
@@ -182,6 +211,11 @@ def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
     if len(names) > 1 and "material" not in particles:
         raise ScreeError(f"{run.folder}: the snapshots have no material; output.fields must name it")
     materials = particles["material"].values if "material" in particles else np.zeros(particles.count, dtype=int)
+    more = of_checkpoint(run, number)
+    turns = any(pair.get("friction", 0) for pair in deck.get("contact", {}).get("pairs", []))
+    if turns and "angular_velocity" not in {*particles, *more}:
+        warnings.warn(f"{run.folder}: spins stay behind, as neither the snapshot nor a checkpoint of its time has "
+                      'them; output.fields must name "angular_velocity"', ScreeWarning, stacklevel=2)
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
     tables = []
     for index in np.unique(materials):
@@ -189,12 +223,19 @@ def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
         table: dict[str, Any] = {"name": f"settled_{name}"}
         if len(names) > 1:
             table["material"] = name
-        path = pathlib.Path(folder) / f"settled_{name}.h5"
-        table |= particles.to_particle_file(path, deck["space"]["dimension"], rows)
         groups = [group for group in deck.get("particles", []) if group.get("material", names[0]) == name]
         density = next((m.get("density") for m in deck.get("materials", []) if m["name"] == name), None)
         known = {key: value for key in ("mass", "density") if (value := shared(groups, key)) is not None}
-        if "mass" not in particles and not known and (density is None or any("mass" in group for group in groups)):
+        from_material = density is not None and not any("mass" in group for group in groups)
+        if "mass" in particles or known or from_material:
+            fields = {key: values for key, values in more.items() if key != "mass"}
+        elif "mass" in more:
+            fields = more
+        else:
             raise ScreeError(f"{run.folder}: the snapshots have no mass; output.fields must name it")
-        tables.append(table if "mass" in particles else table | known)
+        path = pathlib.Path(folder) / f"settled_{name}.h5"
+        table |= particles.to_particle_file(path, deck["space"]["dimension"], rows, fields)
+        if (factor := shared(groups, "inertia_factor")) is not None:
+            table["inertia_factor"] = factor
+        tables.append(table if "mass" in particles or "mass" in fields else table | known)
     return tables

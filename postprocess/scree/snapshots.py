@@ -85,15 +85,23 @@ class Points(Mapping[str, Quantity]):
         return frame
 
     def to_particle_file(self, path: str | os.PathLike[str], dimension: int = 3,
-                         rows: np.ndarray | slice = slice(None)) -> dict[str, Any]:
-        """A file of particles for another deck, CSV or by a name in .h5 HDF5: places and, where these are fields,
-        velocities, radii and masses. rows: those to take. Returns what [[particles]] says of the file."""
+                         rows: np.ndarray | slice = slice(None),
+                         more: Mapping[str, np.ndarray] | None = None) -> dict[str, Any]:
+        """A file of particles for another deck, CSV or by a name in .h5 HDF5: positions and, where these are fields,
+        velocities, spins, radii and masses. rows: those to take. more: fields that the snapshot has not. Returns what
+        [[particles]] says of the file."""
         from scree.packing import write_columns
 
-        columns = dict(zip("xyz"[:dimension], self[POSITION].values[rows].T))
-        if "velocity" in self:
-            columns |= {f"v{axis}": values for axis, values in zip("xyz"[:dimension], self["velocity"].values[rows].T)}
-        columns |= {name: self[name].values[rows] for name in ("radius", "mass") if name in self}
+        written = (POSITION, "velocity", "angular_velocity", "radius", "mass")
+        known = {name: self[name].values[rows] for name in written if name in self}
+        known |= {name: values[rows] for name, values in (more or {}).items() if name not in self}
+        columns = dict(zip("xyz"[:dimension], known[POSITION].T))
+        if "velocity" in known:
+            columns |= {f"v{axis}": values for axis, values in zip("xyz"[:dimension], known["velocity"].T)}
+        if "angular_velocity" in known:
+            spins = dict(zip(("wx", "wy", "wz"), known["angular_velocity"].T))
+            columns |= spins if dimension == 3 else {"wz": spins["wz"]}
+        columns |= {name: known[name] for name in ("radius", "mass") if name in known}
         return write_columns(path, columns)
 
     def to_pyvista(self) -> pyvista.PolyData:

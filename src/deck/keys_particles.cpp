@@ -89,7 +89,8 @@ const TableKeys& particle_keys() {
            .required()
            .about(
                "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
-               "optional vx, vy, vz [m/s], radius [m], mass [kg], inertia_factor."),
+               "optional vx, vy, vz [m/s], wx, wy, wz [rad/s] (in 2D wz), radius [m], mass [kg], "
+               "inertia_factor."),
        quantity("radius", "m", distribution_keys())
            .left_out("the file has a column radius")
            .about("Radius, or a distribution to draw it from."),
@@ -111,9 +112,9 @@ const TableKeys& particle_keys() {
        vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to a file's."),
        reals("angular_velocity", "rad/s")
            .otherwise("[]")
-           .about(
-               "Of each particle at t = 0, where particles rotate: a pair of materials has friction. Three "
-               "numbers; in 2D one, about z. Empty: zero."),
+           .about("Of each particle at t = 0, added to a file's, where particles rotate: a pair of materials "
+                  "has "
+                  "friction. Three numbers; in 2D one, about z. Empty: zero."),
        real("random_velocity", "m/s")
            .at_least(0)
            .otherwise("0.0")

@@ -56,7 +56,8 @@ class Group {
   std::vector<Real> masses(const std::vector<Real>& radius);
   std::vector<Real> masses_from_density(const std::vector<Real>& radius);
   std::vector<Vec3> velocities();
-  Vec3 angular_velocity() const;
+  Vec3 common_angular_velocity() const;
+  std::vector<Vec3> angular_velocities() const;
   std::vector<Real> inertia_factors() const;
   std::array<std::int64_t, 3> lattice_size() const;
   Vec3 lattice_origin() const;
@@ -134,10 +135,10 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   const std::size_t before = particles.position.size();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
   particles.velocity.insert(particles.velocity.end(), velocity.begin(), velocity.end());
-  const Vec3 spin = angular_velocity();
-  if (spin != Vec3{}) particles.angular_velocity.resize(before);
-  if (spin != Vec3{} || !particles.angular_velocity.empty())
-    particles.angular_velocity.resize(particles.position.size(), spin);
+  const std::vector<Vec3> spin = angular_velocities();
+  if (!spin.empty()) particles.angular_velocity.resize(before);
+  particles.angular_velocity.insert(particles.angular_velocity.end(), spin.begin(), spin.end());
+  if (!particles.angular_velocity.empty()) particles.angular_velocity.resize(particles.position.size());
   const std::vector<Real> factors = inertia_factors();
   const Real solid = solid_inertia_factor(model_.space.dimension);
   if (!factors.empty()) particles.inertia_factor.resize(before, solid);
@@ -293,8 +294,21 @@ std::vector<Vec3> Group::velocities() {
   return velocity;
 }
 
+// [rad/s], of the part; empty: zero.
+std::vector<Vec3> Group::angular_velocities() const {
+  const Vec3 common = common_angular_velocity();
+  const auto count = static_cast<std::size_t>(part_.size());
+  if (!has_column("wz")) return std::vector<Vec3>(common == Vec3{} ? 0 : count, common);
+  std::vector<Vec3> spin(count, common);
+  const bool planar = model_.space.dimension == 2;
+  for (std::size_t i = 0; i < count; ++i)
+    spin[i] += planar ? Vec3{0, 0, columns_.at("wz")[i]}
+                      : Vec3{columns_.at("wx")[i], columns_.at("wy")[i], columns_.at("wz")[i]};
+  return spin;
+}
+
 // [rad/s], of all particles of the group.
-Vec3 Group::angular_velocity() const {
+Vec3 Group::common_angular_velocity() const {
   const std::vector<Real>& given = table_.reals("angular_velocity");
   if (given.empty()) return {};
   const std::size_t axes = model_.space.dimension == 2 ? 1 : 3;

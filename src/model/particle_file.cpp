@@ -20,8 +20,8 @@ namespace scree {
 namespace {
 
 std::vector<std::string> known_columns(int dimension) {
-  if (dimension == 2) return {"x", "y", "vx", "vy", "radius", "mass", "inertia_factor"};
-  return {"x", "y", "z", "vx", "vy", "vz", "radius", "mass", "inertia_factor"};
+  if (dimension == 2) return {"x", "y", "vx", "vy", "wz", "radius", "mass", "inertia_factor"};
+  return {"x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "radius", "mass", "inertia_factor"};
 }
 
 // Cells of a line of CSV, without the blanks around them: commas between, a cell in quotes may hold commas,
@@ -274,10 +274,12 @@ void check_names(const std::vector<std::string>& names, int dimension, const std
   };
   const std::vector<std::string> axes =
       dimension == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"};
-  const bool moving = has("vx") || has("vy") || has("vz");
+  const bool moving = has("vx") || has("vy") || has("vz"),
+             spinning = dimension == 3 && (has("wx") || has("wy") || has("wz"));
   for (const std::string& axis : axes) {
     require(axis);
     if (moving) require("v" + axis);
+    if (spinning) require("w" + axis);
   }
 }
 

@@ -10,8 +10,9 @@
 
 namespace scree {
 
-// Columns by name, all of one length: x, y [m] and, in 3D, z always; vx, vy, vz [m/s], radius [m], mass [kg],
-// inertia_factor where the file has them. vx and vy (and vz in 3D) come together.
+// Columns by name, all of one length: x, y [m] and, in 3D, z always; vx, vy, vz [m/s], wx, wy, wz [rad/s] (in
+// 2D wz alone), radius [m], mass [kg], inertia_factor where the file has them. vx and vy (and vz in 3D) come
+// together, and so do wx, wy and wz.
 using ParticleColumns = std::map<std::string, std::vector<Real>>;
 
 // CSV: a header line with the columns' names, then one line per particle; commas between, cells may stand in

@@ -126,6 +126,32 @@ class PackingTest(FolderTest):
                 packing.settled(run, self.folder)
 
 
+    def test_spins_go_along(self):
+        """Of grains that roll, by fields of the snapshots or else by the checkpoint at the end, in 2D and 3D."""
+        for dimension, fields in ((2, ["radius", "velocity"]), (3, ["radius", "velocity"]),
+                                  (3, ["radius", "velocity", "angular_velocity", "mass"])):
+            deck = box(dimension, 1.0)
+            deck["gravity"] = [0.0] * (dimension - 1) + [-9.81]
+            deck["time"] = {"end": 0.02, "step": 1e-3, "control": "fixed"}
+            deck["contact.pairs"] = [{"stiffness": 1e4, "friction": 0.5}]
+            deck["output"] = {"fields": fields, "snapshot_interval": 0.01}
+            spin = [7.0] if dimension == 2 else [1.0, 2.0, 3.0]
+            deck.add("particles", name="grains", kind="row", origin=[0.2] * dimension, count=3, mass=0.1,
+                     spacing=[0.15] + [0.0] * (dimension - 1), radius=0.05, angular_velocity=spin, inertia_factor=0.3)
+            run = deck.run(self.folder / f"first_{dimension}", "--overwrite", quiet=True, scree=PROGRAM)
+            later = deck.copy()
+            later["particles"] = packing.settled(run, self.folder / "settled")
+            self.assertEqual(later["particles"][0]["inertia_factor"], 0.3)
+            later["output.fields"] = ["angular_velocity"]
+            again = later.run(self.folder / "second", "--overwrite", quiet=True, scree=PROGRAM)
+            found = again.snapshots[0].particles["angular_velocity"].values
+            np.testing.assert_array_equal(found, [[0.0, 0.0, 7.0] if dimension == 2 else spin] * 3)
+            np.testing.assert_array_equal(again.history["rotation/kinetic"][0], run.history["rotation/kinetic"][-1])
+            if "mass" not in fields:
+                with self.assertWarnsRegex(scree.ScreeWarning, "spins stay behind"):
+                    packing.settled(run, self.folder / "settled", 1)
+
+
 class ClumpTest(FolderTest):
     def test_spheres_apart_are_exact(self):
         body = clumps.clump("pair", [[0, 0, 0], [3, 0, 0]], [1, 1], density=2.0, position=[0, 0, 0])

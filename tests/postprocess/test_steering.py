@@ -36,7 +36,8 @@ class SteeringTest(unittest.TestCase):
 
     def test_pieces_are_the_run_with_the_whole_table(self):
         steer = example()
-        run, deck = steer.steer(self.folder / "pieces", steer.machine(), steer.controller(), 6, quiet=True, scree=PROGRAM)
+        run, deck = steer.steer(self.folder / "pieces", steer.machine(), steer.controller(), 6, quiet=True,
+                                scree=PROGRAM)
         self.assertEqual(len(deck["motors.motor.effort.values"]), 7)
         self.assertGreater(np.abs(deck["motors.motor.effort.values"]).max(), 1.0)
         self.assertEqual(len(run.record["starts"]), 6)

@@ -142,6 +142,25 @@ TEST_CASE("moments of inertia from a file, and of groups beside it") {
       "q.csv:2: column inertia_factor = 1.1: must be at most 1, all mass at the radius"));
 }
 
+TEST_CASE("spins from a file, and of groups beside it") {
+  const Folder folder;
+  const std::string path = folder.write("p.csv", "x,y,wz\n0.1,0.2,3\n-0.3,0.4,-4\n");
+  const std::string list = "[[particles]]\nkind = \"list\"\nmass = 1.0\nradius = 0.05\npositions = ";
+  const std::string deck = kSmallDeck + "[[contact.pairs]]\nstiffness = 1e4\nfriction = 0.5\n" + list +
+                           "[[0.6, 0.6]]\n" +
+                           "[[particles]]\nkind = \"file\"\nmass = 1.0\nradius = 0.05\nfile = \"" + path +
+                           "\"\n" + list + "[[0.8, 0.8]]\n";
+  CHECK(model_of(deck).particles.angular_velocity == std::vector<Vec3>{{}, {0, 0, 3}, {0, 0, -4}, {}});
+  CHECK(model_of(deck, {"particles.1.angular_velocity=[1.0]"}).particles.angular_velocity ==
+        std::vector<Vec3>{{}, {0, 0, 4}, {0, 0, -3}, {}});
+  const std::string h5 = folder.file("p.h5");
+  write_hdf5(h5, {{"x", {0.1}}, {"y", {0.2}}, {"z", {0.3}}, {"wx", {1}}, {"wy", {2}}, {"wz", {3}}});
+  CHECK(read_particle_file(h5, 3).at("wy") == std::vector<Real>{2});
+  CHECK(contains(
+      input_error([&] { read_particle_file(folder.write("q.csv", "x,y,z,wz\n0.1,0.2,0.3,1\n"), 3); }),
+      "column wx is missing"));
+}
+
 TEST_CASE("particles from HDF5") {
   const Folder folder;
   const std::string path = folder.file("p.h5");
