@@ -203,7 +203,11 @@ def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
     density for all particles of the material. Warns where particles rotate and no spins are known. Throws ScreeError
     where there are no masses, or no radius.
     """
+    if not len(run.snapshots):
+        raise ScreeError(f"{run.folder}: holds no snapshots")
     particles, deck = run.snapshots[number].particles, run.deck
+    if particles.count == 0:
+        raise ScreeError(f"{run.folder}: the snapshot holds no particles")
     for name in ("radius", "velocity"):
         if name not in particles:
             raise ScreeError(f"{run.folder}: the snapshots have no {name}; output.fields must name it")

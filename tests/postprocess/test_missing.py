@@ -31,6 +31,7 @@ PICTURES = {"picture": ["picture", "RUN", "--no-vtk"], "color": ["picture", "RUN
             "draw": ["draw", "RUN", "--no-vtk", "--no-animation"]}
 COMMANDS = {**PICTURES, "plot": ["plot", "RUN"], "list": ["plot", "RUN", "--list"],
             "compare": ["compare", "RUN", "WHOLE"], "paraview": ["paraview", "RUN"],
+            "settle": ["settle", "RUN", "-o", "OUT/settled"],
             "report": ["report", "RUN", "--no-vtk"],
             **{form: ["export", "RUN", "--format", form, "-o", f"OUT/{form}"]
                for form in ("csv", "vtp", "vtu", "ply", "stl")}}
@@ -105,14 +106,14 @@ class MissingTest(unittest.TestCase):
                     self.assertEqual(errors, [])
 
     def test_what_the_deck_has_not(self):
-        films = set(PICTURES)
-        for name, refused in {"flat": set(), "deep": set(), "no_particles": set(), "no_bodies": set(),
-                              "no_shapes": {"ply", "stl"}, "no_links": set(), "no_fields": films,
+        films = {*PICTURES, "settle"}
+        for name, refused in {"flat": set(), "deep": set(), "no_particles": {"settle"}, "no_bodies": set(),
+                              "no_shapes": {"ply", "stl", "settle"}, "no_links": set(), "no_fields": films,
                               "no_fields_deep": films, "radii": films, "velocities": films}.items():
             self.ends_well(self.folder / name, refused, name)
 
     def test_files_that_are_not_there(self):
-        films, forms = set(PICTURES), {"vtp", "vtu", "ply", "stl"}
+        films, forms = {*PICTURES, "settle"}, {"vtp", "vtu", "ply", "stl"}
         refused = {"particles": films, "history": {"plot"}, "snapshots": films | {"paraview"} | forms, "deck": films,
                    "results": films | {"plot", "paraview", "report", "csv"} | forms}
         for missing, files in FILES.items():

@@ -4,6 +4,8 @@
 
 Needs postprocess/requirements.txt."""
 
+import contextlib
+import io
 import os
 import pathlib
 import sys
@@ -18,6 +20,7 @@ sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
 from scree import clumps, packing
+from scree.cli import main
 
 PROGRAM = os.environ["SCREE"]
 SIEVES, PASSING = [1e-3, 2e-3, 4e-3], [0.0, 0.4, 1.0]
@@ -150,6 +153,26 @@ class PackingTest(FolderTest):
             if "mass" not in fields:
                 with self.assertWarnsRegex(scree.ScreeWarning, "spins stay behind"):
                     packing.settled(run, self.folder / "settled", 1)
+
+
+    def test_the_command(self):
+        deck = box(2, 1.0)
+        deck["gravity"] = [0.0, -9.81]
+        deck["time"] = {"end": 0.02, "step": 1e-3, "control": "fixed"}
+        deck["contact.pairs"] = [{"stiffness": 1e4, "friction": 0.5}]
+        deck.add("particles", name="grains", kind="row", origin=[0.2, 0.2], count=3, mass=0.1, spacing=[0.15, 0.0],
+                 radius=0.05, angular_velocity=[7.0])
+        deck.run(self.folder / "first", quiet=True, scree=PROGRAM)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            self.assertEqual(main(["settle", str(self.folder / "first")]), 0)
+        tables = scree.Deck.read(said.getvalue().strip())
+        self.assertEqual(tables.folder, self.folder / "first/settled")
+        self.assertEqual(tables["particles.0.file"], "settled_default.h5")
+        del deck["particles"]
+        (tables.folder / "deck.toml").write_text(f"{deck}\n{tables}", encoding="utf-8")
+        again = scree.Deck.read(tables.folder / "deck.toml").run(self.folder / "second", quiet=True, scree=PROGRAM)
+        np.testing.assert_array_equal(again.history["rotation/kinetic"][0],
+                                      scree.open(self.folder / "first").history["rotation/kinetic"][-1])
 
 
 class ClumpTest(FolderTest):

@@ -142,6 +142,11 @@ class JointTest(KindsTest):
                       "joint none (line ")
         self.one_line(lines, "the lower limit is above the upper one", "joint turned")
 
+    def test_there_is_room_for_joints_that_start_far_out(self):
+        text = link("base") + link("arm", '<sphere radius="0.1"/>') + joint("j", "base", "arm", "prismatic", more="")
+        deck, _ = self.convert(text, "--position", "j=7")
+        self.assertGreater(deck["space.max"][1], 7.1)
+
     def test_lower_as_upper_is_held_there(self):
         text = link("base") + link("arm") + link("wrist") + link("finger") + link("thumb") \
             + joint("hinge", "base", "arm", more=FIXED_LIMIT) \
@@ -216,6 +221,8 @@ class InertiaTest(KindsTest):
             + joint("j", "base", "arm")
         self.convert(text, code=2)
         self.convert(text, "--mend-inertia")
+        self.convert('<link name="base"><inertial><origin xyz="1 0 0"/></inertial></link>' + link("arm")
+                     + joint("j", "base", "arm"))
 
     def test_the_nearest(self):
         np.testing.assert_allclose(np.diag(inertia.nearest(np.diag([1, 2, 3.1]), 1.0, 0.0)), [1.05, 2.05, 3.1])

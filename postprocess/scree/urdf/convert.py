@@ -147,7 +147,8 @@ def size_of(tree: Tree, reach: float) -> float:
     far = sum(float(np.linalg.norm(joint.pose.origin)) for joint, *_ in tree.joints)
     for joint, *_ in tree.joints:
         if joint.type == "prismatic":
-            far += max([abs(end) for end in (joint.lower, joint.upper) if np.isfinite(end)], default=0.0)
+            ends = (joint.lower, joint.upper, tree.coordinates[joint.name])
+            far += max(abs(end) for end in ends if np.isfinite(end))
     return far + reach
 
 

@@ -80,7 +80,8 @@ def pose_of(element: Element) -> Pose:
 
 def read_inertia(link: Element) -> tuple[float, np.ndarray, np.ndarray]:
     inertial = link.first("inertial")
-    mass = inertial.required("mass").number("value") if inertial else 0.0
+    weight = inertial.first("mass") if inertial else None
+    mass = weight.number("value") if weight else 0.0
     if inertial is None or mass == 0:
         return 0.0, np.zeros(3), np.zeros((3, 3))
     if mass < 0:
