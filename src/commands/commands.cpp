@@ -22,6 +22,7 @@
 #include "partition/ranks.hpp"
 #include "partition/shared_model.hpp"
 #include "run/check.hpp"
+#include "run/disk_use.hpp"
 #include "run/examples.hpp"
 #include "run/scree_post.hpp"
 #include "run/signals.hpp"
@@ -58,6 +59,12 @@ Deck checked_deck(const Order& order) {
   Deck deck = load_deck(order.deck, order.overrides);
   check_output_fields(deck);
   return deck;
+}
+
+// What a checkpoint holds of the deck [B].
+std::int64_t length_of(const Deck& deck) {
+  const Deck whole = with_fitting_segments(deck);
+  return std::ssize(whole.resolved_text()) + std::ssize(whole.fingerprint());
 }
 
 // Puts the chosen values into the deck, as if it had named them.
@@ -97,6 +104,8 @@ ExitCode run(const Order& order) {
   if (is_stopped(ranks, "before the first step: there is no new checkpoint", log))
     return ExitCode::stopped_by_signal;
   warn_of_run(model, log);
+  const std::string too_much = disk_warning(model, disk_use(model, length_of(deck)), directory);
+  if (!too_much.empty()) log.warning(too_much);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", order.petsc_words); });
   const Deck whole = with_fitting_segments(deck);
@@ -143,11 +152,15 @@ ExitCode check(const Order& order) {
   Model model = build_model(deck, log, RanksShare(ranks), chosen);
   take_chosen(chosen, deck);
   warn_of_run(model, log);
+  const std::string directory = output_directory(order, deck);
+  const DiskUse disk = disk_use(model, length_of(deck));
+  if (const std::string warning = disk_warning(model, disk, directory); !warning.empty())
+    log.warning(warning);
   const ModelSize size = size_of(model);
   naming_deck(order.deck, [&] {
     naming_memory(size, ranks.size(), [&] {
       const std::string bodies = bodies_report(model, ranks, log);
-      log.info(check_report(model, chosen, ranks) + bodies);
+      log.info(check_report(model, chosen, ranks, disk_lines(model, disk, directory)) + bodies);
     });
   });
   if (!draws) return ExitCode::done;

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "mbs/petsc_session.hpp"
+#include "mbs/single_solution.hpp"
 #if SCREE_REFACTORS
 #include "mbs/petsc_klu.hpp"
 #endif
@@ -112,7 +113,11 @@ std::string petsc_version() {
 }
 
 struct PetscSolver::Impl {
-  explicit Impl(const SparsePattern& sparse_pattern) : pattern(sparse_pattern) {}
+  explicit Impl(const SparsePattern& sparse_pattern)
+      : pattern(sparse_pattern),
+        values(pattern.column.size()),
+        rhs(static_cast<std::size_t>(pattern.rows())),
+        solution(rhs.size()) {}
   ~Impl();
   void create();
   void choose_package();
@@ -174,9 +179,6 @@ void PetscSolver::Impl::create() {
   check(register_klu_refactor());
 #endif
   const PetscInt n = pattern.rows();
-  values.assign(pattern.column.size(), 0);
-  rhs.assign(static_cast<std::size_t>(n), 0);
-  solution.assign(static_cast<std::size_t>(n), 0);
   // PETSc works in these arrays; nothing is copied.
   check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(),
                                   values.data(), &matrix));
@@ -231,6 +233,7 @@ bool PetscSolver::solve(bool refactor) {
 }
 
 bool PetscSolver::Impl::solve(bool refactor) {
+  if (solver == nullptr) return solve_once(pattern, values, rhs, solution);
   // Taking and returning an array tells PETSc that its contents changed.
   Real* array = nullptr;
   if (refactor) {

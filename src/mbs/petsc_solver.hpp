@@ -16,8 +16,8 @@ namespace scree {
 // The symbolic factorization is done once.
 class PetscSolver {
  public:
-  // Without a PetscSession it can be described, and nothing else. Throws InputError on an mbs_ option that
-  // PETSc refuses.
+  // Without a PetscSession, as in a check that is to start no MPI, another library solves (Eigen's SparseLU):
+  // good for the few solutions at t = 0. Throws InputError on an mbs_ option that PETSc refuses.
   explicit PetscSolver(const SparsePattern& pattern);
   ~PetscSolver();
   PetscSolver(const PetscSolver&) = delete;

@@ -12,6 +12,7 @@
 #include "output/durable_file.hpp"
 #include "output/file_seal.hpp"
 #include "output/hdf5_file.hpp"
+#include "output/hdf5_size.hpp"
 #include "output/shared_rows.hpp"
 
 namespace scree {
@@ -25,7 +26,7 @@ constexpr int kFormatNumber = 5;
 // In the file, each kind of value has a group of its own.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";
 const std::string kRealRows = "/real_rows/", kIntegerRows = "/integer_rows/";
-constexpr std::int64_t kRowsPerChunk = 8192;
+constexpr std::int64_t kMostRowsPerChunk = 8192;  // where rows are compressed
 
 template <class Value>
 const Value& find(const std::map<std::string, Value>& values, const std::string& name,
@@ -66,9 +67,9 @@ template <class T>
 void make_room(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
                const std::map<std::string, Extent>& extents, int compression) {
   for (const auto& [name, rows] : arrays) {
-    file.create_rows<T>(group + name, {rows.width, kRowsPerChunk, true, compression},
+    file.create_rows<T>(group + name,
+                        {rows.width, kMostRowsPerChunk, true, compression, extents.at(name).all},
                         {rows.unit, rows.description});
-    file.resize_rows(group + name, extents.at(name).all);
   }
 }
 
@@ -229,6 +230,34 @@ Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks) {
     checkpoint.integer_rows = find_rows<std::int64_t>(file, kIntegerRows, ranks);
   });
   return checkpoint;
+}
+
+Real checkpoint_size(const Checkpoint& checkpoint, const std::map<std::string, std::int64_t>& rows) {
+  Hdf5Size size;
+  std::map<std::string, std::int64_t> groups;
+  const auto count_name = [&](const std::string& name) {
+    for (std::size_t end = name.rfind('/'); end != std::string::npos && end > 0;
+         end = name.rfind('/', end - 1))
+      if (++groups[name.substr(0, end)] > 1) break;
+  };
+  for (const auto& [name, values] : checkpoint.reals)
+    count_name(kReals + name), size.add_array(std::ssize(values) * static_cast<std::int64_t>(sizeof(Real)));
+  for (const auto& [name, values] : checkpoint.integers)
+    count_name(kIntegers + name),
+        size.add_array(std::ssize(values) * static_cast<std::int64_t>(sizeof(std::int64_t)));
+  for (const auto& [name, text] : checkpoint.texts)
+    count_name(kTexts + name), size.add_array(std::ssize(text));
+  const auto add_rows = [&](const std::string& group, const auto& arrays) {
+    for (const auto& [name, array] : arrays) {
+      const auto of_all = rows.find(name);
+      const std::int64_t count = of_all == rows.end() ? array.count : of_all->second;
+      count_name(group + name);
+      size.add_rows({.width = array.width, .fixed_rows = count}, sizeof(std::int64_t), count);
+    }
+  };
+  add_rows(kRealRows, checkpoint.real_rows), add_rows(kIntegerRows, checkpoint.integer_rows);
+  for (const auto& [group, names] : groups) size.add_group(names);
+  return size.bytes();
 }
 
 }  // namespace scree

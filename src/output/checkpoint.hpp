@@ -58,6 +58,9 @@ struct Checkpoint {
 // compression: 0, or deflate's level, of the rows. Collective.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks = {},
                       int compression = 0);
+// How large the file gets without compression [B]. rows: of each array of real_rows and integer_rows, those
+// of all ranks; its own count where it is not named.
+Real checkpoint_size(const Checkpoint& checkpoint, const std::map<std::string, std::int64_t>& rows);
 // Every rank reads what is the same on all of them, and has an equal part of the rows (id_range), which their
 // `copy` reads from the file. Throws IoError, on every rank, on a missing, truncated, damaged or foreign
 // file. Collective.

@@ -89,7 +89,18 @@ void Hdf5File::fail(const std::string& action) const {
   throw IoError(fmt::format("{}: cannot {}: {}", path_, action, library_reason()));
 }
 
-Hdf5File::Hdf5File(const std::string& path, Hdf5Access access)
+unsigned chunk_index_width(std::int64_t likely_chunks) {
+  constexpr std::int64_t kFewest = 4, kMost = 32;  // the library's own number is 32
+  if (likely_chunks == 0) return kMost;
+  return static_cast<unsigned>(std::clamp((likely_chunks + 1) / 2, kFewest, kMost));
+}
+
+std::int64_t even_chunk(std::int64_t rows, std::int64_t most) {
+  const std::int64_t pieces = std::max<std::int64_t>(1, (rows + most - 1) / most);
+  return std::max<std::int64_t>(1, (rows + pieces - 1) / pieces);
+}
+
+Hdf5File::Hdf5File(const std::string& path, Hdf5Access access, std::int64_t likely_chunks)
     : path_(path), writing_(access != Hdf5Access::read) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Hdf5Id plist(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -99,7 +110,7 @@ Hdf5File::Hdf5File(const std::string& path, Hdf5Access access)
                     access == Hdf5Access::create ? Hdf5Open::create
                     : writing_                   ? Hdf5Open::modify
                                                  : Hdf5Open::read,
-                    plist);
+                    plist, chunk_index_width(likely_chunks));
   if (file_ < 0) fail(access == Hdf5Access::create ? "create" : "open");
 }
 
@@ -119,12 +130,16 @@ void Hdf5File::create_rows(const std::string& name, hid_t type, const RowStorage
                            const DatasetLabel& label) {
   const int dimensions = storage.width == 1 ? 1 : 2;
   const auto width = static_cast<hsize_t>(storage.width);
-  const hsize_t shape[2] = {0, width}, limit[2] = {H5S_UNLIMITED, width};
-  const hsize_t chunk[2] = {static_cast<hsize_t>(storage.chunk_rows), width};
+  const bool grows = storage.fixed_rows < 0;
+  const auto rows = static_cast<hsize_t>(grows ? 0 : storage.fixed_rows);
+  const hsize_t shape[2] = {rows, width}, limit[2] = {grows ? H5S_UNLIMITED : rows, width};
+  const hsize_t chunk[2] = {
+      static_cast<hsize_t>(grows ? storage.chunk_rows : even_chunk(storage.fixed_rows, storage.chunk_rows)),
+      width};
   {
     Hdf5Id space(H5Screate_simple(dimensions, shape, limit), H5Sclose);
     Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_chunk(layout, dimensions, chunk);
+    if (grows || storage.compression > 0) H5Pset_chunk(layout, dimensions, chunk);
     if (storage.shared) {
       H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER);  // every row is written
       // A collective write cannot make room. Of compressed chunks without a place HDF5 1.10 takes one rank's

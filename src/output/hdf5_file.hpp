@@ -24,13 +24,22 @@ struct DatasetLabel {
   std::string unit, description;
 };
 
+// Rows in pieces of equal length, each of at most `most` of them: little room is left over in the last one.
+std::int64_t even_chunk(std::int64_t rows, std::int64_t most);
+
+// Half of the chunks that a node of a dataset's index holds: few where few chunks are expected, as every
+// dataset has a node. likely_chunks: as Hdf5File's.
+unsigned chunk_index_width(std::int64_t likely_chunks);
+
 // How a dataset of rows lies in its file.
 struct RowStorage {
   int width = 1;
-  std::int64_t chunk_rows = 1;
+  std::int64_t chunk_rows = 1;  // at most
   // For rows that SharedRows writes: they have their places in the file before they are written.
   bool shared = false;
   int compression = 0;  // 0: none; 1 to 9: deflate, of shared rows
+  // Their number where it stays as it is: they lie in one piece, or in even chunks where they are compressed.
+  std::int64_t fixed_rows = -1;
 };
 
 // The library's type for a value in memory; files hold the same type.
@@ -46,7 +55,9 @@ hid_t hdf5_type() {
 // All functions throw IoError. Names are paths from the root; missing groups are made on the way.
 class Hdf5File {
  public:
-  Hdf5File(const std::string& path, Hdf5Access access);
+  // likely_chunks: of a new file's datasets of rows at most; the library's index of chunks is sized by it,
+  // and takes more of them, too. 0: many.
+  Hdf5File(const std::string& path, Hdf5Access access, std::int64_t likely_chunks = 0);
   ~Hdf5File();  // closes; a failure goes unseen, so a writer calls close() first
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;

@@ -2,18 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "base/error.hpp"
 #include "output/durable_file.hpp"
+#include "output/hdf5_size.hpp"
 
 namespace scree {
 
 namespace {
 
-constexpr std::int64_t kRowsPerChunk = 512;
+// A run that goes on past its end adds chunks of the same length, so that these are not too short.
+std::int64_t rows_of_chunk(std::int64_t likely_rows) {
+  constexpr std::int64_t kFewest = 16, kMost = 512;
+  return likely_rows == 0 ? kMost : std::clamp(likely_rows, kFewest, kMost);
+}
+
+std::int64_t chunks_of(std::int64_t likely_rows) {
+  const std::int64_t rows = rows_of_chunk(likely_rows);
+  return (likely_rows + rows - 1) / rows;
+}
 
 std::string dataset_path(const HistoryColumn& column) {
   return column.group.empty() ? column.name : column.group + "/" + column.name;
@@ -52,9 +64,10 @@ std::string csv_rows(const std::vector<std::vector<Real>>& values) {
 }  // namespace
 
 HistoryWriter::HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv,
-                             std::int64_t keep)
+                             std::int64_t keep, std::int64_t likely_rows)
     : columns_(std::move(columns)),
-      file_(directory + "/history.h5"),
+      chunk_rows_(rows_of_chunk(likely_rows)),
+      file_(directory + "/history.h5", {}, chunks_of(likely_rows)),
       csv_path_(csv ? directory + "/history.csv" : ""),
       buffer_(columns_.size()),
       rows_(keep) {
@@ -101,7 +114,7 @@ void HistoryWriter::write_rows(Hdf5File& file, std::int64_t rows_before) const {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const std::string path = dataset_path(columns_[c]);
     if (rows_before == 0) {
-      file.create_rows<Real>(path, {1, kRowsPerChunk}, {columns_[c].unit, columns_[c].description});
+      file.create_rows<Real>(path, {1, chunk_rows_}, {columns_[c].unit, columns_[c].description});
     }
     file.append_rows(path, buffer_[c].data(), std::ssize(buffer_[c]));
   }
@@ -124,6 +137,21 @@ void HistoryWriter::rewrite_csv() const {
       values[c] = file.read_array<Real>(dataset_path(columns_[c]));
   }
   write_text_file(csv_path_, csv_header(columns_) + csv_rows(values));
+}
+
+HistorySize history_size(const std::vector<HistoryColumn>& columns, std::int64_t rows,
+                         std::int64_t likely_rows) {
+  constexpr Real kCsvValue = 15;  // the shortest form of most numbers has 5 to 20 characters, and a comma
+  Hdf5Size size(chunks_of(likely_rows));
+  std::map<std::string, std::int64_t> names;  // in each group
+  for (const HistoryColumn& column : columns) {
+    size.add_rows({1, rows_of_chunk(likely_rows)}, sizeof(Real), rows);
+    const std::string path = dataset_path(column);
+    for (std::size_t end = path.rfind('/'); end != std::string::npos; end = path.rfind('/', end - 1))
+      if (++names[path.substr(0, end)] > 1 || end == 0) break;  // a new group is a name in the one above
+  }
+  for (const auto& [group, count] : names) size.add_group(count);
+  return {size.bytes(), kCsvValue * static_cast<Real>(columns.size()) * static_cast<Real>(rows)};
 }
 
 }  // namespace scree

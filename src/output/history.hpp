@@ -24,8 +24,9 @@ class HistoryWriter {
  public:
   // keep: number of rows to keep when a restarted run continues an existing file (later ones are cut off); 0
   // starts new files and removes old ones. Throws IoError where the file holds fewer rows or other columns.
-  HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv,
-                std::int64_t keep);
+  // likely_rows: at the end, which sizes a new file; 0: not known, many.
+  HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv, std::int64_t keep,
+                std::int64_t likely_rows = 0);
   // One value per column. Throws SimulationError on another number of values.
   void append(const std::vector<Real>& row);
   void flush();  // throws IoError; the rows then stay in the buffer
@@ -37,10 +38,18 @@ class HistoryWriter {
   void rewrite_csv() const;
 
   std::vector<HistoryColumn> columns_;
+  std::int64_t chunk_rows_;
   TwinFile file_;
   std::string csv_path_;                   // empty where no CSV is wanted
   std::vector<std::vector<Real>> buffer_;  // [column][row]
   std::int64_t rows_ = 0;                  // appended in all, kept ones included
 };
+
+// The sizes of the two files with so many rows [B]. likely_rows: as the writer's.
+struct HistorySize {
+  Real hdf5 = 0, csv = 0;
+};
+HistorySize history_size(const std::vector<HistoryColumn>& columns, std::int64_t rows,
+                         std::int64_t likely_rows);
 
 }  // namespace scree

@@ -8,7 +8,6 @@ namespace scree {
 namespace {
 
 const std::string kRoot = "/VTKHDF/";
-constexpr std::int64_t kPartsPerChunk = 128;
 
 // Row k of a part holds k times the step; numbers: of these rows.
 void write_numbers(SharedRows& file, const std::string& name, std::int64_t first_row, RowPart numbers,
@@ -25,13 +24,14 @@ void write_numbers(SharedRows& file, const std::string& name, std::int64_t first
 
 }  // namespace
 
-void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of_points) {
+void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of_points,
+                  std::int64_t parts_per_chunk) {
   const std::string own = kRoot + cells.group + "/", none = kRoot + cells.nothing;
   const auto create = [&](const std::string& name, const RowStorage& storage,
                           const std::string& description) {
     file.create_rows<std::int64_t>(name, storage, {"1", description});
   };
-  const RowStorage of_parts{1, kPartsPerChunk};
+  const RowStorage of_parts{1, parts_per_chunk};
   create(own + "Connectivity", of_points, "points of each cell, counted from the part's first");
   create(own + "Offsets", of_points,
          "first connectivity id of each cell, and their number: one more row per part");

@@ -23,7 +23,8 @@ struct PartPlace {
 };
 
 // In a new file that has NumberOfPoints: the groups of all kinds of cells.
-void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of_points);
+void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of_points,
+                  std::int64_t parts_per_chunk);
 // Room for one more part, of so many points.
 void add_cells(Hdf5File& file, const SeriesCells& cells, std::int64_t points);
 // All behind a part.

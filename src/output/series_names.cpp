@@ -4,7 +4,6 @@ namespace scree {
 
 namespace {
 
-constexpr std::int64_t kStepsPerChunk = 128;
 const std::string kFieldData = "/VTKHDF/FieldData/", kSteps = "/VTKHDF/Steps/";
 const std::string kOffsets = "FieldDataOffsets/", kSizes = "FieldDataSizes/";
 
@@ -18,15 +17,15 @@ void for_each_list(const Hdf5File& file, const Visit& visit) {
 
 }  // namespace
 
-void create_names(Hdf5File& file, const SeriesNames& names) {
+void create_names(Hdf5File& file, const SeriesNames& names, std::int64_t steps_per_chunk) {
   if (names.entries.empty()) return;
   std::string lines;
   for (const std::string& entry : names.entries) lines += entry + '\n';
   file.write_text("/Scree/" + names.name, lines);
   file.write_texts(kFieldData + names.name, names.entries, {"1", "name of each, in the deck's order"});
-  file.create_rows<std::int64_t>(kSteps + kOffsets + names.name, {1, kStepsPerChunk},
+  file.create_rows<std::int64_t>(kSteps + kOffsets + names.name, {1, steps_per_chunk},
                                  {"1", "first name of each snapshot"});
-  file.create_rows<std::int64_t>(kSteps + kSizes + names.name, {2, kStepsPerChunk},
+  file.create_rows<std::int64_t>(kSteps + kSizes + names.name, {2, steps_per_chunk},
                                  {"1", "components and number of the names of each snapshot"});
 }
 

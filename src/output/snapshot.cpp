@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "output/durable_file.hpp"
+#include "output/series_size.hpp"
 
 namespace scree {
 
@@ -93,6 +94,21 @@ SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
   return options;
 }
 
+// Of the series that rank 0 writes alone.
+SeriesOptions of_surfaces(SeriesOptions options) {
+  options.ranks = {}, options.fields = {}, options.constant = {};
+  std::erase_if(options.names, [](const SeriesNames& of) { return of.name == kGroupNames; });
+  if (!options.triangles) options.triangles.emplace();
+  return options;
+}
+
+SeriesOptions of_bodies(const SeriesOptions& options) {
+  SeriesOptions own = of_surfaces(options);
+  own.triangles.reset();
+  own.constant = {"body", "kind", "radius"};
+  return own;
+}
+
 SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
   options.names = {{kBodyNames, lines.links}}, options.lines = true, options.constant.clear();
   return options;
@@ -127,15 +143,9 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
       shows_links_(!lines.links.empty()),
       snapshots_(options.keep) {
   ranks_.on_root([&] {
-    SeriesOptions alone = options;
-    alone.ranks = {}, alone.fields = {}, alone.constant = {};
-    std::erase_if(alone.names, [](const SeriesNames& of) { return of.name == kGroupNames; });
-    alone.triangles = options.triangles.value_or(SeriesTriangles{});
-    surfaces_.emplace(directory, "surfaces", alone);
-    alone.triangles.reset();
-    alone.constant = {"body", "kind", "radius"};
-    bodies_.emplace(directory, "bodies", alone);
-    links_.emplace(directory, "links", of_links(alone, lines));
+    surfaces_.emplace(directory, "surfaces", of_surfaces(options));
+    bodies_.emplace(directory, "bodies", of_bodies(options));
+    links_.emplace(directory, "links", of_links(of_bodies(options), lines));
   });
   if (particles_.snapshots() != snapshots_)
     throw IoError(particles_.path() + ": missing, the restarted run needs it");
@@ -175,6 +185,31 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
 void SnapshotWriter::finish() {
   particles_.finish(), contacts_.finish();
   ranks_.on_root([&] { bodies_->finish(), surfaces_->finish(), links_->finish(); });
+}
+
+SnapshotsSize snapshots_size(const SeriesOptions& options, const WantedLines& lines,
+                             const ParticleSnapshot& particles, const BodySnapshot& bodies,
+                             const SurfaceSnapshot& surfaces, const LineSnapshot& contacts,
+                             const LineSnapshot& links, const SnapshotCounts& counts,
+                             std::int64_t snapshots) {
+  SnapshotsSize all;
+  const auto add = [&](const char* name, const SeriesOptions& of_series, PointSnapshot like,
+                       std::int64_t points, std::int64_t parts) {
+    like.points = points;
+    const SeriesSize size = series_size(name, of_series, like, snapshots, parts);
+    all.data += size.data, all.xdmf += size.xdmf;
+  };
+  add("particles", with_global_id(options), particle_points(0, particles, {}), counts.particles, 1);
+  if (lines.contacts)  // their number is another one at each
+    add("contacts", of_contacts(options, lines), line_points(0, contacts, {}), 2 * counts.contacts,
+        snapshots);
+  if (counts.body_points > 0)
+    add("bodies", of_bodies(options), body_points(0, bodies), counts.body_points, 1);
+  if (counts.surface_points > 0)
+    add("surfaces", of_surfaces(options), surface_points(0, surfaces), counts.surface_points, 1);
+  if (!lines.links.empty())
+    add("links", of_links(of_bodies(options), lines), line_points(0, links, {}), 2 * counts.links, 1);
+  return all;
 }
 
 }  // namespace scree

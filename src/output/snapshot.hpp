@@ -68,6 +68,20 @@ struct WantedLines {
   std::vector<std::string> links = {};  // names of the links; on rank 0, where there are some
 };
 
+// The sizes of all files of a SnapshotWriter with so many snapshots [B]; of these the one in which there is
+// as much of everything as in these views, of which the numbers count and not the values, and as in `counts`.
+// In compressed files: before compression.
+struct SnapshotCounts {
+  std::int64_t particles = 0, body_points = 0, surface_points = 0, contacts = 0, links = 0;
+};
+struct SnapshotsSize {
+  Real data = 0, xdmf = 0;  // HDF5, and the texts that refer to it
+};
+SnapshotsSize snapshots_size(const SeriesOptions& options, const WantedLines& lines,
+                             const ParticleSnapshot& particles, const BodySnapshot& bodies,
+                             const SurfaceSnapshot& surfaces, const LineSnapshot& contacts,
+                             const LineSnapshot& links, const SnapshotCounts& counts, std::int64_t snapshots);
+
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
 // bodies.xdmf, surfaces.vtkhdf + surfaces.xdmf where there are meshes, and contacts and links likewise where
 // they are wanted. The files are complete, closed and on disk after every append, and readable at every

@@ -13,8 +13,12 @@ namespace scree {
 
 namespace fs = std::filesystem;
 
-TwinFile::TwinFile(const std::string& path, const Ranks& ranks)
-    : ranks_(ranks), path_(path), spare_(path + ".spare"), old_(path + ".old") {
+TwinFile::TwinFile(const std::string& path, const Ranks& ranks, std::int64_t likely_chunks)
+    : ranks_(ranks),
+      path_(path),
+      spare_(path + ".spare"),
+      old_(path + ".old"),
+      likely_chunks_(likely_chunks) {
   drop_spare();
 }
 
@@ -49,7 +53,7 @@ void TwinFile::change_spare(const Change& change, Hdf5Access access) {
   const bool together = kParallelHdf5 && !ranks_.alone();
   std::optional<Hdf5File> file;
   ranks_.on_root([&] {
-    file.emplace(spare_, access);
+    file.emplace(spare_, access, likely_chunks_);
     if (change.layout) change.layout(*file);
     if (together) file->close();
   });

@@ -23,7 +23,8 @@ namespace scree {
 class TwinFile {
  public:
   // Removes what a killed run may have left beside PATH (PATH.spare, PATH.old). PATH itself is not touched.
-  explicit TwinFile(const std::string& path, const Ranks& ranks = {});
+  // likely_chunks: of a new file, as Hdf5File's.
+  explicit TwinFile(const std::string& path, const Ranks& ranks = {}, std::int64_t likely_chunks = 0);
   ~TwinFile();  // removes the copy; not collective
   TwinFile(const TwinFile&) = delete;
   TwinFile& operator=(const TwinFile&) = delete;
@@ -55,6 +56,7 @@ class TwinFile {
 
   Ranks ranks_;
   std::string path_, spare_, old_;
+  std::int64_t likely_chunks_;
   bool has_spare_ = false;  // spare_ has the same content as path_, but for what follow() is about to do
 };
 

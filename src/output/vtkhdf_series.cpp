@@ -22,11 +22,7 @@ const std::string kCellData = "/VTKHDF/CellData/";
 const std::string kPointDataOffsets = "/VTKHDF/Steps/PointDataOffsets/";
 const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
 const std::string kConstantOffsets = kSteps + "ConstantOffsets";
-constexpr std::int64_t kStepsPerChunk = 128;
 constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
-
-// Large enough to be written at the disk's speed, small enough not to bloat the file of a small run.
-std::int64_t points_per_chunk(std::int64_t points) { return std::clamp<std::int64_t>(points, 128, 65536); }
 
 void create_field(Hdf5File& file, const std::string& name, const PointField& field, RowStorage storage) {
   storage.width = field.width;
@@ -40,10 +36,10 @@ void write_field(SharedRows& file, const std::string& name, const PointField& fi
 }
 
 // The connectivity ids of cells of one point have the cells' numbers; of triangles both are 0.
-void create_steps(Hdf5File& file, bool shared_ids) {
+void create_steps(Hdf5File& file, bool shared_ids, std::int64_t chunk) {
   const auto create = [&]<class T>(T, const std::string& name, int width, const std::string& unit,
                                    const std::string& description) {
-    file.create_rows<T>(kSteps + name, {width, kStepsPerChunk}, {unit, description});
+    file.create_rows<T>(kSteps + name, {width, chunk}, {unit, description});
   };
   create(Real{}, "Values", 1, "s", "time of each snapshot");
   create(std::int64_t{}, "PartOffsets", 1, "1", "part that holds the cells of each snapshot");
@@ -69,12 +65,26 @@ void cut_triangles(Hdf5File& file, const SeriesTriangles& triangles, std::int64_
 
 }  // namespace
 
+// A run that goes on past its end adds chunks of the same length, so that these are not too short.
+std::int64_t steps_per_chunk(const SeriesOptions& options) {
+  constexpr std::int64_t kFewest = 16, kMost = 128;
+  return options.likely_snapshots == 0 ? kMost : std::clamp(options.likely_snapshots, kFewest, kMost);
+}
+
+std::int64_t points_per_chunk(std::int64_t points, const SeriesOptions& options) {
+  constexpr std::int64_t kFewest = 128, kMost = 65536, kMostLikely = 8192;
+  const std::int64_t often = std::max(points, std::min(options.likely_points, kMostLikely));
+  if (often >= kFewest) return even_chunk(often, kMost);
+  if (options.likely_snapshots == 0) return kFewest;
+  return std::clamp<std::int64_t>(often * options.likely_snapshots, 16, kFewest);
+}
+
 VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name,
                            const SeriesOptions& options)
     : name_(name),
       xdmf_path_(directory + "/" + name + ".xdmf"),
       options_(options),
-      file_(directory + "/" + name + ".vtkhdf", options.ranks) {
+      file_(directory + "/" + name + ".vtkhdf", options.ranks, options.likely_snapshots) {
   const int keep = options.keep;
   if (keep == 0 || !file_.exists()) {
     file_.remove();
@@ -184,17 +194,17 @@ void VtkHdfSeries::cut_points(Hdf5File& file) const {
 }
 
 void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
-  const RowStorage storage{1, points_per_chunk(std::max(first.points, options_.likely_points)), true,
-                           options_.compression};
+  const std::int64_t steps = steps_per_chunk(options_);
+  const RowStorage storage{1, points_per_chunk(first.points, options_), true, options_.compression};
   file.create_group(kSteps);
   file.write_integer_attribute("/VTKHDF", "Version", {2, 0});
   file.write_text_attribute("/VTKHDF", "Type", "PolyData");
-  create_steps(file, !options_.lines);
-  file.create_rows<std::int64_t>(kRoot + "NumberOfPoints", {1, kStepsPerChunk}, {"1", "points of each part"});
+  create_steps(file, !options_.lines, steps);
+  file.create_rows<std::int64_t>(kRoot + "NumberOfPoints", {1, steps}, {"1", "points of each part"});
   if (options_.triangles)
     create_triangles(file, *options_.triangles);
   else
-    create_cells(file, cells(), storage);
+    create_cells(file, cells(), storage, steps);
   RowStorage vectors = storage;
   vectors.width = 3;
   file.create_rows<Real>(kRoot + "Points", vectors, {"m", "position"});
@@ -203,17 +213,18 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
   file.write_text_attribute("/Scree", "commit", commit());
-  for (const SeriesNames& names : options_.names) create_names(file, names);
+  for (const SeriesNames& names : options_.names) create_names(file, names, steps);
 }
 
 void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const {
-  if (options_.triangles) storage.chunk_rows = points_per_chunk(options_.triangles->count());
+  const std::int64_t steps = steps_per_chunk(options_);
+  if (options_.triangles) storage.chunk_rows = points_per_chunk(options_.triangles->count(), options_);
   if (has_cell_fields())
-    file.create_rows<std::int64_t>(field_offsets(), {1, kStepsPerChunk},
+    file.create_rows<std::int64_t>(field_offsets(), {1, steps},
                                    {"1", "first row of each snapshot in the fields of its cells"});
   if (!options_.constant.empty())
     file.create_rows<std::int64_t>(
-        kConstantOffsets, {1, kStepsPerChunk},
+        kConstantOffsets, {1, steps},
         {"1", "first row of each snapshot in the fields that never change of a point"});
   for (const PointField& field : first.fields) {
     create_field(file, field_group() + field.name, field, storage);

@@ -81,8 +81,15 @@ struct SeriesOptions {
   std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
   bool lines = false;                             // between each two points; every rank has whole ones
   std::int64_t likely_points = 0;                 // of a snapshot, where the first one may have few
+  std::int64_t likely_snapshots = 0;              // at the end, which sizes a new file; 0: not known, many
   std::vector<std::string> constant = {};         // fields of points that never change of a point
 };
+
+// Rows of the datasets' chunks in a new file: of what there is once for each snapshot, and of what there is
+// for each of so many points, lines or triangles of every snapshot. Large enough to be written at the disk's
+// speed, small enough not to bloat the file of a small run.
+std::int64_t steps_per_chunk(const SeriesOptions& options);
+std::int64_t points_per_chunk(std::int64_t points, const SeriesOptions& options);
 
 class VtkHdfSeries {
  public:

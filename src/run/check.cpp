@@ -28,20 +28,6 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a particle (in a snapshot without its fields; in all of them together, but
-// for its fields that never change), of a shape or centre, of a contact, of a link, of a body [B];
-// tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 25, kPointOnce = 25, kSnapshotShape = 150, kSnapshotContact = 149,
-               kSnapshotLink = 150, kCheckpointParticle = 186, kCheckpointBody = 170;
-// Of a triangle in all snapshots together: its corners, mesh, body, wall, material and number.
-constexpr Real kTriangleNumbers = 4 * sizeof(std::int64_t) + 5 * sizeof(int);
-// Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
-// numbers, and of the row of a particle's.
-constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointContact = 16, kCheckpointRow = 8;
-
-// Contacts of a particle in a dense packing, each with another one.
-constexpr Real kTouching = 6;
-
 std::string range(Real smallest, Real largest, const char* unit) {
   if (smallest == largest) return fmt::format("{:.6g} {}", smallest, unit);
   return fmt::format("{:.6g} to {:.6g} {}", smallest, largest, unit);
@@ -234,59 +220,6 @@ std::string megabytes(Real bytes) {
   return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0);
 }
 
-// Of the start, every interval, and the end; an end that an interval meets counts once.
-Real outputs(Real end, Real interval) {
-  if (interval == 0) return 2;
-  const Real intervals = end / interval;
-  return 1 + std::ceil(intervals * (1 - 1e-9));
-}
-
-// With the contacts of a dense packing.
-Real checkpoint_particle(const Model& model) {
-  const int numbers = history_of(model.contact);
-  Real bytes = kCheckpointParticle;
-  if (model.rotates()) bytes += kCheckpointRotation;
-  if (model.rolls()) bytes += kCheckpointRolling;
-  if (numbers > 0) bytes += kCheckpointRow + kTouching * (kCheckpointContact + sizeof(Real) * numbers);
-  return bytes;
-}
-
-Real snapshot_surfaces(const Model& model) {
-  Real of_triangle = 0;
-  for (const SurfaceField field : model.output.surface_fields)
-    of_triangle += field == SurfaceField::shear ? sizeof(Vec3) : sizeof(Real);
-  const ShownMeshes shown = shown_meshes(model);
-  return sizeof(Vec3) * shown.points + of_triangle * shown.triangles;
-}
-
-std::string output_lines(const Model& model) {
-  const auto particles = static_cast<Real>(model.particles.totals.count);
-  Real points = static_cast<Real>(model.bodies.size()), snapshot_particle = kSnapshotPoint,
-       particle_once = kPointOnce;
-  for (const OutputField& field : wanted_fields(model.output))
-    (field.is_constant ? particle_once : snapshot_particle) += static_cast<Real>(field.bytes);
-  if (model.output.contacts) snapshot_particle += kLinesPerParticle * kSnapshotContact;
-  for (const Body& body : model.bodies)
-    points += static_cast<Real>(body.shapes.size() + body.drawn_shapes.size());
-  const Real links = model.output.links ? static_cast<Real>(LinkLines(model).names().size()) : 0;
-  const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
-             size = snapshot_particle * particles + kSnapshotShape * points + kSnapshotLink * links +
-                    snapshot_surfaces(model),
-             once = particle_once * particles + kTriangleNumbers * shown_meshes(model).triangles,
-             state = checkpoint_particle(model) * particles +
-                     kCheckpointBody * static_cast<Real>(model.bodies.size());
-  const Real interval = model.output.checkpoint_interval;
-  const std::string checkpoints = interval == 0
-                                      ? "one at the end"
-                                      : fmt::format("{:.0f} on the way and one at the end",
-                                                    std::ceil(model.time.end / interval * (1 - 1e-9)) - 1);
-  return fmt::format("snapshots      {:.0f} of about {}, {} together{}\n", snapshots, megabytes(size),
-                     megabytes(snapshots * size + once),
-                     model.output.compression > 0 ? ", before compression" : "") +
-         fmt::format("checkpoints    {}, about {} each\n", checkpoints, megabytes(state)) +
-         history_limit_lines(model);
-}
-
 // Rank 0 has all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
   const Real per_particle =
@@ -356,11 +289,12 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 
 }  // namespace
 
-std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks) {
+std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks,
+                         const std::string& files) {
   const std::vector<StepTrial> trials = try_steps(model);
   const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
-         limit_lines(model, trials) + time_lines(model, trials, chosen) + output_lines(model) +
+         limit_lines(model, trials) + time_lines(model, trials, chosen) + files + history_limit_lines(model) +
          fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
          memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }

@@ -14,7 +14,6 @@
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
 #include "run/contact_rows.hpp"
-#include "run/state.hpp"
 
 namespace scree {
 
@@ -57,12 +56,10 @@ void check_row_group(const std::string& path, const std::string& group,
 
 }  // namespace
 
-void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
+State sized_state(const Model& model) {
   State sizes;
   const BodyLayout layout(model.bodies);
-  // Before the angles of joints in space were counted there were none.
-  if (checkpoint.reals.count("bodies/counted_angles") > 0)
-    sizes.bodies.counted_angles = static_cast<std::size_t>(counted_angles(model));
+  sizes.bodies.counted_angles = static_cast<std::size_t>(counted_angles(model));
   sizes.bodies.position.resize(static_cast<std::size_t>(layout.positions()) + sizes.bodies.counted_angles);
   for (std::vector<Real>* values :
        {&sizes.bodies.velocity, &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
@@ -75,10 +72,23 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.bodies.wrench.resize(driven ? surfaces.carriers() : model.bodies.size());
   if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
     sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
+  if (model.output.adds_up_works()) sizes.works.resize(kWordsPerTriangle * TriangleWorks(model).triangles());
+  sizes.there = {model.rotates(), model.rolls()};
+  return sizes;
+}
+
+void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
+  State sizes = sized_state(model);
+  // Before the angles of joints in space were counted there were none.
+  if (checkpoint.reals.count("bodies/counted_angles") == 0) {
+    sizes.bodies.position.resize(sizes.bodies.position.size() - sizes.bodies.counted_angles);
+    sizes.bodies.counted_angles = 0;
+  }
   // A model that does not ask for works leaves them, whatever meshes they are of.
-  if (checkpoint.integers.count(kWorksName) > 0)
-    sizes.works.resize(model.output.adds_up_works() ? kWordsPerTriangle * TriangleWorks(model).triangles()
-                                                    : checkpoint.integer_array(kWorksName).size());
+  const bool has_works = checkpoint.integers.count(kWorksName) > 0;
+  if (!has_works) sizes.works.clear();
+  if (has_works && !model.output.adds_up_works())
+    sizes.works.resize(checkpoint.integer_array(kWorksName).size());
   if (checkpoint.reals.count(kShapeRubbing) > 0) sizes.shapes.rubbing.of[kFrictionLoss] = 1;
   for (auto [name, values] : {std::pair(kShapeContactsOf, &sizes.shape_contacts.shapes),
                               std::pair(kShapeContactsWith, &sizes.shape_contacts.keys),

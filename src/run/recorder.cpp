@@ -11,6 +11,7 @@
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/contact_network.hpp"
+#include "run/output_plan.hpp"
 #include "run/target_contacts.hpp"
 
 namespace scree {
@@ -75,29 +76,6 @@ ParticleOutput in_id_order(const Ranks& ranks, const Model& model, ParticleOutpu
   return p;
 }
 
-std::vector<PointField> point_fields(const Output& output, const ParticleOutput& p) {
-  const std::vector<OutputField> wanted = wanted_fields(output);
-  std::vector<PointField> fields;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const OutputHead& head = wanted[k].head;
-    const auto field = [&]<class Value>(const std::vector<Value>& values) -> PointField {
-      using Number = OutputNumber<Value>;
-      const auto* const numbers = reinterpret_cast<const Number*>(values.data());
-      return {head.name, {head.unit, head.description}, sizeof(Value) / sizeof(Number), numbers};
-    };
-    fields.push_back(std::visit(field, p.fields[k]));
-  }
-  return fields;
-}
-
-// In the order in which the fields count them.
-std::vector<SeriesNames> names_of(const Model& model) {
-  SeriesNames bodies{kBodyNames, {}}, groups{kGroupNames, {}};
-  for (const Body& body : model.bodies) bodies.entries.push_back(body.name);
-  for (const ParticleGroup& group : model.particles.groups) groups.entries.push_back(group.name);
-  return {bodies, {kMaterialNames, model.contact.material_names}, groups};
-}
-
 EnergyExtremes extremes_of(const HistorySample& now, const State& state) {
   return extremes_at(now.particles.inside.kinetic, now.ledger.elastic_force_elements, state.bodies);
 }
@@ -112,19 +90,13 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                                coordinates_of(link, state), bushings_of(model, link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
-    history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
+    history_.emplace(directory, heads, model.output.history_csv, state.history_rows, likely_rows(model));
     if (!model.meshes.empty()) surfaces_.emplace(model);
     if (model.output.links && link.multibody() != nullptr) links_.emplace(model);
     if (links_ && links_->empty()) links_.reset();
   });
-  SeriesOptions options{model.title,
-                        static_cast<int>(state.snapshots),
-                        model.output.compression,
-                        link.ranks(),
-                        model.output.fields,
-                        names_of(model)};
-  for (const OutputField& field : wanted_fields(model.output))
-    if (field.is_constant) options.constant.emplace_back(field.head.name);
+  SeriesOptions options = series_options(model);
+  options.keep = static_cast<int>(state.snapshots), options.ranks = link.ranks();
   if (surfaces_) options.triangles = surfaces_->triangles();
   snapshots_.emplace(directory, options, wanted_lines());
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
@@ -236,7 +208,7 @@ void Recorder::write_pending() {
   ContactNetwork contacts;
   if (model_.output.contacts) contacts = ContactNetwork(model_, link_.ranks(), std::move(snapshot.contacts));
   const MeshSurfaces::Look& surfaces = snapshot.surfaces;
-  snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
+  snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p.fields)},
                      snapshot.bodies.view(),
                      {surfaces.position, surfaces.pressure, surfaces.shear, surfaces.impact_work,
                       surfaces.sliding_work, surfaces.wear_depth},

@@ -195,9 +195,9 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
-                     'a particle that leaves: "drift"', "snapshots      2 of about 0.9 kB, 2.1 kB together",
-                     "particles      6",
-                     "checkpoints    one at the end, about 1.3 kB", "degrees of freedom", "contact", "memory", "petsc",
+                     'a particle that leaves: "drift"', "\nsnapshots      2 of about ",
+                     "particles      6", "\nhistory        4001 rows of 48 columns, about ", "\ndisk           about ",
+                     "\ncheckpoints    one at the end, about ", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
                      "in steps of 0.0001 s with 0.9792", "fixed step 0.0001 s (4000 steps)"):
             self.assertIn(word, text)

@@ -4,7 +4,6 @@ import struct
 
 MASK = (1 << 64) - 1
 PIECE = 1 << 20  # [B], of which the checksum adds up one hash each
-CHUNK_ROWS = 8192  # of a dataset of rows, that lie in the file together
 
 
 def bit_hash(words, start=14695981039346656037):
