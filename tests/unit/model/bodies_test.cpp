@@ -109,7 +109,7 @@ body = "a"
 point = [0.5, 0.2]
 fx = 3.0
 fy = { kind = "sine", amplitude = 2.0, frequency = 5.0, phase = 0.1 }
-torque = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0] }
+torque_z = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0] }
 follows_body = true
 )");
   const AppliedForce& force = model.applied_forces[0];
