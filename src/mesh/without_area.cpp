@@ -2,21 +2,24 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
+#include <iterator>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace scree {
 
 namespace {
 
-constexpr Real kLeastHeight = 1e-12;  // over the longest side, and of a side over the longest
+constexpr Real kLeastHeight = 1e-12;  // over the longest side; and of a side, below which its ends are one
 constexpr Index kGone = -1;
 
 using Corners = std::array<Index, 3>;
+using Edge = std::pair<Index, Index>;  // the lower vertex first
 
 bool has(const Corners& t, Index v) { return t[0] == v || t[1] == v || t[2] == v; }
 bool has_corner_twice(const Corners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
-
-Real squared_length(Vec3 a) { return dot(a, a); }
 
 class Joiner {
  public:
@@ -30,76 +33,60 @@ class Joiner {
         if (at_[v].empty() || at_[v].back() != t) at_[v].push_back(t);
   }
 
-  // waiting: the triangles without area. Each is left out once; a split can make others, of shorter sides.
-  void leave_out(std::deque<Index> waiting) {
-    constexpr std::size_t kMostPerTriangle = 100;  // far more than any row of slivers needs
-    std::size_t left = kMostPerTriangle * waiting.size();
-    for (; !waiting.empty() && left > 0; --left) {
-      const Index t = waiting.front();
-      waiting.pop_front();
-      if (triangles_[t][0] == kGone || has_area_now(t)) continue;
-      if (has_corner_twice(triangles_[t])) {
-        remove(t);
-      } else {
-        join_across(t);
-      }
-      waiting.insert(waiting.end(), made_.begin(), made_.end());
-      made_.clear();
+  void leave_out() {
+    // A split of a triangle that is hardly higher than those left out may leave another one of these.
+    constexpr int kMostRounds = 20;
+    for (int round = 0; round < kMostRounds; ++round) {
+      merge_needles();
+      const std::vector<Index> found = without_area();
+      if (found.empty()) break;
+      for (const std::vector<Index>& row : rows_of(found)) join_across(row);
     }
     drop_gone();
   }
 
  private:
-  bool has_area_now(Index t) const {
-    const auto [a, b, c] = triangles_[t];
-    return has_area({vertices_[a], vertices_[b], vertices_[c]});
+  std::vector<Index> without_area() const {
+    std::vector<Index> found;
+    for (Index t = 0; t < static_cast<Index>(triangles_.size()); ++t)
+      if (triangles_[t][0] != kGone && !is_high(triangles_[t])) found.push_back(t);
+    return found;
   }
-  void note(Index t) {
-    if (!has_area_now(t)) made_.push_back(t);
+  bool is_high(const Corners& t) const {
+    return has_area({vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]});
   }
 
   void remove(Index t) {
     for (const Index v : triangles_[t]) std::erase(at_[v], t);
     triangles_[t] = {kGone, kGone, kGone};
   }
-
-  // t has three corners on one line.
-  void join_across(Index t) {
-    const Corners c = triangles_[t];
-    std::array<Real, 3> length{};  // squared, of the side from corner k on [m^2]
-    for (int k = 0; k < 3; ++k) length[k] = squared_length(vertices_[c[(k + 1) % 3]] - vertices_[c[k]]);
-    const auto longest = static_cast<int>(std::ranges::max_element(length) - length.begin());
-    const auto shortest = static_cast<int>(std::ranges::min_element(length) - length.begin());
-    if (length[shortest] <= kLeastHeight * kLeastHeight * length[longest]) {
-      merge(std::min(c[shortest], c[(shortest + 1) % 3]), std::max(c[shortest], c[(shortest + 1) % 3]));
-      return;
-    }
-    remove(t);
-    split_edge(c[longest], c[(longest + 1) % 3], c[(longest + 2) % 3]);
-  }
-
-  // All triangles at the edge from a to b are split at m.
-  void split_edge(Index a, Index b, Index m) {
-    const std::vector<Index> around = at_[a];
-    for (const Index t : around) {
-      if (!has(triangles_[t], b)) continue;
-      Corners near_a = triangles_[t], near_b = triangles_[t];
-      std::ranges::replace(near_a, b, m);
-      std::ranges::replace(near_b, a, m);
-      std::erase(at_[b], t);
-      put(t, near_a);
-      triangles_.push_back({kGone, kGone, kGone});
-      numbers_.push_back(numbers_[t]);
-      put(static_cast<Index>(triangles_.size()) - 1, near_b);
-    }
-  }
   void put(Index t, const Corners& corners) {
     triangles_[t] = corners;
     for (const Index v : corners)
       if (std::ranges::find(at_[v], t) == at_[v].end()) at_[v].push_back(t);
-    note(t);
   }
 
+  // Corners that lie on each other, in needles, become one; what has a corner twice then is left out.
+  void merge_needles() {
+    std::vector<Index> found = without_area();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Index t = found[i];
+      if (triangles_[t][0] == kGone) continue;
+      const Corners c = triangles_[t];
+      if (has_corner_twice(c)) {
+        remove(t);
+        continue;
+      }
+      std::array<Real, 3> length{};  // of the side from corner k on [m]
+      for (int k = 0; k < 3; ++k) length[k] = norm(vertices_[c[(k + 1) % 3]] - vertices_[c[k]]);
+      const auto k = static_cast<int>(std::ranges::min_element(length) - length.begin());
+      if (!(length[k] <= kLeastHeight * std::ranges::max(length))) continue;
+      const std::vector<Index> around = at_[c[k]];
+      merge(c[(k + 1) % 3], c[k]);
+      found.insert(found.end(), around.begin(), around.end());
+    }
+  }
+  // The vertex that is gone stands in no triangle any more.
   void merge(Index kept, Index gone) {
     const std::vector<Index> around = std::move(at_[gone]);
     at_[gone].clear();
@@ -107,6 +94,80 @@ class Joiner {
       Corners corners = triangles_[t];
       std::ranges::replace(corners, gone, kept);
       put(t, corners);
+    }
+  }
+
+  // Those that hang together over edges, and so lie on one line.
+  std::vector<std::vector<Index>> rows_of(const std::vector<Index>& found) const {
+    std::map<Edge, std::vector<Index>> at_edge;
+    for (const Index t : found)
+      for (const Edge& edge : edges_of(triangles_[t])) at_edge[edge].push_back(t);
+    std::vector<std::vector<Index>> rows;
+    std::set<Index> seen;
+    for (const Index first : found) {
+      if (!seen.insert(first).second) continue;
+      std::vector<Index> row{first};
+      for (std::size_t i = 0; i < row.size(); ++i)
+        for (const Edge& edge : edges_of(triangles_[row[i]]))
+          for (const Index other : at_edge.at(edge))
+            if (seen.insert(other).second) row.push_back(other);
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+  static std::array<Edge, 3> edges_of(const Corners& t) {
+    return {std::minmax(t[0], t[1]), std::minmax(t[1], t[2]), std::minmax(t[2], t[0])};
+  }
+
+  // The row is left out, and what has one of its edges is split at all its points there: at every piece of
+  // the line are as many triangles then as there are over and under it.
+  void join_across(const std::vector<Index>& row) {
+    std::set<Edge> edges;
+    std::vector<Index> points;
+    for (const Index t : row) {
+      for (const Edge& edge : edges_of(triangles_[t])) edges.insert(edge);
+      points.insert(points.end(), triangles_[t].begin(), triangles_[t].end());
+      remove(t);
+    }
+    const auto length = [&](const Edge& e) { return norm(vertices_[e.second] - vertices_[e.first]); };
+    const Edge longest = *std::ranges::max_element(edges, {}, length);
+    const Vec3 along = vertices_[longest.second] - vertices_[longest.first];
+    const auto place = [&](Index v) {
+      return std::pair(dot(along, vertices_[v] - vertices_[longest.first]), v);
+    };
+    std::ranges::sort(points, {}, place);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (auto [a, b] : edges) {
+      if (place(b) < place(a)) std::swap(a, b);
+      const auto first = std::ranges::upper_bound(points, place(a), {}, place),
+                 last = std::ranges::lower_bound(points, place(b), {}, place);
+      std::vector<Index> between;
+      std::copy_if(first, last, std::back_inserter(between), [&, a = a, b = b](Index v) {
+        return !is_high({a, v, b});
+      });
+      if (!between.empty()) split_at(a, b, between);
+    }
+  }
+
+  // All triangles at the edge from a to b, at the points between them, from a on.
+  void split_at(Index a, Index b, const std::vector<Index>& between) {
+    const std::vector<Index> around = at_[a];
+    for (const Index t : around) {
+      if (!has(triangles_[t], b)) continue;
+      const Corners whole = triangles_[t];
+      const auto part = [&](Index from, Index to) {
+        Corners corners = whole;
+        for (Index& v : corners) v = v == a ? from : v == b ? to : v;
+        return corners;
+      };
+      std::erase(at_[b], t);
+      put(t, part(a, between.front()));
+      for (std::size_t k = 0; k < between.size(); ++k) {
+        triangles_.push_back({kGone, kGone, kGone});
+        numbers_.push_back(numbers_[t]);
+        put(static_cast<Index>(triangles_.size()) - 1,
+            part(between[k], k + 1 < between.size() ? between[k + 1] : b));
+      }
     }
   }
 
@@ -123,7 +184,6 @@ class Joiner {
   std::vector<Corners>& triangles_;
   std::vector<Index>& numbers_;
   std::vector<std::vector<Index>> at_;  // triangles at each vertex, each once
-  std::vector<Index> made_;             // without area, by the last step
 };
 
 }  // namespace
@@ -136,15 +196,10 @@ bool has_area(const TriangleCorners& corners) {
 }
 
 std::vector<Index> leave_out_without_area(NumberedMesh& mesh) {
-  std::deque<Index> found;
   std::vector<Index> numbers;
-  for (Index t = 0; t < static_cast<Index>(mesh.mesh.triangles.size()); ++t) {
-    if (has_area(corners_of(mesh.mesh, t))) continue;
-    found.push_back(t);
-    numbers.push_back(mesh.numbers[t]);
-  }
-  if (found.empty()) return {};
-  Joiner(mesh).leave_out(std::move(found));
+  for (Index t = 0; t < static_cast<Index>(mesh.mesh.triangles.size()); ++t)
+    if (!has_area(corners_of(mesh.mesh, t))) numbers.push_back(mesh.numbers[t]);
+  if (!numbers.empty()) Joiner(mesh).leave_out();
   return numbers;
 }
 

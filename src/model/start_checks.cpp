@@ -273,6 +273,8 @@ std::string inside_text(const DeckTable& deck, const Model& model, const Overlap
   const DeckTable& table = deck.tables("meshes")[static_cast<std::size_t>(mesh)];
   const std::string finding = fmt::format("; the centre of {} is inside the solid that mesh \"{}\" encloses",
                                           names.name(overlaps.first), table.text("name"));
+  if (model.space.dimension == 2)  // a closed line
+    return finding + ": without closed = true, and with the first point again at the end, it is a container";
   if (!table.has("file")) return finding;
   return finding +
          fmt::format(": sheet = true in {} makes it a container, touched from inside, too", table.path());

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "model/id_range.hpp"
 #include "output/durable_file.hpp"
 #include "output/file_seal.hpp"
@@ -143,6 +144,8 @@ std::string format_in_bytes(const std::string& path) {
 void check_file(const std::string& path, const Ranks& ranks) {
   const Seal seal = check_seal(path, ranks);
   ranks.on_root([&] {
+    if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+      throw IoError(fmt::format("{}: {}", path, trouble));
     if (seal == Seal::none) refuse_format(path, format_in_bytes(path));
     if (seal == Seal::broken)
       throw IoError(path + ": the checkpoint is damaged: its content does not have the checksum at its end");

@@ -1,5 +1,5 @@
-"""Some hundred meshes with the defects of real files, made from good ones: each through `scree check`, with the count of
-what is put right, the volume and the mass.
+"""Some hundred meshes with the defects of real files, made from good ones: each through `scree check`, with the count
+of what is put right, the volume and the mass.
 Usage: SCREE=path/to/scree python3 test_mesh_repair.py"""
 
 import itertools
@@ -96,8 +96,8 @@ def tube(sections, closed=True):
 
 
 def ring(count, radius, z, twist=0.0):
-    return [(radius(i) * math.cos(2 * math.pi * i / count + twist), radius(i) * math.sin(2 * math.pi * i / count + twist),
-             z) for i in range(count)]
+    angles = [2 * math.pi * i / count + twist for i in range(count)]
+    return [(radius(i) * math.cos(angle), radius(i) * math.sin(angle), z) for i, angle in enumerate(angles)]
 
 
 def box():
@@ -253,7 +253,8 @@ def said(text):
         found = re.search(pattern, text)
         return int(found[1]) if found else 0
     return (count(r"(\d+) triangles? without area"), count(r"(\d+) triangles? with the corners of others"),
-            count(r"(?:all of its |^|; )(\d+) (?:triangles ran|of its \d+ triangles (?:is|are) (?:turned|wound against))"))
+            count(r"(?:all of its |^|; )(\d+) "
+                  r"(?:triangles ran|of its \d+ triangles (?:is|are) (?:turned|wound against))"))
 
 
 class RepairTest(CommandLineTest):
@@ -297,7 +298,8 @@ class RepairTest(CommandLineTest):
                     if any(counts):
                         self.assertIn("(the first: triangle ", texts[0])
                     if not sheet:
-                        volume, mass = re.search(r"closed; .*volume (\S+) m\^3, as a solid (\S+) kg", lines[name]).groups()
+                        found = re.search(r"closed; .*volume (\S+) m\^3, as a solid (\S+) kg", lines[name])
+                        volume, mass = found.groups()
                         self.assertAlmostEqual(float(volume) / mesh.volume(), 1, delta=1e-5)
                         self.assertAlmostEqual(float(mass) / mesh.volume() / 1000, 1, delta=1e-5)
                     else:
@@ -339,9 +341,10 @@ class ContainerTest(CommandLineTest):
     """Grains in a closed mesh: a solid holds none."""
 
     def test_the_key_that_makes_a_container_is_named_however_the_mesh_is_wound(self):
-        deck = DECK + ('[[meshes]]\nname = "bin"\nkind = "file"\nfile = "bin.stl"\n[[walls]]\nname = "bin"\nmesh = "bin"\n'
-                       '[[particles]]\nname = "grains"\nkind = "list"\npositions = [[0.1, 0.2, 0.0], [-0.2, 0.1, 0.1]]\n'
-                       'radius = 0.03\nmass = 0.1\n')
+        deck = DECK + ('[[meshes]]\nname = "bin"\nkind = "file"\nfile = "bin.stl"\n'
+                       '[[walls]]\nname = "bin"\nmesh = "bin"\n'
+                       '[[particles]]\nname = "grains"\nkind = "list"\nradius = 0.03\nmass = 0.1\n'
+                       'positions = [[0.1, 0.2, 0.0], [-0.2, 0.1, 0.1]]\n')
         self.write("bin.toml", deck)
         for turned in (False, True):
             with self.subTest(turned=turned):
@@ -351,10 +354,10 @@ class ContainerTest(CommandLineTest):
                 (self.folder / "bin.stl").write_bytes(binary_stl(mesh))
                 message = self.expect(BAD_INPUT, "check", "bin.toml").stderr
                 self.assertIn('particle 0 and wall "bin" overlap at t = 0 by 2 of the smaller radius', message)
-                self.assertIn("of 2 overlaps 2 are above it; particle 0: of particles.grains at (0.1, 0.2, 0), radius 0.03 m",
-                              message)
-                self.assertIn('the centre of particle 0 is inside the solid that mesh "bin" encloses: sheet = true in '
-                              'meshes.bin makes it a container', message)
+                self.assertIn("of 2 overlaps 2 are above it; particle 0: of particles.grains at (0.1, 0.2, 0), radius "
+                              "0.03 m", message)
+                self.assertIn('the centre of particle 0 is inside the solid that mesh "bin" encloses: sheet = true '
+                              'in meshes.bin makes it a container', message)
                 self.assertEqual(message.count("all of its 16 triangles ran clockwise seen from outside"), int(turned))
                 self.expect(DONE, "check", "bin.toml", "--set", "meshes.bin.sheet=true")
 

@@ -79,6 +79,28 @@ TEST_CASE("a row of triangles without area that faces another row is joined acro
   CHECK(surface.parts.size() == 1);
 }
 
+TEST_CASE("a long row of triangles without area takes as many steps as it has") {
+  // Fans from either end of an edge, one above the other, with points between each other's.
+  constexpr Index kCount = 2000;
+  TriangleMesh mesh;
+  for (Index i = 0; i <= 2 * kCount; ++i) mesh.vertices.push_back({Real(i), 0, 0});
+  mesh.vertices.insert(mesh.vertices.end(), {{kCount, 1, 0}, {kCount, -1, 0}});
+  const Index end = 2 * kCount, above = end + 1, below = end + 2;
+  Index last = 0;
+  for (Index i = 1; i < end; last = i, i += 2) mesh.triangles.push_back({last, i, above});
+  mesh.triangles.push_back({last, end, above});
+  last = 0;
+  for (Index i = 2; i <= end; last = i, i += 2) mesh.triangles.push_back({i, last, below});
+  for (Index i = 1; i + 2 < end; i += 2) mesh.triangles.push_back({0, i + 2, i});
+  mesh.triangles.push_back({0, end, end - 1});
+  for (Index i = 2; i < end; i += 2) mesh.triangles.push_back({end, i - 2, i});
+  const MeshRepair repair = repair_of(mesh, true);
+  CHECK(repair.without_area.count == 2 * kCount - 1);
+  CHECK(mesh_troubles(repair.mesh.mesh, true) == Texts{});
+  CHECK(near(mesh_area(repair.mesh.mesh), 2 * kCount, {.relative = 1e-13}));
+  CHECK(build_surface_mesh(repair.mesh.mesh, 0.5, true).parts.size() == 1);
+}
+
 TEST_CASE("corners that lie on each other but for round-off become one") {
   TriangleMesh mesh = cube();
   mesh.vertices.push_back(mesh.vertices[6] + Vec3{1e-14, 0, 0});

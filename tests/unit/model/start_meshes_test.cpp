@@ -137,6 +137,15 @@ meshes = [{ mesh = "wedge" }]
   CHECK(overlap(deck + at("[[-0.44, -0.3]]")).empty());
   CHECK(contains(overlap(deck + at("[[-0.6, -0.4]]")), "body \"wedge\" overlap at t = 0 by 2 of"));
   CHECK(contains(overlap(deck + at("[[-0.46, -0.3]]")), "body \"wedge\" overlap at t = 0 by 0.2 of"));
+  const std::string inside = model_error(deck + at("[[-0.6, -0.4]]"));
+  CHECK(contains(
+      inside,
+      "; body \"wedge\": its mesh \"wedge\"; the centre of particle 0 is inside the solid that mesh "
+      "\"wedge\" encloses: without closed = true, and with the first point again at the end, it is a "
+      "container"));
+  const std::vector<std::string> container{"meshes.wedge.closed=false",
+                                           "meshes.wedge.points=[[0, 0], [0.4, 0], [0, 0.4], [0, 0]]"};
+  CHECK(model_error(deck + at("[[-0.6, -0.4]]"), container).empty());
 }
 
 TEST_CASE("random groups keep clear of meshes") {
