@@ -196,11 +196,12 @@ class ReportTest(MeshTest):
         ball = 'meshes=[{name="rock",kind="sphere",radius=0.1,levels=5}]'
         twice = 'bodies.shell.meshes=[{mesh="rock"}]'
         for settings in ((ball,), (ball, twice)):
-            said = re.search(r"snapshots      2 of about \S+ MB, (\S+) MB together", self.report(*settings)[0])[1]
+            said, unit = re.search(r"snapshots      2 of about \S+ \S+, (\S+) (kB|MB) together",
+                                   self.report(*settings)[0]).groups()
             self.expect(DONE, "run", self.deck, "--output", self.folder / "out", "--overwrite",
                         *(word for setting in settings for word in ("--set", setting)))
             size = sum(path.stat().st_size for path in (self.folder / "out").glob("*.[vx][td]*")) / 1e6
-            self.assertAlmostEqual(float(said) / size, 1, delta=0.1)
+            self.assertAlmostEqual(float(said) * {"kB": 1e-3, "MB": 1}[unit] / size, 1, delta=0.1)
 
     def test_a_file_made_coarser(self):
         self.write("rock.stl", ball(0.2))
