@@ -290,8 +290,9 @@ class GeometryTest(KindsTest):
     def test_triangles_without_area_twice_and_wound_anyhow(self):
         for name, triangles in FAULTY.items():
             fault = {"corner": "without area", "sliver": "without area", "anyhow": "that are wound both ways"}
-            _, lines = self.convert(self.robot(self.stl(name, triangles)))
+            deck, lines = self.convert(self.robot(self.stl(name, triangles)))
             self.one_line(lines, "made a sheet", f"{name}.stl (line 4) has triangles {fault.get(name, 'twice')}")
+            self.assertEqual((len(lines), deck["meshes.arm_0.sheet"]), (1, True))
 
     def test_files_that_are_no_meshes(self):
         (self.folder / "lfs.stl").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 12\n")
