@@ -7,9 +7,7 @@ import sys
 import warnings
 
 from scree.cli import add_folder
-from scree.deck import Deck
 from scree.errors import ScreeWarning
-from scree.packing import settled
 from scree.run import open_run
 
 
@@ -26,6 +24,9 @@ def run(words: argparse.Namespace) -> int:
     Writes FOLDER/settled_MATERIAL.h5 with positions, velocities, spins, radii and masses, and FOLDER/particles.toml with
     the [[particles]] that read them, to be copied into a deck in FOLDER. Springs of contacts begin anew.
     """
+    from scree.deck import Deck
+    from scree.packing import settled
+
     opened = open_run(words.folder)
     folder = words.output or words.folder / "settled"
     number = -1 if words.time is None else opened.snapshots.at(words.time).number
