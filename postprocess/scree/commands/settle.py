@@ -21,8 +21,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
 def run(words: argparse.Namespace) -> int:
     """The particles of a state as files and tables with which another deck begins
 
-    Writes FOLDER/settled_MATERIAL.h5 with positions, velocities, spins, radii and masses, and FOLDER/particles.toml with
-    the [[particles]] that read them, to be copied into a deck in FOLDER. Springs of contacts begin anew.
+    Writes FOLDER/settled_MATERIAL.h5 with positions, velocities, spins, radii and masses, and FOLDER/particles.toml
+    with the [[particles]] that read them, to be copied into a deck in FOLDER. Springs of contacts begin anew.
     """
     from scree.deck import Deck
     from scree.packing import settled
