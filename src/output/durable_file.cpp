@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,6 +20,10 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* action, int error) {
   throw IoError(fmt::format("{}: cannot {}: {}", path, action, std::strerror(error)));
+}
+
+[[noreturn]] void fail_reading(const std::string& path, int error) {
+  throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(error)));
 }
 
 // A new file, whatever stood there: a link is not followed.
@@ -45,6 +50,24 @@ int write_and_sync(int file, const std::string& text) {
 }
 
 }  // namespace
+
+std::string read_text_file(const std::string& path) {
+  // A pipe would wait for a writer.
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) fail_reading(path, errno);
+  std::string text;
+  std::array<char, 4096> piece;
+  ssize_t count = 1;
+  int error = 0;
+  while (count != 0 && error == 0) {
+    count = read(file, piece.data(), piece.size());
+    if (count > 0) text.append(piece.data(), static_cast<std::size_t>(count));
+    if (count < 0 && errno != EINTR) error = errno;
+  }
+  close(file);
+  if (error != 0) fail_reading(path, error);
+  return text;
+}
 
 // std::filesystem::copy_file() keeps the system's reason to itself.
 void copy_file(const std::string& from, const std::string& to) {

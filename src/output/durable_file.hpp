@@ -6,6 +6,9 @@
 
 namespace scree {
 
+// All of a file. Throws IoError with the system's reason, of a folder, too.
+std::string read_text_file(const std::string& path);
+
 // Copies a file, in the place of an old one where there is one. Throws IoError; a part may then have been
 // copied.
 void copy_file(const std::string& from, const std::string& to);

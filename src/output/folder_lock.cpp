@@ -44,6 +44,11 @@ bool is_over(const LockOwner& owner, int file, LockState lock) {
   return is_over(owner, LockOwner::this_process(), lock, is_on_own_disk(file));
 }
 
+bool is_file(int file) {
+  struct stat status {};
+  return fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 bool is_named(int file, const std::string& path) {
   struct stat open {
   }, named{};
@@ -83,8 +88,12 @@ void FolderLock::fail(const char* action, int error) const {
 }
 
 std::optional<LockOwner> FolderLock::owner() const {
-  const int file = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  const int file = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return std::nullopt;
+  if (!is_file(file)) {  // nobody's lock
+    close(file);
+    return std::nullopt;
+  }
   const LockOwner owner = LockOwner::read(path_);
   // A lock for writing can be asked for, though not taken, by who may only read.
   const bool over = is_over(owner, file, state_of(file, F_OFD_GETLK));
@@ -92,11 +101,24 @@ std::optional<LockOwner> FolderLock::owner() const {
   return over ? std::nullopt : std::optional(owner);
 }
 
+// A link is not followed, and cannot be opened.
+void FolderLock::require_file() const {
+  struct stat status {};
+  if (lstat(path_.c_str(), &status) != 0 || S_ISREG(status.st_mode) || S_ISLNK(status.st_mode)) return;
+  throw InputError(
+      fmt::format("output folder {}: {} is {}, and has the name of the file by which a run keeps others out; "
+                  "remove it, or "
+                  "choose another folder with --output",
+                  folder_, path_, S_ISDIR(status.st_mode) ? "a folder" : "no file"));
+}
+
 void FolderLock::check() const {
+  require_file();
   if (const std::optional<LockOwner> other = owner()) refuse(other->described());
 }
 
 void FolderLock::take() {
+  require_file();
   while (!try_to_take()) {
   }
 }

@@ -23,13 +23,15 @@ class FolderLock {
 
   // The run that has the folder, as far as this process can tell; empty where there is none.
   std::optional<LockOwner> owner() const;
-  // Throws InputError, which names the process, where another run has the folder. check() changes nothing.
+  // Throws InputError, which names the process, where another run has the folder, and where something else
+  // than a file has the lock's name. check() changes nothing.
   void check() const;
   // The folder exists. Throws IoError, too.
   void take();
 
  private:
   bool try_to_take();
+  void require_file() const;
   [[noreturn]] void refuse(const std::string& owner) const;
   [[noreturn]] void fail(const char* action, int error) const;
 

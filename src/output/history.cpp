@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/error.hpp"
@@ -29,6 +30,15 @@ std::int64_t chunks_of(std::int64_t likely_rows) {
 
 std::string dataset_path(const HistoryColumn& column) {
   return column.group.empty() ? column.name : column.group + "/" + column.name;
+}
+
+// What in the deck chooses the column.
+std::string key_of(const std::string& column) {
+  const std::string group = column.substr(0, column.find('/'));
+  for (const char* const listed :
+       {"bodies", "particles", "contacts", "reactions", "efforts", "coordinates", "bushings"})
+    if (group == listed) return "output.history_" + group;
+  return "the deck";
 }
 
 // Quoted where a comma or a quote would break the line into other fields (RFC 4180).
@@ -85,6 +95,7 @@ void HistoryWriter::cut(std::int64_t keep) {
   bool longer = false;
   {
     const Hdf5File file(file_.path(), Hdf5Access::read);
+    require_columns(file);
     for (const HistoryColumn& column : columns_) {
       const std::int64_t rows = file.rows(dataset_path(column));
       if (rows < keep) {
@@ -99,6 +110,22 @@ void HistoryWriter::cut(std::int64_t keep) {
                   for (const HistoryColumn& column : columns_) file.resize_rows(dataset_path(column), keep);
                 },
                 {}});
+}
+
+// A restart may ask for other columns: they begin a new file.
+void HistoryWriter::require_columns(const Hdf5File& file) const {
+  const std::vector<std::string> names = file.dataset_names("/");
+  const std::set<std::string> held(names.begin(), names.end());
+  std::set<std::string> wanted;
+  for (const HistoryColumn& column : columns_) wanted.insert(dataset_path(column));
+  const auto refuse = [&](const std::string& column, const char* trouble) {
+    throw IoError(fmt::format("{}: {} {}; keep {} as it was, or choose another folder with --output",
+                              file_.path(), trouble, column, key_of(column)));
+  };
+  for (const std::string& column : wanted)
+    if (held.count(column) == 0) refuse(column, "lacks the column that the restarted run is to write,");
+  for (const std::string& column : held)
+    if (wanted.count(column) == 0) refuse(column, "holds a column that the restarted run is not to write,");
 }
 
 void HistoryWriter::append(const std::vector<Real>& row) {

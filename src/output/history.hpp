@@ -34,6 +34,7 @@ class HistoryWriter {
 
  private:
   void cut(std::int64_t keep);
+  void require_columns(const Hdf5File& file) const;
   void write_rows(Hdf5File& file, std::int64_t rows_before) const;
   void rewrite_csv() const;
 

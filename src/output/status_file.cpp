@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -65,9 +63,7 @@ bool take(const toml::table& table, const char* name, Texts& texts) {
 }
 
 toml::table parsed(const std::string& path) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw IoError(path + ": cannot be read");
+  const std::string text = read_text_file(path);
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {

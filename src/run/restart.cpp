@@ -171,6 +171,20 @@ void check_works(const Checkpoint& checkpoint, const Differences& differences, c
       options.restart));
 }
 
+// Arrays of other lengths belong to another model where the deck is another one, else to a damaged file.
+void check_fits(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
+                const RunOptions& options) {
+  try {
+    check_datasets(checkpoint, model, kRestartTexts);
+  } catch (const IoError& error) {
+    if (differences.empty()) throw;
+    throw InputError(
+        fmt::format("--restart {}: the checkpoint does not fit the model of this deck ({}), with "
+                    "--allow-changes neither. Keys that differ: {}",
+                    options.restart, error.what(), listed(differences)));
+  }
+}
+
 // Whether other surfaces, or features of meshes, may have the numbers by which contacts with them are
 // remembered.
 bool renumbers_surfaces(const DeckDifference& difference) {
@@ -246,7 +260,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
     check_works(checkpoint, differences, model, options);
-    check_datasets(checkpoint, model, kRestartTexts);
+    check_fits(checkpoint, differences, model, options);
     restart.starts = starts_in(checkpoint.text("starts"), options.restart);
   });
   restart.state = unpack(checkpoint, ranks);

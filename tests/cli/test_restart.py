@@ -89,6 +89,28 @@ class ChangesTest(CommandLineTest):
         self.assertTrue(any("not bit for bit" in warning for warning in record["warnings"]))
         self.assertTrue(any(": time.step: 0.002 -> 0.0001" in line for line in record["run"]["changes"]))
 
+    def test_every_refusal_names_the_key(self):
+        wall = 'walls=[{name="floor",point=[0.0,-0.9],normal=[0.0,1.0]}]'
+        self.run_deck(DONE, "out", "--set", wall, "--set", "time.end=0.01")
+        restart = ("run", self.deck, "--output", "out", "--restart", "out/checkpoint_end.h5", "--set", wall, "--set",
+                   "time.end=0.02")
+        for setting, code, key in (
+                ("output.history_bodies=[]", IO_FAILED, "keep output.history_bodies as it was"),
+                ("output.history_particles=[0]", IO_FAILED, "keep output.history_particles as it was"),
+                ('output.history_contacts=["pad"]', IO_FAILED, "keep output.history_contacts as it was"),
+                ('output.fields=["radius"]', IO_FAILED, "keep output.fields as it was"),
+                ("output.contacts=true", IO_FAILED, "set output.contacts = false"),
+                ("output.links=false", IO_FAILED, "set output.links = true"),
+                ("time.end=0.005", BAD_INPUT, "time.end"), ("gravity=[0.0,-5.0]", BAD_INPUT, "gravity: "),
+                ("bodies.0.mass=2.0", BAD_INPUT, "bodies.pad.mass: ")):
+            with self.subTest(setting=setting):
+                self.assertIn(key, self.expect(code, *restart, "--set", setting).stderr)
+        for setting, key in (("particles.0.size=[3,2]", "particles.discs.size: "),
+                             ("walls.0.surface_velocity=[1.0,0.0]", "walls.floor.surface_velocity: ")):
+            with self.subTest(setting=setting):
+                result = self.expect(BAD_INPUT, *restart, "--allow-changes", "--set", setting)
+                self.assertRegex(result.stderr, "(?m)^error: --restart .*" + key)
+
     def test_contacts_with_other_meshes_begin_anew(self):
         deck, checkpoint = self.write("funnel.toml", FUNNEL), self.folder / "out/checkpoint_end.h5"
         for friction in (0.3, 0.0):

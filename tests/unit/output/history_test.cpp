@@ -95,7 +95,19 @@ TEST_CASE("a history that does not fit is refused") {
   }
   CHECK_THROWS_AS(HistoryWriter(scratch.path(), kColumns, false, 21), IoError);
   auto more = kColumns;
-  more.push_back({"energy", "elastic", "J", "elastic energy"});
-  CHECK_THROWS_AS(HistoryWriter(scratch.path(), more, false, 20), IoError);
+  more.push_back({"bodies/bob", "x", "m", "position"});
+  const auto message = [&](const std::vector<HistoryColumn>& columns) {
+    try {
+      HistoryWriter(scratch.path(), columns, false, 20);
+    } catch (const IoError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was refused");
+  };
+  CHECK(message(more).find("lacks the column that the restarted run is to write, bodies/bob/x; keep "
+                           "output.history_bodies as it was") != std::string::npos);
+  auto fewer = kColumns;
+  fewer.pop_back();
+  CHECK(message(fewer).find("keep output.history_reactions as it was") != std::string::npos);
   CHECK_THROWS_AS(HistoryWriter(scratch / "no_such_directory", kColumns, true, 0), IoError);
 }

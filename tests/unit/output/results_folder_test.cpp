@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -114,6 +115,31 @@ TEST_CASE("a lock that its writer had no time to fill, and one that a dead machi
     folder.check();
     folder.claim();
     CHECK(read(scratch / "scree.lock").find("host ") == 0);
+  }
+}
+
+TEST_CASE("what has the lock's name and is no file is refused, and nobody's lock") {
+  for (const bool is_folder : {true, false}) {
+    ScratchDirectory scratch;
+    const std::string path = scratch / "scree.lock";
+    if (is_folder)
+      fs::create_directory(path);
+    else
+      REQUIRE(mkfifo(path.c_str(), 0666) == 0);  // which would have a reader wait
+    const auto message_of_use = [&](const auto& use) {
+      try {
+        ResultsFolder folder({scratch.path(), "", true});
+        use(folder);
+      } catch (const InputError& error) {
+        return std::string(error.what());
+      }
+      return std::string("nothing was refused");
+    };
+    const std::string words = path + " is " + (is_folder ? "a folder" : "no file") + ", and has the name";
+    CHECK(message_of_use([](const ResultsFolder& f) { f.check(); }).find(words) != std::string::npos);
+    CHECK(message_of_use([](ResultsFolder& f) { f.claim(); }).find(words) != std::string::npos);
+    CHECK(!FolderLock(scratch.path()).owner());
+    CHECK(fs::exists(path));
   }
 }
 

@@ -53,7 +53,8 @@ TEST_CASE("a status is read back as it was written") {
 
 TEST_CASE("a status that is damaged is named") {
   const ScratchDirectory scratch;
-  CHECK(message_of_reading(scratch.path()) == scratch / kStatusName + ": cannot be read");
+  CHECK(message_of_reading(scratch.path()) ==
+        scratch / kStatusName + ": cannot be read: No such file or directory");
   write_status(scratch.path(), some_status());
   std::ifstream file(scratch / kStatusName);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
