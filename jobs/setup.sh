@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
-#     jobs/setup.sh [--paraview] [--slurm] [--cuda] [--ccache]
-#     jobs/setup.sh --pictures | --package
+#     jobs/setup.sh [--quiet] [--paraview] [--slurm] [--cuda] [--ccache]
+#     jobs/setup.sh [--quiet] --pictures | --package
 #
 # --pictures installs what postprocess/draw needs and no more. --package installs what the program and packages of it need
 # (jobs/packaging/README.md) and no more: nothing for tests or pictures, and no .venv.
+# --quiet leaves out what apt-get prints, unless it fails; how much is installed is said in one line.
 # --paraview adds Debian's ParaView, for the tests that open results in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
 # not configured and do not run by themselves.
@@ -53,9 +54,35 @@ install_packages() {
     as_root=(sudo)
   fi
   echo "set-up: installing Debian packages: ${missing[*]}"
-  "${as_root[@]}" apt-get -q update || fail "apt-get update failed; needed: ${missing[*]}"
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}" ||
-    fail "apt-get could not install: ${missing[*]}"
+  run_apt "${as_root[@]}" apt-get -q update || fail "apt-get update failed; needed: ${missing[*]}"
+  say_how_much "${missing[@]}"
+  run_apt "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends \
+    "${missing[@]}" || fail "apt-get could not install: ${missing[*]}"
+}
+
+# With what these packages need: their number, and what they take.
+say_how_much() {
+  local plan number download disk
+  plan=$(LC_ALL=C apt-get -q --assume-no install --no-install-recommends "$@" 2>/dev/null) || true
+  number=$(sed -nE 's/.* ([0-9]+) newly installed.*/\1/p' <<<"$plan")
+  download=$(sed -nE 's/^Need to get (.*) of archives.*/\1/p' <<<"$plan")
+  disk=$(sed -nE 's/^After this operation, (.*) of additional disk space.*/\1/p' <<<"$plan")
+  [[ -n "$number" && -n "$disk" ]] || return 0
+  echo "set-up: with what they need $number packages: ${download:-nothing} to download, $disk of disk"
+}
+
+# apt-get as it is told; quiet, what it printed is shown where it fails.
+run_apt() {
+  if ! "$quiet"; then
+    "$@"
+    return
+  fi
+  local log status=0
+  log=$(mktemp)
+  "$@" >"$log" 2>&1 || status=$?
+  ((status == 0)) || cat "$log" >&2
+  rm -f "$log"
+  return "$status"
 }
 
 install_python_packages() {
@@ -79,16 +106,17 @@ install_nvcc() {
 }
 
 packages=("${program_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}")
-with_cuda=false with_python=true
+with_cuda=false with_python=true quiet=false
 for argument in "$@"; do
   case "$argument" in
+    --quiet) quiet=true ;;
     --paraview) packages+=("${paraview_packages[@]}") ;;
     --slurm) packages+=("${slurm_packages[@]}") ;;
     --cuda) with_cuda=true ;;
     --ccache) packages+=(ccache) ;;
     --pictures) packages=("${picture_packages[@]}") ;;
     --package) packages=("${program_packages[@]}" "${package_packages[@]}") with_python=false ;;
-    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --ccache, --pictures, --package" ;;
+    *) fail "unknown argument: $argument; allowed: --quiet, --paraview, --slurm, --cuda, --ccache, --pictures, --package" ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
