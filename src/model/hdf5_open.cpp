@@ -29,27 +29,19 @@ bool lacks_locks() {
   return std::ranges::find(kHeld, number) == kHeld.end();
 }
 
-hid_t create_once(const std::string& path, hid_t access, unsigned chunk_index) {
-  const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-  if (chunk_index > 0) H5Pset_istore_k(creation, chunk_index);
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation, access);
-  H5Pclose(creation);
-  return file;
-}
-
-hid_t open_once(const std::string& path, Hdf5Open how, hid_t access, unsigned chunk_index) {
-  if (how == Hdf5Open::create) return create_once(path, access, chunk_index);
+hid_t open_once(const std::string& path, Hdf5Open how, hid_t access, hid_t creation) {
+  if (how == Hdf5Open::create) return H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation, access);
   return H5Fopen(path.c_str(), how == Hdf5Open::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access);
 }
 
 }  // namespace
 
-hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access, unsigned chunk_index) {
-  const hid_t file = open_once(path, how, access, chunk_index);
+hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access, hid_t creation) {
+  const hid_t file = open_once(path, how, access, creation);
   if (file >= 0 || !lacks_locks()) return file;
   if (how == Hdf5Open::create) unlink(path.c_str());  // made before it could not be locked
   H5Pset_file_locking(access, false, true);
-  return open_once(path, how, access, chunk_index);
+  return open_once(path, how, access, creation);
 }
 
 }  // namespace scree

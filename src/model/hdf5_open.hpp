@@ -18,8 +18,8 @@ enum class Hdf5Open {
 // a file where the file system has no locks: NFS without lockd, Lustre mounted without flock, DVS. There the
 // file is opened without a lock; the lock of the folder keeps other runs out. The environment variable
 // HDF5_USE_FILE_LOCKING stands above both.
-// chunk_index: of a new file; how many chunks a node of the library's index holds half of; 0: the library's
-// own number, 32, whose nodes take 2 kB in every dataset.
-hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access, unsigned chunk_index = 0);
+// creation: properties of a new file. The library keeps the reason of a failure until it is called again: the
+// caller keeps both lists of properties until it has read it.
+hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access, hid_t creation = H5P_DEFAULT);
 
 }  // namespace scree

@@ -105,12 +105,14 @@ Hdf5File::Hdf5File(const std::string& path, Hdf5Access access, std::int64_t like
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Hdf5Id plist(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(plist, H5F_CLOSE_STRONG);
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_istore_k(creation, chunk_index_width(likely_chunks));
   if (access == Hdf5Access::create) unlink(path.c_str());  // a link is not followed
   file_ = open_hdf5(path,
                     access == Hdf5Access::create ? Hdf5Open::create
                     : writing_                   ? Hdf5Open::modify
                                                  : Hdf5Open::read,
-                    plist, chunk_index_width(likely_chunks));
+                    plist, creation);
   if (file_ < 0) fail(access == Hdf5Access::create ? "create" : "open");
 }
 

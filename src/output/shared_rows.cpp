@@ -111,7 +111,8 @@ void SharedRows::close() {
 
 void SharedRows::read_back() {
   if (written_.empty()) return;
-  const Hdf5Id file(open_hdf5(path_, Hdf5Open::read, new_properties(H5P_FILE_ACCESS)), H5Fclose);
+  const Hdf5Id access = new_properties(H5P_FILE_ACCESS);
+  const Hdf5Id file(open_hdf5(path_, Hdf5Open::read, access), H5Fclose);
   if (!file.valid()) fail("read back");
   std::vector<std::byte> values;
   for (const Written& w : written_) {
