@@ -50,7 +50,7 @@ cat <<END
 The net and 400 particles are in $results:
   picture     $results/final.png
   animation   $(animation)
-  energies    $results/history.png (history.h5 holds them, with counts and joint reactions)
+  energies    $results/energies.png (history.h5 holds them, with counts and joint reactions)
   fields      $results/particles.vtkhdf and bodies.vtkhdf for ParaView 5.13 and newer,
               $results/particles.xdmf and bodies.xdmf for older ones
 In ParaView open both files, press Apply, then choose the representation "Point Gaussian" or add the filter Glyph

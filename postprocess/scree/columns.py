@@ -42,7 +42,9 @@ class Words:
 
 def words(name: str, unit: str, description: str) -> Words:
     """Of the column GROUP/NAME or GROUP/OWNER/NAME."""
-    _, *owner, last = name.split("/")
+    group, *owner, last = name.split("/")
+    if group == "particles":
+        owner = [f"particle {number}" for number in owner]  # which have no names
     what = re.split(r"[:;,] |: ", description)[0]
     parts = re.fullmatch(r"(|.*_|f|v|w|marker_f|origin_v)([xyz])", last)
     component = PARTS.get(parts[1], "{}").format(parts[2]) if parts else ""

@@ -79,7 +79,7 @@ class Panel:
             axes.plot(along, line.values, dash, color=color, linewidth=1.6, label=label)
         if not shown:
             axes.set_yticks([])
-        if len(shown) > 1:
+        if shown and len(self.lines) > 1:  # also where one alone is left: whose it is
             axes.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
         axes.set_ylabel(self.axis, fontsize=12)
         if self.unit:

@@ -12,9 +12,8 @@ import numpy as np
 
 from scree import files
 from scree.errors import ScreeError
+from scree.fields import POSITION
 from scree.quantity import Quantity
-
-POSITION = "position"
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from scree.errors import MissingError, ScreeError
+from scree.fields import POSITION
 from scree.quantity import Quantity
-from scree.series import POSITION, Series
+from scree.series import Series
 
 if TYPE_CHECKING:
     import pandas

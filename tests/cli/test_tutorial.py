@@ -12,6 +12,8 @@ import tempfile
 import time
 import unittest
 
+import PIL.Image
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "input/tutorial/README.md").read_text()
 SCREE = pathlib.Path(os.environ["SCREE"]).resolve()
@@ -23,6 +25,7 @@ DONE, STOPPED = 0, 5
 NUMBER = r"-?\d+(?:\.\d+)?"
 # How far numbers may be off, as a share and outright. Grains: what other places at t = 0 change, and so other rounding.
 CLOSED_FORM, GRAINS = (0, 1.5e-5), (0.25, 0.1)
+FEW_GRAINS = 2  # times as fast may be the fastest percent of the grains, which is two or three of them
 # A run of the last deck for a second or two.
 SHORT = ("--set", "particles.grains.count=200", "--set", "time.end=0.2", "--set", "output.checkpoint_interval=0.02")
 
@@ -91,17 +94,37 @@ class TutorialTest(unittest.TestCase):
             self.assertNotIn("warning", said)
             self.assert_answers(command, said, shown, tolerance)
 
+    def assert_picture(self, name, results):
+        """The page's picture is that of the run: made anew it says the same of itself, and its colours go about as
+        far."""
+        path = self.folder / "picture.png"
+        self.answer(f".venv/bin/python -m scree picture {results} -o {path}", PYTHONPATH="postprocess")
+        said = []
+        for each in (ROOT / "postprocess/pictures" / name, path):
+            with PIL.Image.open(each) as image:
+                said.append(image.text)
+        shown, made = said
+        for key in ("Title", "Description"):
+            self.assertEqual(shown[key], made[key])
+        bars = [re.fullmatch(r"(.*): (\S+) to (\S+)", each["Color bar"]) for each in said]
+        self.assertEqual(*(bar.group(1, 2) for bar in bars))
+        ends = [float(bar[3]) for bar in bars]
+        self.assertLessEqual(max(ends), FEW_GRAINS * min(ends), f"{name} has {shown['Color bar']}, the run "
+                                                               f"{made['Color bar']}: postprocess/pictures/make.py")
+
     def test_the_pendulum(self):
         self.follow("1. A pendulum", CLOSED_FORM, 2)
 
     def test_the_heap(self):
         self.follow("2. A heap", GRAINS, 3)
+        self.assert_picture("tutorial_heap.png", "results/tutorial/2_heap")
 
     def test_the_drum(self):
         self.follow("3. A drum", GRAINS, 2)
 
     def test_the_digging_linkage(self):
         self.follow("4. A digging linkage", GRAINS, 2)
+        self.assert_picture("tutorial_digging.png", "results/tutorial/4_digging")
 
     def test_the_study(self):
         self.follow("5. A job on a cluster", GRAINS, 2)

@@ -3,9 +3,9 @@
     python3 tests/postprocess/test_commands.py NET_400 DRUM_LIFTERS
 
 takes the folders of their results. Needs postprocess/requirements.txt. What pictures show is tested by
-tests/readers/test_draw.py."""
+tests/readers/test_draw.py, films, pictures and
+ParaView's file by test_looks.py."""
 
-import ast
 import contextlib
 import html.parser
 import io
@@ -31,7 +31,6 @@ import scree
 from scree.cli import main
 from scree.columns import axis, panels, words, x_axis
 from scree.differences import apart, differences, matched, over
-from scree.pictures.render import DrawnRun, Look, make_picture
 from scree.plots import balance_panel, energy_panels, history_figure
 
 NET, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
@@ -87,6 +86,16 @@ class PlotTest(CommandTest):
         self.assertEqual(texts, ["Zero throughout: net, z."])
         self.assertEqual(axes.get_ylabel(), "force [N]")
         self.assertEqual(axes.get_title("left"), "Contact force on the row's bodies")
+
+    def test_one_curve_says_whose_it_is(self):
+        """By the legend where others of its panel stay zero, else by the title."""
+        history = scree.open(NET).history
+        (axes,) = history_figure(history, "net", ["contacts/net/f[xz]"], energies=False).axes
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["net, x"])
+        (axes,) = history_figure(history, "net", ["contacts/net/fy"], energies=False).axes
+        self.assertEqual(axes.get_title("left"), "net, contact force on the row's bodies, y")
+        column = scree.Quantity(np.ones(2), "m", "position")
+        self.assertEqual(panels({"particles/17/x": column}, ["particles/17/x"])[0][0], "particle 17, position, x")
 
     def test_over_a_column(self):
         history = scree.open(NET).history
@@ -240,78 +249,6 @@ class ExportTest(CommandTest):
         self.command(DONE, "export", DRUM, "--format", "stl", "--times", 0.1, "--kinds", "surfaces", "-o", self.folder)
         self.assertEqual(pyvista.read(self.folder / "surfaces_0001.stl").n_cells,
                          len(scree.open(DRUM).snapshots[1].surfaces.triangles))
-
-
-class FilmTest(CommandTest):
-    def test_part_of_a_run_for_pages(self):
-        import PIL.Image
-        for name in ("film.gif", "film.webp"):
-            path = self.folder / name
-            said = self.command(DONE, "animate", NET, "--from", "0.2", "--to", "0.3", "-o", path, "--rate", "5",
-                                "--width", "400")
-            self.assertEqual(said.strip(), str(path))
-            with PIL.Image.open(path) as film:
-                film.seek(film.n_frames - 1)
-                film.load()
-                self.assertEqual((film.n_frames, film.info["duration"], film.size[0]), (3, 200, 400))
-
-    def test_what_is_refused(self):
-        for words, text in ((("--from", "7"), "no snapshot from 7 to inf s; they go from 0 to 1 s"),
-                            (("-o", "film.avi"), "must end in .mp4, .webp or .gif"), (("--frames", "0"), "not above 0"),
-                            (("--rate", "-1"), "not above 0"),
-                            (("--surfaces", "pressure"), "surfaces are coloured in")):
-            self.assertIn(text, self.command(WRONG, "animate", NET, *words))
-        self.assertIn("a view and axes are for runs in the plane",
-                      self.command(WRONG, "animate", DRUM, "--view", 0, 1, 0, 1))
-
-
-class PictureTest(CommandTest):
-    def test_the_nearest_snapshot(self):
-        path = self.folder / "picture.png"
-        self.assertEqual(self.command(DONE, "picture", NET, "--time", "0.12", "-o", path).strip(), str(path))
-        last, axes = self.folder / "last.png", self.folder / "axes.png"
-        self.command(DONE, "picture", NET, "-o", last)
-        self.command(DONE, "picture", NET, "-o", axes, "--axes")
-        self.assertEqual(len({each.read_bytes() for each in (path, last, axes)}), 3)
-        again = self.folder / "again.png"
-        self.command(DONE, "picture", NET, "--time", "0.1", "-o", again)
-        self.assertEqual(again.read_bytes(), path.read_bytes())
-
-    def test_what_is_refused(self):
-        self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
-        self.assertIn("for runs in the plane", self.command(WRONG, "picture", DRUM, "--axes"))
-
-
-class ColorTest(CommandTest):
-    def test_of_a_field(self):
-        drawn = DrawnRun(scree.open(NET))
-        scene = make_picture(drawn, [0], Look(color="radius")).scene
-        np.testing.assert_array_equal(scene.coloring.values(drawn.particles, 0), drawn.particles.rows(0, "radius"))
-        picture = make_picture(drawn, [0], Look(color="group"))
-        self.assertEqual([text.get_text() for text in picture.bar.ax.get_yticklabels()], ["block"])
-        said = self.command(WRONG, "picture", NET, "--color", "nothing")
-        self.assertIn("particles have no field nothing; there are ", said)
-
-    def test_what_rests_looks_so(self):
-        drawn = DrawnRun(scree.open(NET))
-        rows = drawn.particles.rows
-        drawn.particles.rows = lambda snapshot, name: rows(snapshot, name) * (name != "velocity")
-        least = 0.1 * np.sqrt(np.linalg.norm(drawn.model.gravity) * 2 * np.median(rows(0, "radius")))
-        top = make_picture(drawn, [0], Look()).scene.colors.norm.vmax
-        self.assertTrue(least <= top <= 1.5 * least, (least, top))
-
-
-class ParaviewTest(CommandTest):
-    def test_a_file_that_names_its_folder(self):
-        """What it shows is tested by tests/readers/test_paraview.py."""
-        path = self.folder / "with space's" / "view.py"
-        path.parent.mkdir()
-        self.assertEqual(self.command(DONE, "paraview", NET, "-o", path).strip(), str(path))
-        tree = ast.parse(path.read_text())
-        names = {node.targets[0].id: node.value for node in tree.body if isinstance(node, ast.Assign)
-                 and isinstance(node.targets[0], ast.Name)}
-        self.assertEqual(ast.literal_eval(names["FOLDER"]), str(NET))
-        self.assertIn("must end in .py", self.command(WRONG, "paraview", NET, "-o", self.folder / "view.pvsm"))
 
 
 class Page(html.parser.HTMLParser):

@@ -14,6 +14,8 @@ import tempfile
 import unittest
 
 import matplotlib.image
+import matplotlib.pyplot as plt
+import matplotlib.text
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -60,15 +62,21 @@ class ProgramTest(unittest.TestCase):
     """By the name that README gives, from another folder."""
 
     def check(self, results, bodies):
-        for name in ("final.png", "history.png", "animation.mp4", "animation.gif"):
+        for name in ("final.png", "energies.png", "animation.mp4", "animation.gif"):
             (results / name).unlink(missing_ok=True)
+        others = [results / name for name in ("history.png", "film.mp4", "film.gif", "picture.png")]
+        for path in others:  # of scree-post's other commands
+            path.write_text("theirs")
         run = draw(results, "--frames", 3)
+        self.assertEqual([path.read_text() for path in others], ["theirs"] * len(others))
+        for path in others:
+            path.unlink()
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertIn(str(results / "final.png"), run.stdout)
         animation = [path for path in results.glob("animation.*") if path.suffix in (".mp4", ".gif")]
         self.assertEqual(len(animation), 1)
         self.assertGreater(animation[0].stat().st_size, 5000)
-        final, history = pixels(results / "final.png"), pixels(results / "history.png")
+        final, history = pixels(results / "final.png"), pixels(results / "energies.png")
         for image in (final, history):
             self.assertGreater(min(image.shape[:2]), 500)
             self.assertLess(max(image.shape[:2]), 2000)
@@ -88,7 +96,7 @@ class ProgramTest(unittest.TestCase):
         listed = draw(NET, "--list")
         self.assertIn("contacts/net/fy [N]: contact force on the row's bodies", listed.stdout)
         plotted = draw(NET, "--only", "history", "--columns", "contacts/net/fx", "contacts/net/contacts")
-        self.assertEqual((plotted.returncode, plotted.stdout.strip()), (0, str(NET / "history.png")))
+        self.assertEqual((plotted.returncode, plotted.stdout.strip()), (0, str(NET / "energies.png")))
         self.assertIn("no column contacts/nte", draw(NET, "--only", "history", "--columns", "contacts/nte").stderr)
 
     def test_what_cannot_be_drawn_is_named(self):
@@ -141,6 +149,60 @@ class PictureTest(unittest.TestCase):
         self.assertLess(x_min, -0.2)
         self.assertGreater(x_max, 0.86)
         self.assertTrue(y_min < -0.2 and y_max > 0.2)
+
+
+    def test_the_scale_is_of_what_is_in_the_picture(self):
+        """Half of the particles have fallen out of sight, and are as fast as that takes."""
+        for results, with_vtk in ((NET, False), (BOX, False), (BOX, True)):
+            run = drawn(results)
+            down, last = run.model.up * 50 * np.ptp([run.model.low, run.model.high]), len(run.particles) - 1
+            rows, fallen = run.particles.rows, np.arange(run.particles.count(last)) % 2 == 0
+            changes = {"position": lambda values: values - fallen[:, None] * down,
+                       "velocity": lambda values: values * np.where(fallen, 1000.0, 1.0)[:, None]}
+            still = np.linalg.norm(rows(last, "velocity")[~fallen], axis=1)
+            run.particles.rows = lambda snapshot, name: changes.get(name, lambda values: values)(rows(snapshot, name))
+            if with_vtk and not vtk_renders():
+                continue
+            picture = make_picture(run, [last], look(run, with_vtk=with_vtk))
+            least = 0.1 * np.sqrt(np.linalg.norm(run.model.gravity) * 2 * rows(last, "radius").max())
+            self.assertLessEqual(picture.colors.high, 1.5 * max(still.max(), least))
+            self.assertGreater(picture.colors.high, 0.9 * np.percentile(still, 90))
+            self.assertIn(f"particle speed [m/s]: 0 to {picture.colors.high:g}", picture.imprint(last)["Color bar"])
+            plt.close(picture.figure)
+
+    def test_meshes_in_the_plane_make_no_margin(self):
+        """They reach out of it, for other programs to show; a picture's margin is a share of what is in the plane."""
+        run = drawn(NET)
+        before = DiscScene(run, [0], None).view
+
+        class Walls:
+            field = None
+
+            @staticmethod
+            def bounds(snapshots):
+                return np.array([*before[::2], -100.0]), np.array([*before[1::2], 100.0])
+        run.surfaces = Walls()
+        width, height = np.ptp(before[:2]), np.ptp(before[2:])
+        after = DiscScene(run, [0], None).view
+        self.assertLess(np.ptp(after[:2]), width + 0.1 * max(width, height))
+
+    def test_words_are_within_the_figure(self):
+        """Also where the title is long and the picture narrow, and in films, which have another size."""
+        for results in (NET, BOX, CRANK):
+            run = drawn(results)
+            run.title = "a title that is as long as titles of decks can be, " * 4
+            picture = make_picture(run, [len(run.particles) - 1], look(run, with_vtk=False))
+            picture.draw(len(run.particles) - 1)
+            width, height = picture.figure.canvas.get_width_height()
+            renderer = picture.figure.canvas.get_renderer()
+            words = [text for text in picture.figure.findobj(matplotlib.text.Text) if text.get_text().strip() and
+                     text.get_visible()]
+            self.assertGreater(len(words), 2)
+            for text in words:
+                box = text.get_window_extent(renderer)
+                self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height,
+                                f"{text.get_text()!r}: {box} of {width} x {height}")
+            plt.close(picture.figure)
 
 
 class SurfaceTest(unittest.TestCase):

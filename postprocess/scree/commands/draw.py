@@ -20,7 +20,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
 def run(words: argparse.Namespace) -> int:
     """The last state, an animation of the run and its energies over time
 
-    Writes RESULT_DIR/final.png, RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg) and RESULT_DIR/history.png.
+    Writes RESULT_DIR/final.png, RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg) and RESULT_DIR/energies.png,
+    and leaves what the other commands have written.
     Particles are drawn to scale and coloured by their speed, bodies in orange, with walls, joints, springs and, where
     springs have actuators, cylinders: discs in 2D, lit spheres in 3D. One looks through drums, pipes and meshes from
     files.
@@ -30,7 +31,7 @@ def run(words: argparse.Namespace) -> int:
         return plot.print_columns(opened)
     has_history = opened.history.rows > 0 or words.only == "history" or words.columns
     if words.only != "pictures" and has_history:
-        print(plot.save(opened, words.columns, True, words.folder / "history.png"))
+        print(plot.save(opened, words.columns, True, words.folder / "energies.png"))
     if words.only == "history":
         return 0
 

@@ -1,14 +1,13 @@
 from __future__ import annotations
 
 import argparse
+import json
 import pathlib
 
 from scree.cli import add_folder
 from scree.errors import ScreeError
+from scree.paraview.parts import bundle
 from scree.run import open_run
-
-SCRIPT = pathlib.Path(__file__).parents[1] / "paraview" / "view.py"
-LINE = "FOLDER = None"
 
 
 def describe(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +19,7 @@ def run(words: argparse.Namespace) -> int:
     """A file that shows the run in ParaView: File > Load State, or pvbatch for a picture
 
     `paraview --script=RESULT_DIR/view.py` starts with it, `pvbatch RESULT_DIR/view.py -o picture.png` draws a picture.
-    The file needs ParaView 5.11 or newer and the results, whose folder it names, and nothing else.
+    The file needs ParaView 5.11 or newer and the results, whose folder it names, and nothing else: the deck is in it.
     """
     opened = open_run(words.folder)
     if not len(opened.snapshots):
@@ -28,7 +27,6 @@ def run(words: argparse.Namespace) -> int:
     path = words.output or words.folder / "view.py"
     if path.suffix != ".py":
         raise ScreeError(f"{path}: must end in .py")
-    before, after = SCRIPT.read_text(encoding="utf-8").split(LINE)
-    path.write_text(f"{before}FOLDER = {str(words.folder.resolve())!r}{after}", encoding="utf-8")
+    path.write_text(bundle(str(words.folder.resolve()), json.dumps(opened.deck)), encoding="utf-8")
     print(path)
     return 0

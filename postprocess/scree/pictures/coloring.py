@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from scree.pictures.palette import CATEGORIES, SPEED_MAP
 from scree.series import Series
 
 SPEED = "velocity"
+Seen = Callable[[int], np.ndarray]  # of a snapshot [particles]: which of them the picture shows
 SLOW = 0.1  # of the speed of a fall by a diameter: the scale of speeds ends no lower, so that what is at rest looks so
 
 
@@ -22,10 +23,14 @@ def rounded_up(value: float) -> float:
     return float(next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= 0.999 * value))
 
 
-def slowest_limit(particles: Series, snapshot: int, gravity: float) -> float:
-    """The least upper end of a scale of speeds [m/s]: 0.1 sqrt(g d), with the median diameter d. gravity [m/s^2]."""
-    radii = particles.rows(snapshot, "radius")
-    return SLOW * float(np.sqrt(gravity * 2 * np.median(radii))) if len(radii) else 0.0
+def slowest_limit(particles: Series, snapshots: Iterable[int], gravity: float, seen: Seen) -> float:
+    """The least upper end of a scale of speeds [m/s]: 0.1 sqrt(g d), with the median diameter d of what the last
+    picture that has particles shows. gravity [m/s^2]."""
+    for snapshot in reversed(list(snapshots)):
+        radii = particles.rows(snapshot, "radius")[seen(snapshot)]
+        if len(radii):
+            return SLOW * float(np.sqrt(gravity * 2 * np.median(radii)))
+    return 0.0
 
 
 @dataclass(frozen=True)
@@ -55,19 +60,24 @@ class Coloring:
         rows = particles.rows(snapshot, self.field)
         return np.linalg.norm(rows, axis=1) if rows.ndim > 1 else rows
 
+    def words(self) -> str:
+        """What the colour bar says, in a line."""
+        return f"{self.label}: {', '.join(self.names) if self.names else f'{self.low:g} to {self.high:g}'}"
 
-def extremes(particles: Series, field: str, snapshots: Iterable[int]) -> tuple[float, float]:
-    """The smallest and the largest value, but for the last percent at each end."""
+
+def extremes(particles: Series, field: str, snapshots: Iterable[int], seen: Seen) -> tuple[float, float]:
+    """The smallest and the largest value of the particles that are seen, but for the last percent at each end."""
     plain = Coloring(field, "", 0, 1)
-    values = [plain.values(particles, snapshot) for snapshot in snapshots]
+    values = [plain.values(particles, snapshot)[seen(snapshot)] for snapshot in snapshots]
     found = [np.percentile(each, [1, 99]) for each in values if len(each)]
     return (float(min(low for low, _ in found)), float(max(high for _, high in found))) if found else (0.0, 0.0)
 
 
-def coloring(particles: Series, field: str, snapshots: Sequence[int], gravity: float,
+def coloring(particles: Series, field: str, snapshots: Sequence[int], gravity: float, seen: Seen,
              fastest: float | None = None) -> Coloring:
-    """For these snapshots. fastest: upper end of a scale of speeds [m/s], in place of that of the particles. Throws
-    ScreeError where there is no such field."""
+    """For these snapshots. Numbers are scaled by what is seen: what has fallen out of sight is as fast as its fall is
+    long. fastest: upper end of a scale of speeds [m/s], in place of that of the particles. Throws ScreeError where
+    there is no such field."""
     if not particles.has(field):
         raise ScreeError(f"particles have no field {field}; there are "
                          f"{', '.join(name for name in particles.fields(0) if name != 'position')}; the run's "
@@ -78,9 +88,9 @@ def coloring(particles: Series, field: str, snapshots: Sequence[int], gravity: f
     label = f"particle {words}" + (f" [{unit}]" if unit != "1" else "")
     if names:
         return Coloring(field, label, 0, len(names), names)
-    low, high = extremes(particles, field, snapshots)
+    low, high = extremes(particles, field, snapshots, seen)
     if field == SPEED:
-        high = max(high, slowest_limit(particles, snapshots[-1], gravity))
+        high = max(high, slowest_limit(particles, snapshots, gravity, seen))
         return Coloring(field, label, 0.0, fastest or (rounded_up(high) if high > 0 else 1.0))
     if low < 0:
         return Coloring(field, label, low, high)

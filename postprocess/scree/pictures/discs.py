@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from scree.fields import POSITION
 from scree.pictures.flat import FlatMechanism, FlatSurfaces, disc_collection, place_discs
-from scree.pictures.framing import SMALL, figure_size, plane_bounds
+from scree.pictures.framing import figure_size, plane_bounds
 from scree.pictures.marks import draw_scale_bar
 from scree.pictures.mechanism import Mechanism
 from scree.pictures.palette import BODY_COLOR, EDGE_COLOR, PALE_INK
+from scree.pictures.styles import SMALL
 from scree.pictures.walls import solids
-from scree.series import POSITION
 
 SHINE = 0.14  # opacity of the brighter discs on a particle, which together make it look round
 SHINES = ((0.65, 0.15), (0.35, 0.25))  # their radius and distance from its middle, over its radius
@@ -25,6 +26,12 @@ class DiscScene:
 
     def size(self):
         return figure_size(self.view[1] - self.view[0], self.view[3] - self.view[2])
+
+    def shows(self, points, radii):
+        """Of discs, whether any of each is in the picture."""
+        low, high = np.array(self.view[::2]), np.array(self.view[1::2])
+        reach = radii[:, None]
+        return ((points[:, :2] + reach > low) & (points[:, :2] - reach < high)).all(axis=1)
 
     def set_up(self, axes, coloring):
         self.coloring = coloring

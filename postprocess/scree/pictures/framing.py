@@ -2,14 +2,14 @@
 
 import numpy as np
 
+from scree.fields import POSITION
 from scree.pictures.mechanism import Mechanism
-from scree.series import POSITION
 
 LONGEST_SIDE = 7.5  # of the axes [inch]
 SPREAD = 40  # snapshots in which bodies are looked for
 AZIMUTH, ELEVATION = 30, 26  # of the eye in space [degrees]
 NEAR = 0.2  # of a picture's longest side: a side of the space that is no farther off is shown, too
-SMALL = 0.012  # things without a size of their own, over the picture's longest side
+IN_PLANE = np.array([1.0, 1.0, 0.0])
 
 
 def bounds(series, snapshots, strays):
@@ -62,6 +62,7 @@ def plane_bounds(run, snapshots):
     low, high = union(*boxes)
     if not (np.isfinite(low).all() and (high >= low).all() and (high > low).any()):
         low, high = run.model.low, run.model.high
+    low, high = low * IN_PLANE, high * IN_PLANE  # meshes in the plane reach out of it, for other programs to show
     near = NEAR * max(high - low)  # sides of the space that would be cut off by little
     low = np.where((low > run.model.low) & (low - run.model.low < near), run.model.low, low)
     high = np.where((high < run.model.high) & (run.model.high - high < near), run.model.high, high)

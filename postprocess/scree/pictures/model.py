@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scree.series import POSITION
+from scree.fields import POSITION
 
 CENTER = 1  # kind of the points of bodies that are their centres of mass
 GROUND = -1  # indexes the last row of a motion, which is the ground's

@@ -6,8 +6,10 @@ import io
 import pathlib
 import subprocess
 import sys
+import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib
 
@@ -19,11 +21,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
+from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FixedLocator, MaxNLocator
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from scree.errors import ScreeError
+from scree.fields import POSITION
 from scree.pictures.coloring import SPEED, Coloring, coloring
 from scree.pictures.discs import DiscScene
 from scree.pictures.model import Model, Motion
@@ -31,10 +37,13 @@ from scree.pictures.palette import INK, PALE_INK
 from scree.pictures.space import SphereScene
 from scree.pictures.surfaces import Surfaces
 from scree.run import Run
-from scree.series import POSITION
 
 FRAMES_PER_SECOND = 25
+TITLE, SUBTITLE, LABEL = 16, 12, 12  # sizes of letters [pt]
+MARGIN = 0.08  # around words [inch]
+WIDE = 0.58  # mean width of a letter, over its size
 FILM_FORMATS = ("mp4", "webp", "gif")
+WEBP_QUALITY = 80
 
 
 def vtk_renders() -> bool:
@@ -55,7 +64,7 @@ class DrawnRun:
     """What pictures show of a run."""
 
     def __init__(self, run: Run) -> None:
-        self.title, self.model = run.title, Model(run.deck)
+        self.title, self.model, self.record = run.title, Model(run.deck), run.record
         particles = run.series("particles")
         if particles is None:
             missing = "particles.vtkhdf, which pictures need" if len(run.snapshots) else "snapshots"
@@ -77,31 +86,40 @@ class DrawnRun:
         return self.bodies.rows(snapshot, POSITION)[radii > 0], radii[radii > 0]
 
 
+def wrapped(text: str, size: float, width: float) -> str:
+    """In lines no longer than a width [inch]. size: of the letters [pt]."""
+    return textwrap.fill(text, max(int(72 * width / (WIDE * size)), 8))
+
+
 class Picture:
     """One figure whose scene changes from snapshot to snapshot."""
 
     def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int],
                  colors: Coloring) -> None:
-        self.scene, self.run = scene, run
+        self.scene, self.run, self.colors = scene, run, colors
         width, height = scene.size()
+        title = wrapped(run.title, TITLE, width + 1.3)
         layout = ConstrainedLayoutEngine(w_pad=0.15, h_pad=0.2)
         self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.3), dpi=120, layout=layout)
         scene.set_up(axes, colors)
         self.bar = None
         if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
-            self.bar = self.add_bar(axes, scene.colors, colors.label, colors.names)
+            self.bar = self.add_bar(axes, scene.colors, wrapped(colors.label, LABEL, height), colors.names,
+                                    below=colors.low < 0)
         if isinstance(scene, SphereScene) and run.surfaces and run.surfaces.field:
-            self.add_bar(axes, scene.surface_colors, run.surfaces.label())
+            self.add_bar(axes, scene.surface_colors, wrapped(run.surfaces.label(), LABEL, height))
         self.title, self.subtitle = (
             axes.annotate(text, (0, 1), (0, height), xycoords="axes fraction", textcoords="offset points",
-                          fontsize=size, color=color)
-            for text, height, size, color in ((run.title, 28, 16, INK), (" ", 9, 12, PALE_INK)))
+                          fontsize=size, color=color, va="bottom")
+            for text, height, size, color in ((title, 24, TITLE, INK), (" ", 6, SUBTITLE, PALE_INK)))
 
-    def add_bar(self, axes: Axes, colors: ScalarMappable, label: str, names: Sequence[str] = ()) -> Colorbar:
-        """names: of what the colours stand for, from 0 on, in place of numbers."""
-        extend = "neither" if names else "max"
+    def add_bar(self, axes: Axes, colors: ScalarMappable, label: str, names: Sequence[str] = (),
+                below: bool = False) -> Colorbar:
+        """names: of what the colours stand for, from 0 on, in place of numbers; below: values may lie below the
+        scale, as they may above it."""
+        extend = "neither" if names else "both" if below else "max"
         bar = self.figure.colorbar(colors, ax=axes, extend=extend, shrink=0.5, aspect=25, pad=0.02)
-        bar.set_label(label, fontsize=12, color=INK)
+        bar.set_label(label, fontsize=LABEL, color=INK)
         bar.ax.tick_params(labelsize=11, color=PALE_INK, labelcolor=INK)
         if names:
             bar.ax.minorticks_off()
@@ -121,12 +139,39 @@ class Picture:
             parts.append(counted(bodies, "body", "bodies") + " (orange)")
         return ", ".join(parts)
 
+    def imprint(self, snapshot: int) -> dict[str, str]:
+        """What a file of the picture at a snapshot says of it, in words."""
+        said = {"Title": self.run.title, "Description": self.caption(snapshot)}
+        if self.bar:
+            said["Color bar"] = self.colors.words()
+        if self.run.record:
+            build = self.run.record["build"]
+            said["Software"] = f"Scree {build['version']}, commit {build['commit']}"
+        return said
+
     def draw(self, snapshot: int) -> None:
         self.scene.draw(snapshot)
         self.subtitle.set_text(self.caption(snapshot))
         if self.figure.get_layout_engine() is not None:
             self.figure.canvas.draw()
             self.figure.set_layout_engine("none")  # laid out once, so that frames are quick and nothing jumps
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """The figure becomes so large that all words are in it."""
+        figure, margin = self.figure, MARGIN * self.figure.dpi
+        size = np.array(figure.canvas.get_width_height(), dtype=float)
+        texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+        words = [text.get_window_extent() for text in texts]
+        low = np.min([[box.x0, box.y0] for box in words], axis=0)
+        high = np.max([[box.x1, box.y1] for box in words], axis=0)
+        before, after = np.maximum(margin - low, 0).round(), np.maximum(high + margin - size, 0).round()
+        larger = size + before + after
+        for axes in figure.axes:
+            place = axes.get_position()
+            corner, extent = (place.p0 * size + before) / larger, place.size * size / larger
+            axes.set_position((*corner, *extent))
+        figure.set_size_inches(larger / figure.dpi)
 
 
 def counted(count: int, one: str, many: str) -> str:
@@ -162,8 +207,13 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bo
     """A picture that fits all of these snapshots. look: fitted; fine: smoother than a frame of a film need be."""
     scene = (DiscScene(drawn, snapshots, look.view, look.axes) if drawn.model.planar else
              SphereScene(drawn, snapshots, look.with_vtk, look.opacity, fine))
-    gravity = float(np.linalg.norm(drawn.model.gravity))
-    return Picture(scene, drawn, snapshots, coloring(drawn.particles, look.color, snapshots, gravity, look.fastest))
+    gravity, particles = float(np.linalg.norm(drawn.model.gravity)), drawn.particles
+
+    def seen(snapshot: int) -> np.ndarray:
+        return np.asarray(scene.shows(particles.rows(snapshot, POSITION), particles.rows(snapshot, "radius")))
+
+    return Picture(scene, drawn, snapshots,
+                   coloring(particles, look.color, snapshots, gravity, seen, look.fastest))
 
 
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
@@ -171,14 +221,44 @@ def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
     if path.suffix == ".png":  # smaller than with the transparency that matplotlib gives it
         drawn = io.BytesIO()
         picture.figure.savefig(drawn, format="png")
-        Image.open(drawn).convert("RGB").save(path, optimize=True)
+        said = PngInfo()
+        for name, text in picture.imprint(snapshot).items():
+            said.add_text(name, text)
+        Image.open(drawn).convert("RGB").save(path, optimize=True, pnginfo=said)
     else:
         picture.figure.savefig(path)
     plt.close(picture.figure)
 
 
-def animation_writer(format: str, frames_per_second: int) -> matplotlib.animation.AbstractMovieWriter:
-    """format: one of FILM_FORMATS."""
+class WebpWriter(matplotlib.animation.AbstractMovieWriter):
+    """Frames that are compressed at a quality of one's choice, as pages load no large files."""
+
+    def __init__(self, frames_per_second: int, quality: int) -> None:
+        super().__init__(fps=frames_per_second)
+        self.quality = quality
+        self.frames: list[Image.Image] = []
+
+    @classmethod
+    def isAvailable(cls) -> bool:
+        return True
+
+    def setup(self, fig: Figure, outfile: Any, dpi: float | None = None) -> None:
+        super().setup(fig, outfile, dpi=dpi)
+
+    def grab_frame(self, **options: Any) -> None:
+        drawn = io.BytesIO()
+        self.fig.savefig(drawn, format="rgba", dpi=self.dpi, **options)
+        self.frames.append(Image.frombytes("RGBA", self.frame_size, drawn.getvalue()).convert("RGB"))
+
+    def finish(self) -> None:
+        self.frames[0].save(self.outfile, save_all=True, append_images=self.frames[1:], quality=self.quality, loop=0,
+                            duration=round(1000 / self.fps), method=4)
+
+
+def animation_writer(format: str, frames_per_second: int, quality: int) -> matplotlib.animation.AbstractMovieWriter:
+    """format: one of FILM_FORMATS. quality: of a webp, up to 100."""
+    if format == "webp":
+        return WebpWriter(frames_per_second, quality)
     if format != "mp4":
         return matplotlib.animation.PillowWriter(fps=frames_per_second)
     if not has_ffmpeg():
@@ -194,10 +274,13 @@ def has_ffmpeg() -> bool:
 
 
 def save_animation(picture: Picture, snapshots: Sequence[int], path: pathlib.Path,
-                   frames_per_second: int = FRAMES_PER_SECOND, width: int | None = None) -> None:
-    """The path ends in one of FILM_FORMATS. width: of the film [pixels]; None: that of the pictures."""
-    writer = animation_writer(path.suffix[1:], frames_per_second)
+                   frames_per_second: int = FRAMES_PER_SECOND, width: int | None = None,
+                   quality: int = WEBP_QUALITY) -> None:
+    """The path ends in one of FILM_FORMATS. width: of the film [pixels]; None: that of the pictures. quality: of a
+    webp, up to 100."""
+    writer = animation_writer(path.suffix[1:], frames_per_second, quality)
     figure = picture.figure
+    picture.draw(snapshots[0])  # which makes room for its words
     with writer.saving(figure, path, dpi=width / figure.get_figwidth() if width else figure.dpi):
         for snapshot in snapshots:
             picture.draw(snapshot)

@@ -3,14 +3,15 @@
 import matplotlib
 import numpy as np
 
+from scree.fields import POSITION
 from scree.pictures.flat import FlatMechanism, FlatSurfaces, disc_collection, place_discs
-from scree.pictures.framing import SMALL, body_bounds, figure_size, picture_axes, scene_bounds, union
+from scree.pictures.framing import body_bounds, figure_size, picture_axes, scene_bounds, union
 from scree.pictures.marks import draw_directions, draw_scale_bar
 from scree.pictures.mechanism import Mechanism
 from scree.pictures.palette import (BODY_COLOR, COLORED_OPACITY, EDGE_COLOR, GLASS, JOINTS, LINES, SURFACE_COLORS,
                                     SURFACE_MAP, rgb)
+from scree.pictures.styles import BALL, SMALL, TUBE
 from scree.pictures.walls import section
-from scree.series import POSITION
 
 LIGHT = np.array([-0.4, 0.75, 0.53])  # where walls are lighter: right, up, towards the eye
 DOTS = 160  # per inch of the axes, of what VTK draws
@@ -50,6 +51,10 @@ class SphereScene:
     def project(self, points):
         """Right, up and nearness of each point, from the picture's centre [m]."""
         return (points - self.center) @ self.axes_of_picture.T
+
+    def shows(self, points, radii):
+        """Of spheres, whether any of each is within the picture's edges; others may hide it."""
+        return (np.abs(self.project(points)[:, :2]) - radii[:, None] < self.half).all(axis=1)
 
     def size(self):
         return figure_size(*self.half)
@@ -132,9 +137,9 @@ class SphereScene:
         lines, joints = self.mechanism.draw(snapshot)
         for style, (color, width, _) in LINES.items():
             strokes = lines.get(style, np.empty((0, 2, 3)))
-            self.renderer.set_lines(style, strokes, rgb(color), 0.0014 * width * self.extent)
+            self.renderer.set_lines(style, strokes, rgb(color), TUBE * width * self.extent)
         balls = np.concatenate([joints[kind] for kind in JOINTS])
-        points, radii = np.concatenate([points, balls]), np.append(radii, np.full(len(balls), 0.007 * self.extent))
+        points, radii = np.concatenate([points, balls]), np.append(radii, np.full(len(balls), BALL * self.extent))
         colors = np.concatenate([colors, np.tile(rgb(EDGE_COLOR), (len(balls), 1))])
         self.image.set_data(faded(self.renderer.image(points, radii, colors)))
 
@@ -153,7 +158,7 @@ class SphereScene:
                     opacity = self.opacity
                 colors = self.field_colors(values[whose][rows], opacity) if values else None
                 self.renderer.set_triangles(f"{whose}, {glass}", points, triangles[rows], color, opacity, colors)
-            self.renderer.set_lines(f"edges of {whose}", lines[whose], 0.55 * np.array(color), 0.0007 * self.extent)
+            self.renderer.set_lines(f"edges of {whose}", lines[whose], 0.55 * np.array(color), 0.5 * TUBE * self.extent)
 
     def field_colors(self, values, opacity):
         """Of triangles, the more opaque the larger their values [n][4] of 0 to 255."""

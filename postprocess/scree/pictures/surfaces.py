@@ -3,7 +3,7 @@
 import numpy as np
 
 from scree.errors import ScreeError
-from scree.series import POSITION
+from scree.fields import POSITION
 
 SHARP = np.cos(np.radians(30))  # edges at which faces turn by more are drawn
 

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""The pictures and films of runs in this folder, from their decks to the files.
+
+    postprocess/pictures/make.py RESULTS [--scree SCREE] [NAME ...]     (NAME: as excavator.png; default: all)
+    postprocess/pictures/make.py --list
+
+Runs the decks into the folder RESULTS, where a run is not there yet, and writes the files here. One core takes a
+quarter of an hour for all. Needs postprocess/requirements.txt, and for paraview.png what jobs/setup.sh --paraview
+installs. The plots here are made by tests/performance/table4.py, tests/performance/scaling_model.py and
+tests/verification/bulk/plots.py.
+"""
+
+import argparse
+import dataclasses
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+FILM = ("--frames", "25", "--rate", "8", "--width", "1000")
+
+
+@dataclasses.dataclass(frozen=True)
+class Picture:
+    """deck: under input, without .toml; settings: of the run, as --set has them; command: of scree-post, or "paraview"
+    for the script that it makes; words: its options."""
+
+    deck: str
+    command: str
+    words: tuple[str, ...] = ()
+    settings: tuple[str, ...] = ()
+
+    @property
+    def results(self) -> str:
+        return self.deck.rsplit("/", 1)[-1]
+
+
+EXCAVATOR = ("examples/excavator", ("output.surface_fields=['pressure']",))
+PICTURES = {
+    "tutorial_heap.png": Picture("tutorial/2_heap", "picture"),
+    "tutorial_digging.png": Picture("tutorial/4_digging", "picture"),
+    "net_400.png": Picture("paper/net_400", "picture", settings=("time.end=0.62",)),
+    "excavator.png": Picture(EXCAVATOR[0], "picture", ("--time", "3", "--fastest", "1"), EXCAVATOR[1]),
+    "paraview.png": Picture(EXCAVATOR[0], "paraview", ("--time", "2.2", "--size", "1400", "1050"), EXCAVATOR[1]),
+    "drum_lifters.webp": Picture("examples/drum_lifters", "animate", (*FILM, "--quality", "50")),
+    "excavator.webp": Picture(EXCAVATOR[0], "animate", (*FILM, "--fastest", "1"), EXCAVATOR[1]),
+    "screw_lift.webp": Picture("examples/screw_lift", "animate", (*FILM, "--fastest", "1")),
+    "wheel_rig.webp": Picture("examples/wheel_rig", "animate", (*FILM, "--fastest", "0.2")),
+}
+
+
+def called(*words: object) -> None:
+    print(" ".join(map(str, words)), flush=True)
+    subprocess.run([str(word) for word in words], check=True)
+
+
+def make(name: str, results: pathlib.Path, program: pathlib.Path) -> None:
+    picture = PICTURES[name]
+    folder = results / picture.results
+    if not (folder / "run_record.json").exists():
+        settings = [word for setting in picture.settings for word in ("--set", setting)]
+        called(program, "run", ROOT / f"input/{picture.deck}.toml", "--output", folder, "--overwrite", *settings)
+    post = ROOT / "postprocess/scree-post"
+    if picture.command != "paraview":
+        called(post, picture.command, folder, *picture.words, "-o", HERE / name)
+        return
+    called(post, "paraview", folder)
+    called("xvfb-run", "-a", "pvbatch", folder / "view.py", *picture.words, "-o", HERE / name)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", nargs="?", type=pathlib.Path, metavar="RESULTS")
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--scree", type=pathlib.Path, default=ROOT / "build/release/scree", help="the program")
+    parser.add_argument("--list", action="store_true", help="say how each is made, and make none")
+    arguments = parser.parse_args()
+    if arguments.list:
+        for name, picture in PICTURES.items():
+            settings = "".join(f' --set "{setting}"' for setting in picture.settings)
+            print(f"{name}: input/{picture.deck}.toml{settings}; {' '.join((picture.command, *picture.words))}")
+        return 0
+    if arguments.results is None:
+        parser.error("the folder for the results is missing")
+    for name in arguments.names:
+        if name not in PICTURES:
+            parser.error(f"{name}: allowed: {', '.join(PICTURES)}")
+    for name in arguments.names or PICTURES:
+        make(name, arguments.results.resolve(), arguments.scree)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,3 @@
+"""Names of fields that everything reads."""
+
+POSITION = "position"
