@@ -1,6 +1,7 @@
 """The rows that bed --csv writes, one per run and rank, as runs."""
 import csv
 import dataclasses
+import re
 
 STAGES = ["predict", "migrate", "sort_cells", "exchange_halo", "neighbors", "update_halo", "broadcast_motion",
           "contact_force", "reduce_wrench", "mbs_correct", "particle_correct", "accept", "output"]
@@ -80,3 +81,44 @@ def read_runs(paths):
     if not runs:
         raise SystemExit(f"error: {', '.join(map(str, paths))}: no runs")
     return list(runs.values())
+
+
+KEPT = "bed/cuda, spheres, explicit, double"  # of the keys of measured.csv
+KEPT_BEDS = ("list where needed", "plain")  # without bodies
+KEPT_PLOUGH, KEPT_BODIES = "with a row drawn through it", 20  # of 8 million particles
+CHAIN_ITERATIONS = 2  # of a step of "earlier/chain for the model"
+
+
+def kept(rows):
+    """The runs and the chain that scaling_model.py fits, of the rows of measured.csv: (runs, [(bodies, seconds per
+    iteration)]). Of a rank: its share of the particles, one receiver, the bytes of its halo."""
+    table = {row["key"]: row for row in rows}
+    scale = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "MB": 1e6}
+
+    def value(key):
+        row = table[key]
+        return scale[row["unit"]] * float(row["value"])
+
+    runs = []
+    for key, row in table.items():
+        found = re.fullmatch(rf"({KEPT}(, .*)?)/(\d+) step", key)
+        said = found[2].split(", ")[1:] if found and found[2] else []
+        if not said or not set(said) <= {*KEPT_BEDS, KEPT_PLOUGH, "2 ranks", "per rank"}:
+            continue
+        ranks, particles, bodies = 1 + ("2 ranks" in said), int(found[3]), KEPT_BODIES * (KEPT_PLOUGH in said)
+        whole = dict.fromkeys(WHOLE, 0) | {"bodies": bodies, "ranks": ranks, "particles": particles,
+                                           "seconds_per_step": value(key)}
+        rank = dict.fromkeys(OF_RANK, 0) | {"owned": particles // ranks, "receivers": ranks - 1}
+        if ranks > 1:
+            rank["halo_bytes"] = value(f"{found[1]}/{found[3]} halo")
+        if bodies and ranks > 1:
+            rank["mbs_correct"] = value(f"ranks/cuda, spheres, explicit, double, 2 ranks, {bodies} bodies/8e+06 "
+                                        "mbs_correct, rank 0")
+        kind = dict.fromkeys(KIND, "") | {"rebuild": next((bed for bed in KEPT_BEDS if bed in said), ""),
+                                          "commit": row["commit"], "device": row["machine"], "backend": "cuda",
+                                          "precision": "double", "dimension": "3", "integrator": "explicit"}
+        runs.append(Run(kind, whole, [{**rank, "rank": number} for number in range(ranks)]))
+    chain = sorted((int(key.rsplit("/", 1)[1].split()[0]), value(key) / CHAIN_ITERATIONS)
+                   for key in table if key.startswith("earlier/chain for the model/"))
+    runs.sort(key=lambda run: run.rebuild != "plain")  # first, as the runs with bodies are compared with these
+    return runs, chain

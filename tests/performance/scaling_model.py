@@ -1,8 +1,11 @@
 """How explicit steps go on past the ranks that were measured: a model fitted to the rows of bed and chain_scaling.
 
     scaling_model.py --chain CHAIN.csv --out DIR [options] RANKS.csv ...
+    scaling_model.py --kept [--out DIR]
 
-RANKS.csv: of bed --csv, on one and more ranks (gpu_ranks.sh measures them). CHAIN.csv: of chain_scaling.
+RANKS.csv: of bed --csv, on one and more ranks (gpu_ranks.sh measures them). CHAIN.csv: of chain_scaling. --kept takes
+both from tests/performance/measured.csv, what was measured on GPUs without friction and is kept there, and draws
+postprocess/pictures/scaling_model.png where no --out is given.
 
 A step of the particles on P ranks takes
 
@@ -34,10 +37,13 @@ import sys
 import numpy
 
 import rank_runs
+import scaling_plot
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import measured  # noqa: E402
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TABLE, PICTURES = ROOT / "tests/performance/measured.csv", ROOT / "postprocess/pictures"
 RANKS = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000]
 BODIES = [0, 20, 1000, 10000]
 # What crosses per body and step: its motion twice, and twice the sums of one shape's contacts, as partition sends them
@@ -305,37 +311,6 @@ def limits(model, weak, totals):
     return lines
 
 
-def plot(path, model, rows, runs, weak, totals):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 1 + len(totals), figsize=(5 * (1 + len(totals)), 4.5), squeeze=False)
-    for axis, (kind, size) in zip(axes[0], [("weak", weak), *(("strong", total) for total in totals)]):
-        for bodies in BODIES:
-            part = [row for row in rows if (row["kind"], row["particles"], row["bodies"]) == (kind, size, bodies)]
-            line, = axis.plot([row["ranks"] for row in part], [1 / row["seconds_per_step"] for row in part],
-                              label=f"{bodies:,} bodies")
-            limit = model.limit(bodies, (lambda p: size) if kind == "weak" else (lambda p: size / p))
-            if limit:
-                n = size if kind == "weak" else size / limit
-                axis.plot([limit], [1 / model.step(n, limit, bodies)], "v", color=line.get_color())
-            if kind == "strong":
-                best = model.fastest(bodies, size)
-                axis.plot([best], [1 / model.step(size / best, best, bodies)], "*", color=line.get_color())
-        points = [run for run in runs if run.bodies == 0 and
-                  abs(run.particles / (run.ranks if kind == "weak" else 1) / size - 1) < 1e-2]
-        if points:
-            axis.plot([run.ranks for run in points], [1 / run.seconds_per_step for run in points], "ko",
-                      markersize=4, label="measured")
-        axis.set(xscale="log", yscale="log", xlabel="ranks", ylabel="steps per second",
-                 title=f"{size:,.0f} particles {'per rank' if kind == 'weak' else 'in all'}")
-        axis.grid(True, which="major", alpha=0.3)
-    axes[0][0].legend(fontsize=8, title="triangle: rank 0 is the limit; star: most steps/s", title_fontsize=7)
-    figure.tight_layout()
-    figure.savefig(path, dpi=150)
-
-
 def choose(runs, name):
     """The runs of one backend; they must be of one device and method."""
     chosen = [run for run in runs if run.backend == name]
@@ -357,9 +332,10 @@ def positive(text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="RANKS.csv")
-    parser.add_argument("--chain", type=pathlib.Path, required=True, metavar="CHAIN.csv")
-    parser.add_argument("--out", type=pathlib.Path, required=True, metavar="DIR")
+    parser.add_argument("files", nargs="*", type=pathlib.Path, metavar="RANKS.csv")
+    parser.add_argument("--chain", type=pathlib.Path, metavar="CHAIN.csv")
+    parser.add_argument("--out", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--kept", action="store_true", help="the runs of tests/performance/measured.csv")
     parser.add_argument("--backend", choices=["cuda", "cpu"], default="cuda", help="whose runs (default: cuda)")
     parser.add_argument("--weak", type=positive, default=8e6, metavar="N", help="particles per rank (default: 8e6)")
     parser.add_argument("--strong", type=positive, nargs="+", default=[64e6, 1e9], metavar="N",
@@ -371,7 +347,15 @@ def main():
     parser.add_argument("--network-bandwidth", type=positive, default=40e9, metavar="B/S",
                         help="per rank, assumed (default: 40e9)")
     arguments = parser.parse_args()
-    runs, chain = choose(rank_runs.read_runs(arguments.files), arguments.backend), rank_runs.read_chain(arguments.chain)
+    if arguments.kept == bool(arguments.files or arguments.chain) or not (arguments.kept or arguments.out):
+        parser.error("RANKS.csv, --chain and --out are needed, or --kept without files")
+    if not arguments.kept and not (arguments.files and arguments.chain):
+        parser.error("RANKS.csv and --chain belong together")
+    if arguments.kept:
+        runs, chain = rank_runs.kept(measured.read(TABLE))
+    else:
+        runs, chain = rank_runs.read_runs(arguments.files), rank_runs.read_chain(arguments.chain)
+    runs = choose(runs, arguments.backend)
     network = Network(int(arguments.per_host), arguments.network_latency, arguments.network_bandwidth)
     model = fit(runs, chain, arguments.iterations, network)
     rows = predictions(model, arguments.weak, arguments.strong)
@@ -381,15 +365,17 @@ def main():
     measured.note(f"scaling_model/{arguments.weak:.2g} particles each, 2 ranks",
                   100 * model.step(arguments.weak, 1, 0) / model.step(arguments.weak, 2, 0), "%")
     text = markdown(model, rows, runs, arguments.weak, arguments.strong)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / "scaling_model.md").write_text(text)
-    with open(arguments.out / "scaling_model.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+    if arguments.out:
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        (arguments.out / "scaling_model.md").write_text(text)
+        with open(arguments.out / "scaling_model.csv", "w", newline="") as file:
+            writer = csv.DictWriter(file, rows[0])
+            writer.writeheader()
+            writer.writerows(rows)
     print(text)
     try:
-        plot(arguments.out / "scaling_model.png", model, rows, runs, arguments.weak, arguments.strong)
+        scaling_plot.plot((arguments.out or PICTURES) / "scaling_model.png", model, rows, runs, arguments.weak,
+                          arguments.strong, count)
     except ImportError as error:
         print(f"no figure: {error}")
 

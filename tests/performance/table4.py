@@ -15,7 +15,9 @@ loop, from the run record, less the output within. The wall time of the whole ru
 beside it.
 
 Writes DIR/table4.csv, a row after each run: the same command again goes on where it was stopped. Then DIR/table4.md
-and, where there is matplotlib, DIR/fig15.png.
+and, where there is matplotlib, DIR/table4.png. --plot-only draws the picture alone:
+
+    table4.py --plot-only postprocess/pictures
 """
 import argparse
 import csv
@@ -30,6 +32,7 @@ import time
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import figures  # noqa: E402
 import measured  # noqa: E402
 
 DECK = pathlib.Path(__file__).resolve().parents[2] / "input/paper/table4.toml"
@@ -233,7 +236,7 @@ def crossover(cpu, gpu):
     return None
 
 
-def write_markdown(folder, rows):
+def markdown(rows):
     series = finished(rows)
     lines = ["Time for one simulated second. start: from rest, as the paper, or at the impact; simulated: the window "
              "that was run; stepping and whole run: wall time within it.", ""]
@@ -264,40 +267,40 @@ def write_markdown(folder, rows):
     lines += [f"Not measured: {row['method']}, N = {row['particles']}, {row['backend']}: {row['status']}."
               for row in failed
               if all(r["particles"] != row["particles"] for r in series.get((row["method"], row["backend"]), []))]
-    (folder / "table4.md").write_text("\n".join(lines) + "\n")
+    return "\n".join(lines) + "\n"
 
 
-def plot(folder, rows):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
+def plot(path, rows):
+    colors, word = {"cpu": figures.CPU, "cuda": figures.GPU}, {"cpu": "one core", "cuda": "GPU"}
+    figure, axes = figures.subplots(figsize=(11, 6.6))
     series = finished(rows)
-    figure, axes = plt.subplots(figsize=(7.5, 5.5))
-    colour = {"cpu": "tab:blue", "cuda": "tab:green"}
-    word = {"cpu": "CPU, one core", "cuda": "GPU"}
     for (method, backend), group in series.items():
-        line, marker = ("-", "o") if method == "implicit" else ("--", "s")
-        for number, start in enumerate(("rest", "impact")):
+        line = "-" if method == "implicit" else "--"
+        for start, fill in (("rest", "white"), ("impact", colors[backend])):
             part = [row for row in group if row["start"] == start]
-            if part:
-                axes.plot([row["particles"] for row in part], [row["seconds_per_second"] for row in part], line,
-                          marker=marker, markersize=4, color=colour[backend], markerfacecolor=("white", None)[number],
-                          label=f"{word[backend]}, {method}" if start == group[0]["start"] else None)
-    for method in METHODS:
-        n = crossover(series.get((method, "cpu"), []), series.get((method, "cuda"), []))
-        if n:
-            axes.axvline(n, color="grey", linewidth=0.8, linestyle="-" if method == "implicit" else "--")
-            axes.annotate(f"{method}: N = {n:,.0f}", (n, 0.02 if method == "implicit" else 0.3), rotation=90,
-                          xycoords=("data", "axes fraction"), ha="right", va="bottom", fontsize=8, color="grey")
-    axes.plot([900], [PAPER_TIMES["cpu"]], "*", color=colour["cpu"], markersize=11, label="the paper's CMAP (CPU)")
-    axes.plot([900], [PAPER_TIMES["cuda"]], "*", color=colour["cuda"], markersize=11, label="the paper's GMAP (GPU)")
-    axes.set(xscale="log", yscale="log", xlabel="particles N (open symbols: from rest, filled: from the impact on)",
-             ylabel="time for one simulated second [s]")
-    axes.grid(True, which="major", alpha=0.3)
-    axes.legend(fontsize=8)
-    figure.tight_layout()
-    figure.savefig(folder / "fig15.png", dpi=150)
+            axes.plot([row["particles"] for row in part], [row["seconds_per_second"] for row in part], line, marker="o",
+                      markersize=6, linewidth=2, color=colors[backend], markerfacecolor=fill)
+        last = group[-1]
+        others = [each[-1]["seconds_per_second"] for key, each in series.items() if key[1] == backend]
+        upper = last["seconds_per_second"] == max(others)
+        figures.beside(axes, last["particles"], last["seconds_per_second"], f"{word[backend]}, {method}",
+                       colors[backend], (10, 6 if upper else -6))
+    for backend, seconds in PAPER_TIMES.items():
+        axes.plot([900], [seconds], "*", color=colors[backend], markersize=16)
+        whose = "CPU" if backend == "cpu" else "GPU"
+        figures.beside(axes, 900, seconds, f"the paper's {whose}: {seconds:g} s", colors[backend], (-12, 0), ha="right")
+    found = [n for method in METHODS
+             if (n := crossover(series.get((method, "cpu"), []), series.get((method, "cuda"), [])))]
+    if found:
+        axes.axvspan(min(found), max(found), color="#d9d9d9", zorder=0)
+        axes.annotate("from here on the GPU\nis the faster", (max(found), 0.03), (8, 0), textcoords="offset points",
+                      xycoords=("data", "axes fraction"), fontsize=figures.SMALL, color=figures.PALE)
+    axes.set(xscale="log", yscale="log", xlim=(80, 6e6))
+    axes.set_xticks([10**k for k in range(2, 7)], ["100", "1,000", "10,000", "100,000", "1 million"])
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,g}")
+    figures.label(axes, "Open: from rest, as in the paper; filled: more nets side by side, from the impact on",
+                  "particles", "time for one simulated second [s]")
+    figures.save(figure, path, "Particles that fall on a net (Table 4 of Jung, Jun and Sohn, 2013)")
 
 
 def main():
@@ -307,7 +310,7 @@ def main():
     parser.add_argument("--backends", nargs="+", choices=["cpu", "cuda"], default=["cpu"])
     parser.add_argument("--sizes", nargs="+", type=int, default=PAPER_SIZES + SCALED_SIZES, metavar="N")
     parser.add_argument("--budget", type=float, default=60, metavar="SECONDS", help="per run (default: 60)")
-    parser.add_argument("--plot-only", type=pathlib.Path, metavar="DIR", help="redraw from DIR/table4.csv")
+    parser.add_argument("--plot-only", type=pathlib.Path, metavar="DIR", help="DIR/table4.png anew from DIR/table4.csv")
     arguments = parser.parse_args()
     folder = arguments.plot_only or arguments.out
     if not arguments.plot_only:
@@ -320,9 +323,11 @@ def main():
     rows = read_rows(folder)
     if not rows:
         parser.error(f"{folder}/table4.csv: has no rows")
-    write_markdown(folder, rows)
+    text = markdown(rows)
+    if not arguments.plot_only:
+        (folder / "table4.md").write_text(text)
     try:
-        plot(folder, rows)
+        plot(folder / "table4.png", rows)
     except ImportError as error:
         print(f"no figure: {error}; table4.py --plot-only {folder} draws it where there is matplotlib")
     failed = [row for row in rows if row["status"] != "done"]

@@ -66,6 +66,26 @@ def chain_csv(path):
                     "".join(f"x,{b},{4 * s},4,{s}\n" for b, s in CHAIN))
 
 
+class KeptTest(unittest.TestCase):
+    """What the repository keeps of runs on GPUs is what its picture and its table of the model are of."""
+
+    def test_the_kept_runs_give_the_kept_model(self):
+        rows = scaling_model.measured.read(scaling_model.TABLE)
+        runs, chain = rank_runs.kept(rows)
+        self.assertEqual({run.ranks for run in runs}, {1, 2})
+        self.assertEqual({run.bodies for run in runs}, {0, rank_runs.KEPT_BODIES})
+        self.assertEqual([bodies for bodies, _ in chain], [20, 1000, 10000])
+        model = scaling_model.fit(runs, chain, 2, NETWORK)
+        self.assertLess(model.error, 0.15)
+        table = {row["key"]: float(row["value"]) for row in rows
+                 if row["key"].startswith("scaling_model/") and row["value"]}
+        self.assertAlmostEqual(table["scaling_model/a message"], 1e6 * model.terms["per_message"], delta=0.01)
+        self.assertAlmostEqual(table["scaling_model/exchange with a rank"], 1e6 * model.coupling_per_rank, delta=0.01)
+        rate = table["scaling_model/1e+09 particles, 20 bodies/rate"]
+        best = int(table["scaling_model/1e+09 particles, 20 bodies/fastest"])
+        self.assertAlmostEqual(1 / model.step(1e9 / best, best, 20) / rate, 1, delta=1e-3)
+
+
 class FitTest(unittest.TestCase):
     def test_exact_times_give_the_terms_back(self):
         known = known_model()

@@ -6,7 +6,9 @@ Needs postprocess/requirements.txt. That the tutorial's runs give the tutorial's
 tests/cli/test_tutorial.py."""
 
 import pathlib
+import subprocess
 import sys
+import tempfile
 import tomllib
 import unittest
 
@@ -19,7 +21,8 @@ sys.path.insert(0, str(PICTURES))
 import make
 
 # Of measurements, by the scripts that draw them.
-PLOTS = {"table4.png": "tests/performance/table4.py", "scaling_model.png": "tests/performance/scaling_model.py"}
+PLOTS = {"table4.png": "tests/performance/table4.py", "scaling_model.png": "tests/performance/scaling_model.py",
+         "bulk.png": "tests/verification/bulk/plots.py"}
 LARGEST, NARROWEST = 1_000_000, 1000  # [B], [pixels]
 
 
@@ -54,6 +57,14 @@ class PictureTest(unittest.TestCase):
             self.assertTrue(said["Color bar"].startswith("particle speed [m/s]: 0 to "), said)
             if "--fastest" in words:
                 self.assertEqual(said["Color bar"], f"particle speed [m/s]: 0 to {words['--fastest']}")
+
+    def test_plots_are_drawn_from_the_repository(self):
+        """The scripts run, and what they draw has a title in it."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "bulk.png"
+            subprocess.run([sys.executable, ROOT / PLOTS["bulk.png"], path], check=True, capture_output=True)
+            with PIL.Image.open(path) as drawn, PIL.Image.open(PICTURES / "bulk.png") as kept:
+                self.assertEqual((drawn.size, drawn.text["Title"]), (kept.size, kept.text["Title"]))
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ import tempfile
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import measured  # noqa: E402
 import results  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "reference/contact"
@@ -52,6 +53,11 @@ class Report:
         if not there:
             self.say(f"{name}: not run")
         return there
+
+    def keep(self, folder, name, what, value, unit=""):
+        """A row of measured.csv, of a run: tests/support/measured.py takes it over."""
+        record = json.loads((folder / name / "run_record.json").read_text())
+        measured.note(f"bulk/{what}", float(value), unit, record=record)
 
     def draw(self, figure):
         figure.savefig(self.picture, dpi=110, bbox_inches="tight")

@@ -134,10 +134,12 @@ def show(folder, report):
         halves = [part.mean() for part in numpy.array_split(v[time >= start], 2)]
         report.check(f"change of the speed at {angle} degrees over t = {start:g} to {time[-1]:g}",
                      halves[1] / halves[0] - 1, -0.03, 0.03, "steady")
+        report.keep(folder, name, f"chute/speed, {angle} degrees", means[angle], "sqrt(g d)")
         report.check(f"mean speed at {angle} degrees", means[angle], SPEED[angle] - SPEED_TOLERANCE[angle],
                      SPEED[angle] + SPEED_TOLERANCE[angle], "chute.csv")
         height, fraction, v, spin = profile(folder, name, start)
         bulk_layers = (height >= 4) & (height <= 12)
+        report.keep(folder, name, f"chute/volume fraction, {angle} degrees", fraction[bulk_layers].mean())
         report.check(f"volume fraction at {angle} degrees, z = 4 to 12", fraction[bulk_layers].mean(),
                      FRACTION[angle] - 0.006, FRACTION[angle] + 0.006, "chute_profile.csv; Silbert 0.54 to 0.60")
         report.check(f"its scatter over z = 4 to 12 at {angle} degrees", fraction[bulk_layers].std(), 0.0, 0.008,

@@ -141,6 +141,8 @@ def show(folder, report):
         last = list(bulk.snapshots(folder, name))[-1][1]
         left, right = angle(last, HALF[dimension])
         found[dimension, friction, rolling] = 0.5 * (left + right)
+        report.keep(folder, name, f"heap/{dimension}D, friction {friction}, rolling friction {rolling}",
+                    0.5 * (left + right), "deg")
         apart[dimension].append(0.5 * (left - right))
         speed = numpy.linalg.norm(last["velocity"], axis=1)
         x, height = surface(last, HALF[dimension])

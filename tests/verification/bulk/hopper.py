@@ -112,6 +112,7 @@ def show(folder, report):
         parts = [part.mean() for part in numpy.array_split(rate[late], 5)]
         found[hole] = rate[late].mean()
         left.plot(time[10:-9], numpy.convolve(rate, numpy.ones(20) / 20, "valid"), label=f"D = {hole} d")
+        report.keep(folder, name, f"hopper/rate, {hole} d", found[hole], "sqrt(g/d)")
         crossed, density = counted(folder, name)
         densities.append(density)
         second = rate[time >= 0.5 * END].mean()

@@ -120,6 +120,8 @@ def show(folder, report):
         found[name] = loads(folder, name, STEADY)
         report.say("     {}: mass {:.1f}, floor {:.1f}, walls {:.1f}, their friction {:.3f}, height {:.1f}".format(
             name, *found[name]))
+        for what, value in zip(("mass", "load on the floor"), found[name]):
+            report.keep(folder, name, f"janssen/{what}, {name}", value)
     if not found:
         return
     mass, floor, walls, friction, height = numpy.array(list(found.values())).T

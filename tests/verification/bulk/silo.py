@@ -170,6 +170,7 @@ def show_rates(folder, report, axes):
         parts = [numpy.polyfit(t, n, 1)[0] for t, n in zip(numpy.array_split(time[steady], 6),
                                                           numpy.array_split(left[steady], 6))]
         report.say(f"     through {hole} d, in six parts of the time: " + " ".join(f"{part:.1f}" for part in parts))
+        report.keep(folder, name, f"silo/rate over the independent program's, {hole} d", found[hole] / rates[hole])
         report.check(f"rate through {hole} d over that of the independent program", found[hole] / rates[hole],
                      1 - RATE_TOLERANCE[hole], 1 + RATE_TOLERANCE[hole],
                      "its author" if hole in OF_SAME_PROGRAM else "silo.csv")
@@ -193,6 +194,7 @@ def show_raised(folder, report, axes):
     carried = -columns["contacts/floor/fz"] / above[0]
     rest = (time > FILLED - 10) & (time < FILLED)
     report.say(f"     the floor carries {carried[rest].mean():.3f} at rest (depends on the filling: not judged)")
+    report.keep(folder, "raised", "silo/share of the weight on the floor", carried[time >= start].mean())
     report.check("share of the weight on the floor", carried[time >= start].mean(), 0.4243 - 0.02, 0.4243 + 0.02,
                  "janssen.csv")
     stress = (above - friction) / (math.pi * 100.0)
@@ -210,6 +212,7 @@ def show_raised(folder, report, axes):
                 for trial in trials]
     decay = trials[numpy.argmin(residues)]
     report.check("spheres per volume", density, 1.1109 * 0.98, 1.1109 * 1.02, "janssen.csv; the 2 % are this script's")
+    report.keep(folder, "raised", "silo/decay length", decay, "d")
     report.check("decay length [d]", decay, 21.29 * 0.93, 21.29 * 1.07, "janssen.csv")
     report.check("friction of the wall over the normal force on it", friction[0] / pressed[0], 0.233 - 0.02,
                  0.233 + 0.02, "janssen.csv")
