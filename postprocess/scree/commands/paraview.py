@@ -27,6 +27,10 @@ def run(words: argparse.Namespace) -> int:
     path = words.output or words.folder / "view.py"
     if path.suffix != ".py":
         raise ScreeError(f"{path}: must end in .py")
-    path.write_text(bundle(str(words.folder.resolve()), json.dumps(opened.deck)), encoding="utf-8")
+    try:
+        deck = json.dumps(opened.deck)
+    except ScreeError:  # neither a record nor a checkpoint is there yet: without walls, joints and names
+        deck = None
+    path.write_text(bundle(str(words.folder.resolve()), deck), encoding="utf-8")
     print(path)
     return 0

@@ -41,7 +41,8 @@ def literal(text):
 
 
 def bundle(folder, deck):
-    """The text of one file that shows a folder. deck: of its run, with every default, as JSON."""
+    """The text of one file that shows a folder. deck: of its run, with every default, as JSON;
+    None where nothing tells it yet."""
     sources = {name: (HERE / f"{name}.py").read_text(encoding="utf-8") for name in MODULES}
     told = ast.get_docstring(ast.parse(sources["view"]), clean=False)
     modules = "".join(f"    {name!r}: {literal(text)},\n" for name, text in sources.items())
