@@ -44,7 +44,7 @@ PICTURES = {
     "excavator.png": Picture(EXCAVATOR[0], "picture", ("--time", "3", "--fastest", "1"), EXCAVATOR[1]),
     "paraview.png": Picture(EXCAVATOR[0], "paraview", ("--time", "2.2", "--size", "1400", "1050"), EXCAVATOR[1]),
     "drum_lifters.webp": Picture("examples/drum_lifters", "animate", (*FILM, "--quality", "50")),
-    "excavator.webp": Picture(EXCAVATOR[0], "animate", (*FILM, "--fastest", "1"), EXCAVATOR[1]),
+    "excavator.webp": Picture(EXCAVATOR[0], "animate", (*FILM, "--quality", "70", "--fastest", "1"), EXCAVATOR[1]),
     "screw_lift.webp": Picture("examples/screw_lift", "animate", (*FILM, "--fastest", "1")),
     "wheel_rig.webp": Picture("examples/wheel_rig", "animate", (*FILM, "--fastest", "0.2")),
 }
