@@ -215,15 +215,28 @@ void check_rotation(const DeckTable& deck, const Model& model) {
   }
 }
 
+bool has_neck(const KelvinVoigt& law) { return law.neck && law.adhesion_work > 0; }
+bool pulls(const KelvinVoigt& law) { return law.attracts() && (!has_neck(law) || law.attraction > 0); }
+
+// The pairs that have a law by now, and what some of them have.
+struct GivenPairs {
+  std::vector<bool> slots;  // as Contact::laws
+  bool hertz = false, stiff = false, necks = false, pull = false;
+
+  void add(const KelvinVoigt& law) {
+    hertz = hertz || law.effective_modulus > 0, stiff = stiff || (law.acts() && law.effective_modulus == 0);
+    necks = necks || has_neck(law), pull = pull || pulls(law);
+  }
+};
+
 // A run has one form of law.
-void check_mixing(const DeckTable& table, const Contact& contact, const KelvinVoigt& law) {
-  for (const KelvinVoigt& other : contact.laws)
-    if (law.acts() && other.acts() && (law.effective_modulus > 0) != (other.effective_modulus > 0))
-      table.fail("stiffness",
-                 fmt::format("{}, while a pair before has {}; a deck follows Hertz's law for all pairs "
-                             "(none with a stiffness but 0) or for none",
-                             law.effective_modulus > 0 ? "missing" : "given",
-                             law.effective_modulus > 0 ? "one" : "none"));
+void check_mixing(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
+  const bool hertz = law.effective_modulus > 0;
+  if (!law.acts() || !(hertz ? before.stiff : before.hertz)) return;
+  table.fail("stiffness",
+             fmt::format("{}, while a pair before has {}; a deck follows Hertz's law for all pairs "
+                         "(none with a stiffness but 0) or for none",
+                         hertz ? "missing" : "given", hertz ? "one" : "none"));
 }
 
 // What surfaces that attract each other add to a pair's law.
@@ -257,21 +270,14 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
 }
 
 // A run has one form of law: necks, or pulls that are added.
-void check_attraction_beside(const DeckTable& table, const Contact& contact, const KelvinVoigt& law) {
-  const auto has_neck = [](const KelvinVoigt& of) { return of.neck && of.adhesion_work > 0; };
-  const auto pulls = [&](const KelvinVoigt& of) {
-    return of.attracts() && (!has_neck(of) || of.attraction > 0);
-  };
-  const auto found = [&](const auto& is) {
-    return is(law) || std::any_of(contact.laws.begin(), contact.laws.end(), is);
-  };
-  if (!law.attracts() || !found(has_neck) || !found(pulls)) return;
+void check_attraction_beside(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
+  if (!law.attracts() || !(has_neck(law) || before.necks) || !(pulls(law) || before.pull)) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
 }
 
 void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
-                std::vector<bool>& given) {
+                GivenPairs& given) {
   Contact& contact = model.contact;
   int material[2] = {0, 0};
   if (table.has("materials")) {
@@ -282,9 +288,9 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
     table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
   }
   KelvinVoigt law = build_law(deck, table, model, material);
-  check_mixing(table, contact, law);
+  check_mixing(table, given, law);
   take_attraction(table, law);
-  check_attraction_beside(table, contact, law);
+  check_attraction_beside(table, given, law);
   const Friction friction = build_friction(deck, table, law, material);
   const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
   // A neck turns with its partners: its law is one of contacts that rub.
@@ -293,23 +299,25 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   take_wear(table, friction.friction, material, contact);
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
-    if (given[slot] && (side == 0 || material[0] != material[1])) {
+    if (given.slots[slot] && (side == 0 || material[0] != material[1])) {
       table.fail("materials", "repeated; every pair of materials must be given once");
     }
     contact.laws[slot] = law;
     if (table.has("friction")) contact.friction[slot] = friction;
     if (resists_rolling(table)) contact.rolling[slot] = rolling;
-    given[slot] = true;
+    given.slots[slot] = true;
   }
+  given.add(law);
 }
 
 // Every pair that can meet needs a law: what is not given is made, where the deck says how. Meshes on planes
 // may do without.
-void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, std::vector<bool>& given) {
+void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, GivenPairs& given) {
   const DeckTable& table = deck.table("contact");
+  const LikePairs like = like_pairs(table);
   const std::vector<MaterialUse> uses = material_uses(model);
   const int count = model.contact.materials();
-  const auto is_given = [&](int a, int b) { return given[static_cast<std::size_t>(a * count + b)]; };
+  const auto is_given = [&](int a, int b) { return given.slots[static_cast<std::size_t>(a * count + b)]; };
   const bool mixes = table.choice<Mixing>("mixing") != Mixing::none;
   for (int a = 0; a < count; ++a) {
     for (int b = a; b < count; ++b) {
@@ -323,7 +331,7 @@ void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names
             fmt::format("no pair with materials = [\"{}\", \"{}\"], which can meet; every pair that can "
                         "meet must be given in [[contact.pairs]]{}",
                         name_a, name_b, a == b ? "" : ", unless contact.mixing says how it follows"));
-      const DeckTable made = combined_pair(table, name_a, name_b);
+      const DeckTable made = combined_pair(table, like, name_a, name_b);
       build_pair(deck, made, model, names, given);
       model.contact.combined.push_back({{a, b}, keys_of(made)});
     }
@@ -368,7 +376,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
       static_cast<std::size_t>(contact.materials()) * static_cast<std::size_t>(contact.materials());
   contact.laws.assign(slots, {});
   contact.connected_bodies_touch = table.boolean("connected_bodies_touch");
-  std::vector<bool> given(slots, false);
+  GivenPairs given{std::vector<bool>(slots, false)};
   for (const DeckTable& pair : table.tables("pairs")) build_pair(deck, pair, model, names, given);
   complete_pairs(deck, model, names, given);
   const auto [of_spheres, largest] = radius_range(model);

@@ -81,6 +81,41 @@ auto with_contact_laws(const Contact& contact, const Use& use) {
   }
 }
 
+// The law of one pair of materials after another, each of the type that with_contact_laws() makes of all:
+// that of the first normal law that accepts them, and so with one pair that each of the others refuses beside
+// the one that is wanted.
+class PairLaws {
+ public:
+  explicit PairLaws(const Contact& contact) : contact_(contact) { find_deciding(); }
+
+  // pair: index into Contact::laws. Returns what use(law) returns.
+  template <class Use>
+  auto with(std::size_t pair, const Use& use) const {
+    Contact few;
+    take(pair, few);
+    for (const std::size_t other : deciding_) take(other, few);
+    return with_contact_laws(few, [&](const auto& laws) { return use(laws.front()); });
+  }
+
+ private:
+  template <std::size_t kFirst = 0>
+  void find_deciding() {
+    const auto refused =
+        std::ranges::find_if_not(contact_.laws, std::tuple_element_t<kFirst, NormalLaws>::accepts);
+    if (refused != contact_.laws.end())
+      deciding_.push_back(static_cast<std::size_t>(refused - contact_.laws.begin()));
+    if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>) find_deciding<kFirst + 1>();
+  }
+  void take(std::size_t pair, Contact& few) const {
+    few.laws.push_back(contact_.laws[pair]);
+    if (!contact_.friction.empty()) few.friction.push_back(contact_.friction[pair]);
+    if (!contact_.rolling.empty()) few.rolling.push_back(contact_.rolling[pair]);
+  }
+
+  const Contact& contact_;
+  std::vector<std::size_t> deciding_;
+};
+
 // How many numbers the law remembers of a contact.
 inline int history_of(const Contact& contact) {
   return with_contact_laws(contact, []<class Law>(const std::vector<Law>&) { return Law::kHistory; });

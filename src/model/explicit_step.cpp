@@ -56,7 +56,7 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
               kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name, loaded->contacts));
 }
 
-void bound_by_pair(const Model& model, const PairLimit& limit, ExplicitStep& step) {
+void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& limit, ExplicitStep& step) {
   const std::string name = pair_name(model, limit);
   const Real substeps = model.integrator.substeps;
   bound(step, substeps * kStableShare * limit.explicit_step,
@@ -66,15 +66,16 @@ void bound_by_pair(const Model& model, const PairLimit& limit, ExplicitStep& ste
           fmt::format("{:g} of the shortest contact of {}, whose necks let go within a small part of it",
                       kNeckShare, name));
   // Trials take a while: where the step is short enough they need not say how long it might be.
-  if (step.step < kInfinity && explicit_error(model, limit, step.step / substeps) < kGoodRebound) return;
+  if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kGoodRebound) return;
   bound(
-      step, substeps * good_explicit_step(model, limit),
+      step, substeps * trials.good_step(limit),
       fmt::format("the longest with which trial rebounds of {} are within {:g} %", name, 100 * kGoodRebound));
 }
 
 }  // namespace
 
 Real two_digits_below(Real x) {
+  if (!std::isnormal(x)) return x;  // of partners whose mass or size is next to nothing
   constexpr Real kRoundOff = 1e-12;
   const int exponent = static_cast<int>(std::floor(std::log10(x))) - 1;
   const Real digits = std::floor(x / std::pow(Real(10), exponent) * (1 + kRoundOff));
@@ -88,14 +89,15 @@ ExplicitStep longest_explicit_step(const Model& model) {
   bound(step, substeps * unnoticed_step(model),
         "half of the smallest radius at the fastest speed that is known beforehand");
   const std::vector<PairLimit> pairs = explicit_pairs(model);
-  for (const PairLimit& limit : pairs) bound_by_pair(model, limit, step);
+  ExplicitTrials trials(model);
+  for (const PairLimit& limit : pairs) bound_by_pair(model, trials, limit, step);
   if (step.step == kInfinity) return step;
   step.step = two_digits_below(step.step);
   // Errors mostly fall with the step, not always.
   constexpr int kMostTries = 10;
   constexpr Real kShorter = 0.8;
   const auto errs = [&](const PairLimit& limit) {
-    return explicit_error(model, limit, step.step / substeps) >= kGoodRebound;
+    return trials.error(limit, step.step / substeps) >= kGoodRebound;
   };
   for (int k = 0; k < kMostTries && std::ranges::any_of(pairs, errs); ++k)
     step.step = two_digits_below(kShorter * step.step);
@@ -107,8 +109,9 @@ bool suits_explicit(const Model& model, Real step) {
   for (const bool held : {false, true})
     if (step * fastest_on_corners(model, held).frequency > corner_phase(held)) return false;
   const Real h = step / model.integrator.substeps;
+  ExplicitTrials trials(model);
   for (const PairLimit& limit : explicit_pairs(model))
-    if (h > limit.explicit_step || explicit_error(model, limit, h) > kBadRebound) return false;
+    if (h > limit.explicit_step || trials.error(limit, h) > kBadRebound) return false;
   return true;
 }
 

@@ -23,10 +23,9 @@ Real lightest_mass(const PairLimit& limit) {
 }
 
 ImpactSpeeds::ImpactSpeeds(const Model& model)
-    : model_(model), uses_(material_uses(model)), surfaces_(surface_speeds(model)) {}
-
-Real ImpactSpeeds::fastest_surface() const {
-  return surfaces_.empty() ? 0 : *std::ranges::max_element(surfaces_);
+    : model_(model), uses_(material_uses(model)), surfaces_(surface_speeds(model)) {
+  fastest_ = surfaces_.empty() ? 0 : *std::ranges::max_element(surfaces_);
+  floor_ = std::ranges::any_of(uses_, &MaterialUse::is_of_surfaces);
 }
 
 Real ImpactSpeeds::of(const PairLimit& limit) const {
@@ -38,9 +37,8 @@ Real ImpactSpeeds::of(const PairLimit& limit) const {
   if (uses_[a].shapes + uses_[b].shapes + uses_[a].meshes + uses_[b].meshes > 0)
     for (const Body& body : model_.bodies) speed = std::max(speed, norm(body.velocity));
   // Grains fall on such as lie on a floor already, of whatever material that is.
-  const bool floor = std::ranges::any_of(uses_, &MaterialUse::is_of_surfaces);
-  if (floor && particles) speed = std::hypot(speed, fall_speed(norm(model_.gravity), fall_height(model_)));
-  return speed + (particles ? fastest_surface() : std::max(surfaces_[a], surfaces_[b]));
+  if (floor_ && particles) speed = std::hypot(speed, fall_speed(norm(model_.gravity), fall_height(model_)));
+  return speed + (particles ? fastest_ : std::max(surfaces_[a], surfaces_[b]));
 }
 
 Real unnoticed_step(const Model& model) {

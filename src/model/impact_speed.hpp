@@ -23,16 +23,15 @@ class ImpactSpeeds {
   // which particles are thrown, too.
   Real of(const PairLimit& limit) const;
   // Fastest of the surfaces that the deck moves, along their normals [m/s].
-  Real fastest_surface() const;
+  Real fastest_surface() const { return fastest_; }
 
  private:
   const Model& model_;
   std::vector<MaterialUse> uses_;
   std::vector<Real> surfaces_;  // of each material
+  Real fastest_ = 0;            // of all
+  bool floor_ = false;          // whether there is a surface to fall on
 };
-
-// Impact speed of one pair [m/s]; for several pairs ImpactSpeeds costs less.
-inline Real impact_speed(const Model& model, const PairLimit& limit) { return ImpactSpeeds(model).of(limit); }
 
 // The time in which a particle as fast as at t = 0 that then fell through the space, or a surface that the
 // deck moves, goes half of the smallest radius [s]: in longer steps they might pass through others unnoticed,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "model/choose_law.hpp"
 #include "model/impact_speed.hpp"
@@ -37,8 +39,7 @@ struct Partners {
   Real radius() const { return std::min(i.radius, j.radius); }
 };
 
-Partners lightest_partners(const Model& model, const PairLimit& limit) {
-  const std::vector<MaterialUse> uses = material_uses(model);
+Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& uses, const PairLimit& limit) {
   const auto use = [&](int side) -> const MaterialUse& {
     return uses[static_cast<std::size_t>(limit.material[side])];
   };
@@ -105,16 +106,28 @@ struct Setup {
   TrialImpact impact{};
 };
 
+// What trials of all pairs have in common.
+struct Field {
+  explicit Field(const Model& of) : model(of), uses(material_uses(of)), speeds(of), laws(of.contact) {}
+
+  const Model& model;
+  std::vector<MaterialUse> uses;
+  ImpactSpeeds speeds;
+  PairLaws laws;
+};
+
+std::size_t pair_of(const Field& field, const PairLimit& limit) {
+  return static_cast<std::size_t>(limit.material[0] * field.model.contact.materials() + limit.material[1]);
+}
+
 // Returns what use(law, setup) returns, the same type for every law.
 template <class Use>
-auto with_setup(const Model& model, Real fastest, const PairLimit& limit, const Use& use) {
-  const Partners two = lightest_partners(model, limit);
-  const KelvinVoigt law = model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
-  Setup setup{two, trial_speed(fastest, law, two), 0};
+auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
+  const Partners two = lightest_partners(field.model, field.uses, limit);
+  const KelvinVoigt law = field.model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
+  Setup setup{two, trial_speed(field.speeds.of(limit), law, two), 0};
   setup.touch = impact_time(law, two.mass(), setup.speed);
-  return with_contact_laws(model.contact, [&]<class Law>(const std::vector<Law>& laws) {
-    const int at = limit.material[0] * model.contact.materials() + limit.material[1];
-    const Law& one = laws[static_cast<std::size_t>(at)];
+  return field.laws.with(pair_of(field, limit), [&]<class Law>(const Law& one) {
     if constexpr (Law::Tangential::acts)
       if (two.i.is_particle) setup.incidence = incidence(one.tangential.friction);
     setup.impact = {two.size(),        two.mass(),  inertia_of(two.i),
@@ -125,12 +138,48 @@ auto with_setup(const Model& model, Real fastest, const PairLimit& limit, const 
 
 // Returns what use(trials) returns for the Trials of velocity-verlet, whatever the model's integrator is.
 template <class Use>
-auto with_explicit_trials(const Model& model, Real fastest, const PairLimit& limit, const Use& use) {
-  return with_setup(model, fastest, limit, [&]<class Law>(const Law& law, const Setup& setup) {
+auto with_explicit_trials(const Field& field, const PairLimit& limit, const Use& use) {
+  return with_setup(field, limit, [&]<class Law>(const Law& law, const Setup& setup) {
     const auto make = [&](Real gap) { return ExplicitTrial<Law>(law, setup.impact, gap); };
     return use(Trials(law, setup.impact, setup.touch, make));
   });
 }
+
+// All that the trial of a pair depends on beside the model's step and integrator. The bindings name every
+// member: one more does not compile without its place here.
+using TrialKey = std::vector<Real>;
+TrialKey key_of(const Field& field, const PairLimit& limit) {
+  const Contact& contact = field.model.contact;
+  const std::size_t pair = pair_of(field, limit);
+  const auto& [k, c, n, tension, e, zeta, work, neck, attraction, range] = contact.laws[pair];
+  TrialKey key{k, c, n, Real(tension), e, zeta, work, Real(neck), attraction, range, field.speeds.of(limit)};
+  if (!contact.friction.empty()) {
+    const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
+    key.insert(key.end(), {mu, k_t, g, zeta_t});
+  }
+  if (!contact.rolling.empty()) {
+    const auto& [mu, factor, k_r, zeta_r, c_r, twisting] = contact.rolling[pair];
+    key.insert(key.end(), {mu, factor, k_r, zeta_r, c_r, twisting});
+  }
+  const Partners two = lightest_partners(field.model, field.uses, limit);
+  for (const auto& [radius, mass, is_particle, inertia_factor] : {two.i, two.j})
+    key.insert(key.end(), {radius, mass, Real(is_particle), inertia_factor});
+  return key;
+}
+
+// What a function of a trial gives, found once for pairs that are alike.
+template <class Result>
+class Remembered {
+ public:
+  template <class Find>
+  const Result& of(TrialKey key, const Find& find) {
+    const auto known = results_.find(key);
+    return known != results_.end() ? known->second : results_.emplace(std::move(key), find()).first->second;
+  }
+
+ private:
+  std::map<TrialKey, Result> results_;
+};
 
 template <class Law>
 void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTrial& trial) {
@@ -149,20 +198,21 @@ void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTr
 }
 
 // The trial of a pair in the steps of the model's integrator.
-StepTrial try_pair(const Model& model, Real fastest, const PairLimit& limit) {
+StepTrial try_pair(const Field& field, const PairLimit& limit) {
+  const Model& model = field.model;
+  const Real fastest = field.speeds.of(limit);
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   StepTrial trial{limit, 0, 0, false, false, 0, {}, 0, false, 0, 0};
   trial.is_adaptive = model.time.control == StepControl::adaptive;
   trial.step = model.time.step / (implicit ? 1 : model.integrator.substeps);
-  with_setup(model, fastest, limit, [&](const auto& law, const Setup& setup) {
+  with_setup(field, limit, [&](const auto& law, const Setup& setup) {
     trial.speed = setup.speed, trial.incidence = setup.incidence, trial.rubs = setup.incidence > 0;
     if (!implicit) return;
     (trial.is_adaptive ? trial.step : trial.adaptive_step) =
         typical_adaptive_step(model, setup.two, fastest > 0 ? fastest : setup.speed, setup.touch);
     try_implicit(model, law, setup, trial);
   });
-  if (!implicit)
-    with_explicit_trials(model, fastest, limit, [&](const auto& trials) { judge(trial, trials); });
+  if (!implicit) with_explicit_trials(field, limit, [&](const auto& trials) { judge(trial, trials); });
   return trial;
 }
 
@@ -170,10 +220,13 @@ StepTrial try_pair(const Model& model, Real fastest, const PairLimit& limit) {
 
 std::vector<StepTrial> try_steps(const Model& model) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
-  const ImpactSpeeds speeds(model);
+  const Field field(model);
+  Remembered<StepTrial> known;
   std::vector<StepTrial> trials;
-  for (const PairLimit& limit : implicit ? pair_limits(model) : explicit_pairs(model))
-    trials.push_back(try_pair(model, speeds.of(limit), limit));
+  for (const PairLimit& limit : implicit ? pair_limits(model) : explicit_pairs(model)) {
+    trials.push_back(known.of(key_of(field, limit), [&] { return try_pair(field, limit); }));
+    trials.back().limit = limit;
+  }
   return trials;
 }
 
@@ -183,14 +236,29 @@ std::vector<PairLimit> explicit_pairs(const Model& model) {
   return limits;
 }
 
-Real good_explicit_step(const Model& model, const PairLimit& limit) {
-  return with_explicit_trials(model, impact_speed(model, limit), limit,
-                              [](const auto& trials) { return trials.step_within(kGoodRebound); });
+struct ExplicitTrials::Impl {
+  explicit Impl(const Model& model) : field(model) {}
+  Field field;
+  Remembered<Real> good_steps, errors;
+};
+
+ExplicitTrials::ExplicitTrials(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
+ExplicitTrials::~ExplicitTrials() = default;
+
+Real ExplicitTrials::good_step(const PairLimit& limit) {
+  return impl_->good_steps.of(key_of(impl_->field, limit), [&] {
+    return with_explicit_trials(impl_->field, limit,
+                                [](const auto& trials) { return trials.step_within(kGoodRebound); });
+  });
 }
 
-Real explicit_error(const Model& model, const PairLimit& limit, Real step) {
-  return with_explicit_trials(model, impact_speed(model, limit), limit,
-                              [&](const auto& trials) { return trials.with(step).error(); });
+Real ExplicitTrials::error(const PairLimit& limit, Real step) {
+  TrialKey key = key_of(impl_->field, limit);
+  key.push_back(step);
+  return impl_->errors.of(std::move(key), [&] {
+    return with_explicit_trials(impl_->field, limit,
+                                [&](const auto& trials) { return trials.with(step).error(); });
+  });
 }
 
 }  // namespace scree

@@ -2,6 +2,7 @@
 // (physics/trial_impact.hpp).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "model/limits.hpp"
@@ -36,9 +37,22 @@ std::vector<StepTrial> try_steps(const Model& model);
 // The pairs of materials whose contacts velocity-verlet takes. These need no step and no integrator of the
 // model yet.
 std::vector<PairLimit> explicit_pairs(const Model& model);
-// The longest step of the particles up to which such a pair's trial is within kGoodRebound [s], and the error
-// of its rebound in steps of `step` [s].
-Real good_explicit_step(const Model& model, const PairLimit& limit);
-Real explicit_error(const Model& model, const PairLimit& limit, Real step);
+
+// Trials of such pairs. Pairs that are alike in their law and their partners are tried once.
+class ExplicitTrials {
+ public:
+  // `model` must outlive the trials.
+  explicit ExplicitTrials(const Model& model);
+  ~ExplicitTrials();
+
+  // The longest step of the particles up to which a pair's trial is within kGoodRebound [s].
+  Real good_step(const PairLimit& limit);
+  // The error of its rebound in steps of `step` [s].
+  Real error(const PairLimit& limit, Real step);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace scree

@@ -81,8 +81,9 @@ std::vector<PairLimit> limits_with_particles(const Model& model, const std::set<
 // The largest that impacts on one of the materials make; 0 where nothing moves [m].
 Real largest_overlap(const Model& model, const std::set<int>& materials) {
   Real largest = 0;
+  const ImpactSpeeds speeds(model);
   for (const PairLimit& limit : limits_with_particles(model, materials))
-    largest = std::max(largest, impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)));
+    largest = std::max(largest, impact_overlap(limit.law, lightest_mass(limit), speeds.of(limit)));
   return largest;
 }
 
@@ -206,8 +207,9 @@ FoldImpact worst_on_fold(const Model& model, const std::set<int>& materials, Rea
   const Real top = height_of(model, top_of(model, model.space.min, model.space.max)),
              not_fallen = fall_speed(norm(model.gravity), std::max<Real>(0, top - fall));
   FoldImpact worst{};
+  const ImpactSpeeds speeds(model);
   for (const PairLimit& limit : limits_with_particles(model, materials)) {
-    const Real fastest = impact_speed(model, limit),
+    const Real fastest = speeds.of(limit),
                speed = std::sqrt(std::max<Real>(0, fastest * fastest - not_fallen * not_fallen));
     for (const bool largest : {false, true}) {
       const FoldImpact impact = fold_impact(model, limit, share, speed, largest);

@@ -24,22 +24,16 @@ std::string text_of(const DeckValue& value) {
   throw std::logic_error("mixing: a value of another type");
 }
 
-// The pair of a material with itself; null where the deck does not give it.
-const DeckTable* like_pair(const DeckTable& contact, const std::string& name) {
-  for (const DeckTable& pair : contact.tables("pairs"))
-    if (pair.has("materials") && pair.texts("materials") == std::vector{name, name}) return &pair;
-  return nullptr;
-}
-
 // A pair that is being made of two like ones.
 class Combination {
  public:
-  Combination(const DeckTable& contact, const std::string& name_a, const std::string& name_b)
+  Combination(const DeckTable& contact, const LikePairs& like, const std::string& name_a,
+              const std::string& name_b)
       : rule_(contact.choice<Mixing>("mixing")),
         name_a_(name_a),
         name_b_(name_b),
-        a_(find(contact, name_a)),
-        b_(find(contact, name_b)),
+        a_(find(contact, like, name_a)),
+        b_(find(contact, like, name_b)),
         out_(a_.keys(), fmt::format("contact.mixing: pair {}", pair_text(name_a, name_b)), contact.place()) {
     set("materials", std::vector{name_a, name_b});
   }
@@ -55,7 +49,7 @@ class Combination {
   void take_adhesion();
 
  private:
-  const DeckTable& find(const DeckTable& contact, const std::string& name) const;
+  const DeckTable& find(const DeckTable& contact, const LikePairs& like, const std::string& name) const;
   bool both(const char* key) const;
   [[noreturn]] void fail(const DeckTable& at, const std::string& key, const std::string& problem) const;
   template <class T>
@@ -72,13 +66,14 @@ class Combination {
   DeckTable out_;
 };
 
-const DeckTable& Combination::find(const DeckTable& contact, const std::string& name) const {
-  const DeckTable* pair = like_pair(contact, name);
-  if (pair == nullptr)
+const DeckTable& Combination::find(const DeckTable& contact, const LikePairs& like,
+                                   const std::string& name) const {
+  const auto pair = like.find(name);
+  if (pair == like.end())
     contact.fail("mixing", fmt::format("{}, which can meet, needs the pair {} in [[contact.pairs]], to be "
                                        "combined of; give that pair, or this one",
                                        pair_text(name_a_, name_b_), pair_text(name, name)));
-  return *pair;
+  return *pair->second;
 }
 
 void Combination::fail(const DeckTable& at, const std::string& key, const std::string& problem) const {
@@ -208,8 +203,19 @@ Real mixed(Mixing rule, Real a, Real b) {
   throw std::logic_error("mixing: no rule");
 }
 
-DeckTable combined_pair(const DeckTable& contact, const std::string& name_a, const std::string& name_b) {
-  Combination pair(contact, name_a, name_b);
+LikePairs like_pairs(const DeckTable& contact) {
+  LikePairs like;
+  for (const DeckTable& pair : contact.tables("pairs")) {
+    if (!pair.has("materials")) continue;
+    const std::vector<std::string>& names = pair.texts("materials");
+    if (names.size() == 2 && names[0] == names[1]) like.emplace(names[0], &pair);
+  }
+  return like;
+}
+
+DeckTable combined_pair(const DeckTable& contact, const LikePairs& like, const std::string& name_a,
+                        const std::string& name_b) {
+  Combination pair(contact, like, name_a, name_b);
   pair.take_stiffness(), pair.take_damping();
   pair.take_mean("friction"), pair.take_tangential_stiffness(), pair.take_mean("tangential_damping_ratio");
   pair.take_mean("rolling_friction"), pair.take_series("rolling_stiffness");

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "deck/choices.hpp"
 #include "model/connections.hpp"
@@ -164,10 +166,10 @@ Real particles_on_top(const Model& model) {
                     std::max(fall_height(model) / diameter, Real(1)));
 }
 
-std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
+std::string overlap_at_rest(const Model& model, const std::vector<MaterialUse>& uses,
+                            const PairLimit& limit) {
   const ParticleTotals& totals = model.particles.totals;
   if (totals.count == 0 || fall_height(model) == 0) return "";
-  const std::vector<MaterialUse> uses = material_uses(model);
   const auto particles = [&](int side) {
     return uses[static_cast<std::size_t>(limit.material[side])].particles;
   };
@@ -184,8 +186,8 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
 
 // A sheet pushes back to its contact's side until the centre is a radius past it; all else lets through what
 // is past the middle.
-std::string overlap_at_impact(const Model& model, const ImpactSpeeds& speeds, const PairLimit& limit) {
-  const std::vector<MaterialUse> uses = material_uses(model);
+std::string overlap_at_impact(const Model& model, const std::vector<MaterialUse>& uses,
+                              const ImpactSpeeds& speeds, const PairLimit& limit) {
   Real radius = kInfinity;
   for (const int material : limit.material) {
     const MaterialUse& use = uses[static_cast<std::size_t>(material)];
@@ -237,23 +239,23 @@ bool is_boxed(const DeckTable& group) {
 // Such groups have the same places in their boxes, and particles of the same radii in the same order where
 // those are drawn alike.
 std::string same_random_places(const DeckTable& deck) {
-  const std::vector<DeckTable>& groups = deck.tables("particles");
-  const auto alike = [](const DeckTable& a, const DeckTable& b) {
-    for (const DeckTable* table : {&a, &b})
-      if (table->choice<GroupKind>("kind") != GroupKind::random || !table->has("count") || !is_boxed(*table))
-        return false;
+  const auto size = [](const DeckTable& table) { return table.vector("max") - table.vector("min"); };
+  const auto alike = [&](const DeckTable& a, const DeckTable& b) {
     constexpr Real kRoundOff = 1e-12;
-    const Vec3 one = a.vector("max") - a.vector("min"), other = b.vector("max") - b.vector("min");
-    return a.integer("seed") == b.integer("seed") && a.integer("count") == b.integer("count") &&
-           norm(one - other) <= kRoundOff * norm(one);
+    return norm(size(a) - size(b)) <= kRoundOff * norm(size(a));
   };
-  for (std::size_t k = 1; k < groups.size(); ++k)
-    for (std::size_t i = 0; i < k; ++i)
-      if (alike(groups[i], groups[k]))
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const DeckTable*>> others;  // by seed and count
+  for (const DeckTable& group : deck.tables("particles")) {
+    if (group.choice<GroupKind>("kind") != GroupKind::random || !group.has("count") || !is_boxed(group)) continue;
+    auto& same = others[{group.integer("seed"), group.integer("count")}];
+    for (const DeckTable* const other : same)
+      if (alike(*other, group))
         return fmt::format(
             "{}: the same count, seed and size of the box as {}: the particles of both groups stand alike in "
             "their boxes; give one of them another seed",
-            groups[k].label(), groups[i].path());
+            group.label(), other->path());
+    same.push_back(&group);
+  }
   return "";
 }
 
@@ -340,9 +342,11 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        many_steps(model),
                                        same_random_places(deck)};
   const ImpactSpeeds speeds(model);
+  const std::vector<MaterialUse> uses = material_uses(model);
   for (const PairLimit& limit : pair_limits(model)) {
-    for (const auto& finding : {overdamped, overlap_at_rest}) findings.push_back(finding(model, limit));
-    findings.push_back(overlap_at_impact(model, speeds, limit));
+    findings.push_back(overdamped(model, limit));
+    findings.push_back(overlap_at_rest(model, uses, limit));
+    findings.push_back(overlap_at_impact(model, uses, speeds, limit));
   }
   const std::vector<std::string> of_meshes = implausible_meshes(deck, model);
   findings.insert(findings.end(), of_meshes.begin(), of_meshes.end());

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "base/host_memory.hpp"
@@ -122,17 +124,19 @@ std::string attraction_line(const Model& model, const PairLimit& limit) {
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
-// The keys of a pair that the deck does not give; "" of others.
-std::string combined_line(const Model& model, const PairLimit& limit) {
-  for (const CombinedPair& pair : model.contact.combined)
-    if (pair.material[0] == limit.material[0] && pair.material[1] == limit.material[1])
-      return fmt::format("               made by contact.mixing: {}\n", pair.keys);
-  return "";
+using MaterialPair = std::pair<int, int>;
+template <class Of>
+MaterialPair pair_of(const Of& of) {
+  return {of.material[0], of.material[1]};
 }
 
 std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
+  std::map<MaterialPair, const StepTrial*> trial_of;
+  for (const StepTrial& trial : trials) trial_of[pair_of(trial.limit)] = &trial;
+  std::map<MaterialPair, const CombinedPair*> made;  // the keys of pairs that the deck does not give
+  for (const CombinedPair& pair : model.contact.combined) made[pair_of(pair)] = &pair;
   for (const PairLimit& limit : pair_limits(model)) {
     const KelvinVoigt& law = limit.law;
     const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
@@ -146,7 +150,8 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
                          law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
                              ? "may pull"
                              : "cut at zero");
-    lines += combined_line(model, limit);
+    if (const auto pair = made.find(pair_of(limit)); pair != made.end())
+      lines += fmt::format("               made by contact.mixing: {}\n", pair->second->keys);
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
@@ -154,9 +159,8 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
     lines += rolling_line(model, limit) + attraction_line(model, limit);
     lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
                          law.exponent == 1 ? "" : " (at 1 % overlap)");
-    for (const StepTrial& trial : trials)
-      if (trial.limit.material[0] == limit.material[0] && trial.limit.material[1] == limit.material[1])
-        lines += trial_lines(trial);
+    if (const auto trial = trial_of.find(pair_of(limit)); trial != trial_of.end())
+      lines += trial_lines(*trial->second);
     if (limit.explicit_step > 0) {
       lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
                            limit.explicit_step);
