@@ -1,8 +1,8 @@
 // What the history records the contacts of.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "deck/suggestion.hpp"
 #include "model/build_parts.hpp"
@@ -37,37 +37,48 @@ std::vector<int> walls_named(const Model& model, const std::string& name) {
                 name, suggestion(name, known)));
 }
 
-// "bucket.teeth": a mesh of a body.
-std::optional<ContactTarget> mesh_named(const ModelNames& names, const Model& model,
+// "bucket.teeth": a mesh of a body, every time that the body has it.
+std::vector<ContactTarget> meshes_named(const ModelNames& names, const Model& model,
                                         const std::string& name) {
+  std::vector<ContactTarget> found;
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos) return std::nullopt;
+  if (dot == std::string::npos) return found;
   const auto body = names.bodies.find(name.substr(0, dot));
-  if (body == names.bodies.end()) return std::nullopt;
+  if (body == names.bodies.end()) return found;
   const std::vector<MeshShape>& meshes = model.bodies[static_cast<std::size_t>(body->second)].meshes;
   for (std::size_t m = 0; m < meshes.size(); ++m)
     if (model.meshes[static_cast<std::size_t>(meshes[m].mesh)].name == name.substr(dot + 1))
-      return ContactTarget{name, {body->second}, false, -1, static_cast<int>(m)};
-  return std::nullopt;
+      found.push_back({name, {body->second}, false, -1, static_cast<int>(m)});
+  return found;
+}
+
+// What a target is, for messages: "row of bodies \"net\"", "mesh \"teeth\" of body \"bucket\"".
+std::string described(const Model& model, const ContactTarget& target) {
+  if (target.wall >= 0) return fmt::format("wall \"{}\"", target.name);
+  if (target.row) return fmt::format("row of bodies \"{}\"", target.name);
+  const Body& body = model.bodies[static_cast<std::size_t>(target.bodies.front())];
+  if (target.mesh < 0) return fmt::format("body \"{}\"", body.name);
+  const int mesh = body.meshes[static_cast<std::size_t>(target.mesh)].mesh;
+  return fmt::format("mesh \"{}\" of body \"{}\"", model.meshes[static_cast<std::size_t>(mesh)].name,
+                     body.name);
 }
 
 ContactTarget target_of(const DeckTable& table, const ModelNames& names, const Model& model,
                         const std::string& name) {
+  std::vector<ContactTarget> meanings = meshes_named(names, model, name);
   const auto body = names.bodies.find(name);
   const auto row = names.rows.find(name);
-  const bool moves = body != names.bodies.end() || row != names.rows.end();
-  const std::vector<int> walls = walls_named(model, name);
-  const std::size_t meanings = walls.size() + (moves ? 1 : 0);
-  if (meanings == 0) {
-    if (std::optional<ContactTarget> mesh = mesh_named(names, model, name)) return *std::move(mesh);
-    fail_unknown(table, names, model, name);
-  }
-  if (meanings > 1)
-    table.fail(kKey, fmt::format("\"{}\" is the name of {} bodies, rows and walls; it must be that of one",
-                                 name, meanings));
-  if (!moves) return {name, {}, false, walls.front()};
-  if (body != names.bodies.end()) return {name, {body->second}, false, -1};
-  return {name, row->second, true, -1};
+  if (body != names.bodies.end())
+    meanings.push_back({name, {body->second}, false, -1});
+  else if (row != names.rows.end())
+    meanings.push_back({name, row->second, true, -1});
+  for (const int wall : walls_named(model, name)) meanings.push_back({name, {}, false, wall});
+  if (meanings.empty()) fail_unknown(table, names, model, name);
+  if (meanings.size() == 1) return meanings.front();
+  std::vector<std::string> shown;
+  for (const ContactTarget& meaning : meanings) shown.push_back("of " + described(model, meaning));
+  table.fail(kKey, fmt::format("\"{}\" is the name {}; it must be that of one: give one of them another name",
+                               name, fmt::join(shown, " and ")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "deck/choices.hpp"
@@ -357,6 +358,20 @@ std::int64_t places_found(const std::vector<Group>& groups) {
   return places;
 }
 
+// A group without a name goes by its number in outputs: no other may have that for a name.
+void check_group_names(const DeckTable& deck) {
+  const std::vector<DeckTable>& tables = deck.tables("particles");
+  std::set<std::string> numbers;
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    if (!tables[k].has("name")) numbers.insert(std::to_string(k));
+  for (const DeckTable& table : tables)
+    if (table.has("name") && numbers.contains(table.text("name")))
+      table.fail("name",
+                 fmt::format("is what the group without a name, number {0} from 0 on, goes by in outputs; "
+                             "give that one a name, or this one another",
+                             table.text("name")));
+}
+
 }  // namespace
 
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
@@ -367,6 +382,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   share.together([&] {
     for (const DeckTable& table : deck.tables("particles"))
       count += groups.emplace_back(table, names, model).count();
+    check_group_names(deck);
   });
   for (const Group& group : groups) group.warn_if_empty(log), group.note_thickness(model.disc_thickness);
   model.particles.totals.count = size.particles = count;
