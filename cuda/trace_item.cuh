@@ -25,7 +25,8 @@ struct TraceItem {
     }
     if (ids[low] != id) return;
     ImageCount unused;
-    out[low] = {id, wrap(box_min, period, xyz(in.position[i]), unused), xyz(in.velocity[i])};
+    out[low] = {id, wrap(box_min, period, xyz(in.position[i]), unused), xyz(in.velocity[i]),
+                in.angular_velocity == nullptr ? Vec3{} : xyz(in.angular_velocity[i])};
   }
 };
 

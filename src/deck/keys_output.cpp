@@ -94,7 +94,8 @@ const TableKeys& output_keys() {
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")
-           .about("Particles whose motion is recorded: numbers in the deck's order, from 0.")},
+           .about("Particles whose motion is recorded, with their spins where particles rotate: numbers in "
+                  "the deck's order, from 0.")},
       ""};
   return keys;
 }

@@ -102,7 +102,8 @@ std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted)
     if (!std::binary_search(ids.begin(), ids.end(), id_of(store.row_key[i]))) continue;
     ImageCount unused;
     found.push_back({id_of(store.row_key[i]), items_.subdomain.wrap(xyz(store.position[i]), unused),
-                     xyz(store.velocity[i])});
+                     xyz(store.velocity[i]),
+                     store.angular_velocity.empty() ? Vec3{} : xyz(store.angular_velocity[i])});
   }
   return found;
 }

@@ -67,7 +67,8 @@ struct ContactLines {
 // A particle whose motion is recorded.
 struct TracedParticle {
   GlobalId global_id;
-  Vec3 position, velocity;  // position inside the periodic box [m], [m/s]
+  Vec3 position, velocity;     // position inside the periodic box [m], [m/s]
+  Vec3 angular_velocity = {};  // along the global axes [rad/s]; 0 where particles do not rotate
 };
 
 // All functions but output() and traced() are collective (see Backend).

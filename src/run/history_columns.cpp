@@ -260,9 +260,12 @@ void body_columns(Group body, const Body& of, std::size_t b) {
 }
 
 // k: number of the particle among those that are traced.
-void particle_columns(Group particle, std::size_t k) {
+void particle_columns(Group particle, bool rotates, std::size_t k) {
   particle.add_vector("", "m", "position", [k](const Sample& s) { return s.traced[k].position; });
   particle.add_vector("v", "m/s", "velocity", [k](const Sample& s) { return s.traced[k].velocity; });
+  if (rotates)
+    particle.add_vector("w", "rad/s", "angular velocity along the global axes",
+                        [k](const Sample& s) { return s.traced[k].angular_velocity; });
 }
 
 }  // namespace
@@ -292,7 +295,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);
   }
   for (std::size_t k = 0; k < output.history_particles.size(); ++k)
-    particle_columns({"particles/" + std::to_string(output.history_particles[k]), out}, k);
+    particle_columns({"particles/" + std::to_string(output.history_particles[k]), out}, model.rotates(), k);
   return out;
 }
 

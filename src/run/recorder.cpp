@@ -57,7 +57,7 @@ std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Ba
   for (const GlobalId id : wanted) {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const TracedParticle& t) { return t.global_id == id; });
-    traced.push_back(found != all.end() ? *found : TracedParticle{id, nowhere, nowhere});
+    traced.push_back(found != all.end() ? *found : TracedParticle{id, nowhere, nowhere, nowhere});
   }
   return traced;
 }
