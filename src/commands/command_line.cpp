@@ -110,6 +110,9 @@ void declare_keys(CLI::App& app, Order& order) {
   command
       ->add_flag("--schema", order.as_schema, "as a JSON schema, with which editors complete and check decks")
       ->excludes(markdown);
+  command->add_option("word", order.about, "print the keys that this word is about, in place of all")
+      ->type_name("WORD")
+      ->excludes(markdown);
   command->callback([&order] { order.command = Command::keys; });
 }
 

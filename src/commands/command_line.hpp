@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Order {
   std::vector<std::string> overrides;  // KEY=VALUE
   bool overwrite = false, allow_changes = false;
   bool as_markdown = false, as_schema = false;
+  std::optional<std::string> about;  // a word, in place of all keys
   std::string example, file;  // of a new deck
   std::vector<std::string> folders;
   std::vector<std::string> petsc_words;  // those behind --

@@ -10,6 +10,7 @@
 #include "base/processor.hpp"
 #include "base/version.hpp"
 #include "deck/deck.hpp"
+#include "deck/keys_search.hpp"
 #include "dem/output_fields.hpp"
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
@@ -207,6 +208,7 @@ void print_on_root(const std::string& text) {
 }
 
 std::string manual(const Order& order) {
+  if (order.about) return keys_about(*order.about);
   if (order.as_schema) return keys_schema();
   return order.as_markdown ? keys_markdown() + output_fields_markdown() : keys_text() + output_fields_text();
 }

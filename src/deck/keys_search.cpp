@@ -1,0 +1,137 @@
+#include "deck/keys_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+#include "deck/keys.hpp"
+#include "deck/suggestion.hpp"
+#include "deck/synonyms.hpp"
+#include "deck/wrapped.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr std::size_t kWidth = 110;
+constexpr const char* kLimits = "input/limits.md, which scree keys begins with, says what there is not";
+
+std::string small(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+// Blanks and hyphens count as the low lines of keys; an s at the end does not.
+std::string plain(std::string_view text) {
+  std::string out = small(text);
+  std::ranges::replace_if(
+      out, [](char c) { return c == ' ' || c == '-'; }, '_');
+  if (out.size() > 3 && out.ends_with('s') && !out.ends_with("ss")) out.pop_back();
+  return out;
+}
+
+// Whether the word stands in the text, from the beginning of one of the text's words on.
+bool has_word(std::string_view text, const std::string& word) {
+  const std::string in = small(text);
+  for (std::size_t at = in.find(word); at != in.npos; at = in.find(word, at + 1))
+    if (at == 0 || std::isalnum(static_cast<unsigned char>(in[at - 1])) == 0) return true;
+  return false;
+}
+
+struct Found {
+  std::string path;
+  const Key* key;
+  std::string selector;
+  int rank;  // below kNone
+};
+
+// Where the word is found: in the path, by words and synonyms, in the meaning.
+constexpr int kPath = 0, kMeant = 1, kMeaning = 2, kNone = 3;
+
+class Search {
+ public:
+  explicit Search(const std::string& word) : word_(plain(word)), spoken_(spoken(word_)) {
+    for (const Synonym& one : kWordSynonyms)
+      if (plain(one.said) == word_) words_.emplace_back(one.meant);
+    for (const Synonym& one : kKeySynonyms) take(one);
+    for (const Synonym& one : kTopics) take(one);
+    look(deck_keys(), "");
+    look(time_function_keys(), "(time function)");
+    look(distribution_keys(), "(distribution)");
+    std::ranges::stable_sort(found_, {}, &Found::rank);
+  }
+
+  const std::vector<Found>& found() const { return found_; }
+  const std::vector<std::string>& paths() const { return paths_; }
+  const std::string& word() const { return word_; }
+
+ private:
+  static std::string spoken(std::string word) {
+    std::ranges::replace(word, '_', ' ');
+    return word;
+  }
+  void take(const Synonym& one) {
+    if (plain(one.said) == word_) meant_.emplace_back(one.meant);
+  }
+  int rank_of(const std::string& path, const Key& key) const {
+    if (has_word(path, word_)) return kPath;
+    const auto has = [&](const std::string& word) {
+      return has_word(word, word_) || std::ranges::find(words_, word) != words_.end();
+    };
+    if (std::ranges::find(meant_, path) != meant_.end() || std::ranges::any_of(key.words, has)) return kMeant;
+    return has_word(key.sentence, spoken_) ? kMeaning : kNone;
+  }
+  void look(const TableKeys& table, const std::string& path) {
+    for (const Key& key : table.keys) {
+      const std::string own = path.empty() ? key.name : path + "." + key.name;
+      paths_.push_back(own);
+      if (const int rank = rank_of(own, key); rank < kNone)
+        found_.push_back({own, &key, table.selector, rank});
+      if (key.type == ValueType::table || key.type == ValueType::tables) look(*key.table, own);
+    }
+  }
+
+  std::string word_, spoken_;  // as in keys, as in sentences
+  std::vector<std::string> words_, meant_, paths_;
+  std::vector<Found> found_;
+};
+
+std::string line_of(const Found& found) {
+  const Key& key = *found.key;
+  const bool is_table = key.type == ValueType::table || key.type == ValueType::tables;
+  std::string text = is_table
+                         ? (key.type == ValueType::table ? "[" + found.path + "]" : "[[" + found.path + "]]")
+                         : found.path;
+  text += "\n";
+  if (!is_table) text += wrapped(key_facts(key, found.selector), kWidth, 6);
+  const std::string& sentence = is_table ? key.table->sentence : key.sentence;
+  return text + (sentence.empty() ? "" : wrapped(sentence, kWidth, 6));
+}
+
+std::string absent_text(const std::string& word) {
+  for (const Synonym& one : kAbsent)
+    if (plain(one.said) == word || word.starts_with(plain(one.said))) return std::string(one.meant);
+  return "";
+}
+
+}  // namespace
+
+std::string keys_about(const std::string& word) {
+  const Search search(word);
+  const std::string absent = absent_text(search.word());
+  if (word.empty() || (search.found().empty() && absent.empty()))
+    throw InputError(fmt::format("keys {}: no key is about this{}; {}", word,
+                                 word_suggestion(search.word(), search.paths()), kLimits));
+  std::string text;
+  if (!absent.empty())
+    text = wrapped(fmt::format("{}: not there: {}. {}.", word, absent, kLimits), kWidth) + "\n";
+  for (const Found& found : search.found()) text += line_of(found);
+  return text;
+}
+
+}  // namespace scree
