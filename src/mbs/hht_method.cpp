@@ -39,14 +39,18 @@ HhtMethod::HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector
 }
 
 std::vector<Real> HhtMethod::units() const {
-  constexpr Real kPivot = 1e-4;  // a tenth of KLU's threshold
+  constexpr Real kPivot = 1e-4;   // a tenth of KLU's threshold
+  constexpr Real kHeavy = 1e-15;  // from where on multipliers lose digits beside masses: bodies of 1e6 kg
   const SparseTerm &jacobian = terms_.constraint_jacobian, &mass = terms_.mass;
   std::vector<Real> largest(compliance().size(), 0), units(inertia_force_.size(), 0);
   for (std::size_t i = 0; i < jacobian.size(); ++i)
     largest[count(jacobian.row(i))] = std::max(largest[count(jacobian.row(i))], std::abs(jacobian.value(i)));
-  bool small = true;
-  for (std::size_t j = 0; j < largest.size(); ++j) small = small && compliance()[j] <= kPivot * largest[j];
-  if (small) return {};
+  bool ordinary = true;
+  for (std::size_t j = 0; j < largest.size(); ++j) {
+    const Real c = compliance()[j];
+    ordinary = ordinary && c <= kPivot * largest[j] && (c == 0 || c >= kHeavy * largest[j]);
+  }
+  if (ordinary) return {};
   for (std::size_t i = 0; i < mass.size(); ++i)
     if (mass.row(i) == mass.column(i)) units[count(mass.row(i))] += mass.value(i);
   units.insert(units.end(), compliance().begin(), compliance().end());
