@@ -19,7 +19,7 @@ struct Order {
   bool overwrite = false, allow_changes = false;
   bool as_markdown = false, as_schema = false;
   std::optional<std::string> about;  // a word, in place of all keys
-  std::string example, file;  // of a new deck
+  std::string example, file;         // of a new deck
   std::vector<std::string> folders;
   std::vector<std::string> petsc_words;  // those behind --
   std::string text;                      // all words with blanks between them

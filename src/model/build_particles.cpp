@@ -162,9 +162,8 @@ std::array<std::int64_t, 3> Group::lattice_size() const {
 }
 
 Vec3 Group::lattice_origin() const {
-  if (table_.has("origin") == table_.has("center")) {
+  if (table_.has("origin") == table_.has("center"))
     table_.fail("origin", "exactly one of the keys origin and center must be given");
-  }
   if (table_.has("origin")) return table_.vector("origin");
   const std::array<std::int64_t, 3> size = lattice_size();
   const Vec3 spacing = table_.vector("spacing");
@@ -258,9 +257,8 @@ std::vector<Real> Group::radii() {
 std::vector<Real> Group::masses(const std::vector<Real>& radius) {
   if (table_.has("mass") && table_.has("density")) table_.fail("density", "not used together with mass");
   if (has_column("mass")) {
-    for (const char* key : {"mass", "density"}) {
+    for (const char* key : {"mass", "density"})
       if (table_.has(key)) table_.fail(key, "not used: the file has a column mass");
-    }
     return columns_.at("mass");
   }
   return table_.has("mass") ? draw(table_.table("mass"), count_, part_, random_)
@@ -268,9 +266,8 @@ std::vector<Real> Group::masses(const std::vector<Real>& radius) {
 }
 
 std::vector<Real> Group::masses_from_density(const std::vector<Real>& radius) {
-  if (!table_.has("density") && density_ == 0) {
+  if (!table_.has("density") && density_ == 0)
     table_.fail("mass", "missing; the group needs mass or density, or a material with a density");
-  }
   std::vector<Real> mass = table_.has("density") ? draw(table_.table("density"), count_, part_, random_)
                                                  : std::vector<Real>(radius.size(), density_);
   const Real thickness = table_.real("thickness");
@@ -359,17 +356,14 @@ std::int64_t places_found(const std::vector<Group>& groups) {
 }
 
 // A group without a name goes by its number in outputs: no other may have that for a name.
-void check_group_names(const DeckTable& deck) {
-  const std::vector<DeckTable>& tables = deck.tables("particles");
+void check_group_names(const std::vector<DeckTable>& tables) {
   std::set<std::string> numbers;
   for (std::size_t k = 0; k < tables.size(); ++k)
     if (!tables[k].has("name")) numbers.insert(std::to_string(k));
   for (const DeckTable& table : tables)
     if (table.has("name") && numbers.contains(table.text("name")))
       table.fail("name",
-                 fmt::format("is what the group without a name, number {0} from 0 on, goes by in outputs; "
-                             "give that one a name, or this one another",
-                             table.text("name")));
+                 "is the number of a group without a name, which goes by it in outputs; name that one");
 }
 
 }  // namespace
@@ -382,7 +376,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   share.together([&] {
     for (const DeckTable& table : deck.tables("particles"))
       count += groups.emplace_back(table, names, model).count();
-    check_group_names(deck);
+    check_group_names(deck.tables("particles"));
   });
   for (const Group& group : groups) group.warn_if_empty(log), group.note_thickness(model.disc_thickness);
   model.particles.totals.count = size.particles = count;

@@ -246,7 +246,8 @@ std::string same_random_places(const DeckTable& deck) {
   };
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const DeckTable*>> others;  // by seed and count
   for (const DeckTable& group : deck.tables("particles")) {
-    if (group.choice<GroupKind>("kind") != GroupKind::random || !group.has("count") || !is_boxed(group)) continue;
+    if (group.choice<GroupKind>("kind") != GroupKind::random || !group.has("count") || !is_boxed(group))
+      continue;
     auto& same = others[{group.integer("seed"), group.integer("count")}];
     for (const DeckTable* const other : same)
       if (alike(*other, group))

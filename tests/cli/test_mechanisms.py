@@ -260,12 +260,13 @@ class DeadPointTest(CommandLineTest):
                       "t = 0 is a dead point, where joint 'pivot', joint 'pin', joint 'wrist', driver 'push' are "
                       "dependent", text)
         self.assertIn('redundant = "share" does not pass it', text)
-        result = self.expect(FAILED, "run", path, "--output", self.folder / "flat", "--set", "integrator.redundant=share",
-                             "--set", "time.control=adaptive")
+        result = self.expect(FAILED, "run", path, "--output", self.folder / "flat",
+                             "--set", "integrator.redundant=share", "--set", "time.control=adaptive")
         self.assertIn("driver 'push' asks for a motion that the mechanism cannot follow", result.stderr)
 
     def test_a_driver_that_turns_its_joint_too_far_in_a_step(self):
-        deck = 'velocities = "consistent"\n' + CRANK + DRIVEN.format("drive", '{ kind = "step", end_value = 3.5, start = 0.1, end = 0.11 }')
+        motion = '{ kind = "step", end_value = 3.5, start = 0.1, end = 0.11 }'
+        deck = 'velocities = "consistent"\n' + CRANK + DRIVEN.format("drive", motion)
         path = self.write("turns.toml", deck)
         warned = "driver 'drive' turns its joint by 6.56 rad in a step of 0.01 s at its fastest"
         self.assertIn(warned, self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",

@@ -87,7 +87,7 @@ class NameTest(CommandLineTest):
 
     def test_a_group_that_has_the_number_of_one_without_a_name(self):
         text = self.trouble(GROUP.format(0) + GROUP.format(1) + 'name = "0"\n')
-        self.assertIn('particles.0.name = "0": is what the group without a name, number 0 from 0 on, goes by', text)
+        self.assertIn('particles.0.name = "0": is the number of a group without a name', text)
 
 
 class WarningTest(CommandLineTest):
@@ -104,7 +104,8 @@ class DeckKindTest(CommandLineTest):
     def test_files_that_are_no_decks(self):
         for name, begins, said in (("a.h5", b"\x89HDF\r\n\x1a\n\0\0", "is an HDF5 file; a deck is text in TOML; a run"),
                                    ("a.urdf", b'<?xml version="1.0"?>\n<robot name="r">', ": scree-post urdf "),
-                                   ("a.toml", b"PK\x03\x04", "is a ZIP archive"), ("a.stl", b"solid a\n", "meshes.file"),
+                                   ("a.toml", b"PK\x03\x04", "is a ZIP archive"),
+                                   ("a.stl", b"solid a\n", "meshes.file"),
                                    ("b.toml", b"a = 1\0", "is a binary file")):
             path = pathlib.Path(self.folder) / name
             path.write_bytes(begins)
@@ -195,8 +196,10 @@ class UnitsTest(CommandLineTest):
         self.expect(DONE, "run", path, "--output", out, "--overwrite")
         columns = {}
         with h5py.File(out / "history.h5") as file:
-            file.visititems(lambda name, item: columns.update({name: item[:]}) if isinstance(item, h5py.Dataset) else None)
-        return {name: values for name, values in columns.items() if name.startswith(("bodies/", "reactions/"))}
+            for group in ("bodies", "reactions"):
+                for name, part in file[group].items():
+                    columns |= {f"{group}/{name}/{key}": values[:] for key, values in part.items()}
+        return columns
 
     def test_from_kilometres_to_nanometres(self):
         metres = self.history(sharing(1.0, 1.0, 1.0))
@@ -214,7 +217,8 @@ class UnitsTest(CommandLineTest):
 
 class SpinTest(CommandLineTest):
     def test_the_history_of_a_particle_has_its_spin(self):
-        deck = HEAD + PAIR.replace("1e4", "1e4\nfriction = 0.5") + GROUP.format(0) + "angular_velocity = [1.0, 2.0, 3.0]\n"
+        deck = HEAD + PAIR.replace("1e4", "1e4\nfriction = 0.5") + GROUP.format(0)
+        deck += "angular_velocity = [1.0, 2.0, 3.0]\n"
         deck += GROUP.format(4) + "[output]\nhistory_particles = [1, 0]\n"
         out = pathlib.Path(self.folder) / "out"
         self.expect(DONE, "run", self.write("spin.toml", deck), "--output", out)
