@@ -26,7 +26,8 @@ constexpr const char* kLeftOut =
     "Planar ones move along x and y and turn about z, in 3D too, and forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`). Joints have motors, "
-    "springs, stops and dry friction, but no play. All particles are there at the start: none flow in, "
+    "servos, springs, stops and dry friction, but no play; cylinders have no mass. All particles are there "
+    "at the start: none flow in, "
     "bond or break. There is no fluid and no heat.";
 
 void describe_key(std::string& out, const Key& key, const std::string& selector) {

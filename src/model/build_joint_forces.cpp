@@ -31,7 +31,7 @@ int moving_joint(const DeckTable& table, const Model& model, const ModelNames& n
   const JointKind kind = joint_at(model, joint).kind;
   const bool keeps_distance = kind == JointKind::distance && !joint_at(model, joint).telescopes;
   if (coordinates_of(kind).empty() || keeps_distance)
-    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be a cylinder, or {}", name,
+    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be {}, or a cylinder", name,
                                 word_of(kind), kinds_with(model, joint, {})));
   return joint;
 }

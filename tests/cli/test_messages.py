@@ -162,6 +162,7 @@ step = {0.01 * t!r}
 
 [output]
 history_interval = {0.1 * t!r}
+history_bodies = ["b", "c"]
 
 [[bodies]]
 name = "b"

@@ -77,7 +77,7 @@ TEST_CASE("names of what a history records the contacts of") {
   CHECK(contains(model_error(recording("\"a\", \"floor\", \"a\"")),
                  "\"a\" is repeated; every entry must be another one"));
   CHECK(contains(model_error(recording("\"a\""), {"walls.0.name=a"}),
-                 "\"a\" is the name of 2 bodies, rows and walls; it must be that of one"));
+                 "\"a\" is the name of body \"a\" and of wall \"a\"; it must be that of one"));
 }
 
 TEST_CASE("planes do not stand across periodic axes, nor turn there") {

@@ -163,7 +163,8 @@ TEST_CASE("runs whose particles rotate have columns of that, beside all others")
   HistorySample sample = distinct_sample();
   sample.particles.rotation = {61, 62, 63, {}};
   sample.losses = {{64, 65, 66}};
-  const std::size_t others = history_columns(model, sample.reactions).size();
+  const std::size_t spins = 3 * model.output.history_particles.size();
+  const std::size_t others = history_columns(model, sample.reactions).size() + spins;
   model.contact.friction.resize(1);
   std::map<std::string, Real> found;
   const auto find_columns = [&] {
