@@ -24,6 +24,7 @@ def main(words: Sequence[str] | None = None) -> int:
         describe(described)
         described.set_defaults(run=run)
     chosen = parser.parse_args(words)
+    refuse_empty(parser, list(sys.argv[1:] if words is None else words))
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # of names that the locale's letters cannot say
     try:
@@ -34,6 +35,14 @@ def main(words: Sequence[str] | None = None) -> int:
     except (ScreeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+
+
+def refuse_empty(parser: argparse.ArgumentParser, words: list[str]) -> None:
+    """Ends the program where a word names nothing: an empty path would be the current folder."""
+    for before, word in zip(["", *words], words):
+        if not word.strip():
+            option = f"argument {before}: " if before.startswith("-") else ""
+            parser.error(f"{option}a name or path is empty; is a variable of a script not set?")
 
 
 def add_folder(parser: argparse.ArgumentParser) -> None:

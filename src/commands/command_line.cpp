@@ -37,12 +37,21 @@ std::vector<std::string> split(int count, char** values, Order& order) {
   return words;
 }
 
+constexpr const char* kEmpty = "is empty; is a variable of a script not set?";
+
+bool is_blank(const std::string& word) { return word.find_first_not_of(" \t") == word.npos; }
+
 // Of every option that takes a name or a path.
 CLI::Validator named() {
-  return {[](const std::string& word) {
-            return word.empty() ? std::string("is empty; is a variable of a script not set?") : std::string();
-          },
-          "", "named"};
+  return {[](const std::string& word) { return is_blank(word) ? std::string(kEmpty) : std::string(); }, "",
+          "named"};
+}
+
+// An option that ends in "=" would take the next word.
+void refuse_empty_values(const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (word.starts_with("--") && word.find('=') == word.size() - 1)
+      throw InputError(fmt::format("{}: {}", word.substr(0, word.size() - 1), kEmpty));
 }
 
 void declare_deck(CLI::App& command, Order& order) {
@@ -111,6 +120,7 @@ void declare_keys(CLI::App& app, Order& order) {
       ->add_flag("--schema", order.as_schema, "as a JSON schema, with which editors complete and check decks")
       ->excludes(markdown);
   command->add_option("word", order.about, "print the keys that this word is about, in place of all")
+      ->check(named())
       ->type_name("WORD")
       ->excludes(markdown);
   command->callback([&order] { order.command = Command::keys; });
@@ -153,6 +163,7 @@ std::string usage_message(const CLI::App& app, const std::string& first, const s
 Order read_words(int count, char** values, const std::function<std::string()>& version) {
   Order order;
   const std::vector<std::string> words = split(count, values, order);
+  refuse_empty_values(words);
   CLI::App app("Scree: collisions between a constrained multibody system and very many particles", "scree");
   app.footer(kExitCodes);
   app.set_version_flag("--version", version);

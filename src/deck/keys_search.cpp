@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -29,8 +30,10 @@ std::string small(std::string_view text) {
 // Blanks and hyphens count as the low lines of keys; an s at the end does not.
 std::string plain(std::string_view text) {
   std::string out = small(text);
+  if (const std::size_t of = out.find("'s"); of != out.npos) out.erase(of, 2);
   std::ranges::replace_if(
       out, [](char c) { return c == ' ' || c == '-'; }, '_');
+  if (out.size() > 4 && out.ends_with("ies")) return out.replace(out.size() - 3, 3, "y");
   if (out.size() > 3 && out.ends_with('s') && !out.ends_with("ss")) out.pop_back();
   return out;
 }
@@ -101,6 +104,27 @@ class Search {
   std::vector<Found> found_;
 };
 
+std::vector<std::string> words_of(const std::string& phrase) {
+  std::vector<std::string> words;
+  std::istringstream in(phrase);
+  for (std::string word; in >> word;)
+    if (word.size() > 2) words.push_back(word);  // not of, in, at
+  return words;
+}
+
+// Keys that every word of the phrase is about.
+std::vector<Found> found_by_each(const std::vector<std::string>& words) {
+  if (words.empty()) return {};
+  std::vector<Found> found = Search(words.front()).found();
+  for (std::size_t k = 1; k < words.size(); ++k) {
+    const Search other(words[k]);
+    std::erase_if(found, [&](const Found& one) {
+      return std::ranges::find(other.found(), one.path, &Found::path) == other.found().end();
+    });
+  }
+  return found;
+}
+
 std::string line_of(const Found& found) {
   const Key& key = *found.key;
   const bool is_table = key.type == ValueType::table || key.type == ValueType::tables;
@@ -124,13 +148,14 @@ std::string absent_text(const std::string& word) {
 std::string keys_about(const std::string& word) {
   const Search search(word);
   const std::string absent = absent_text(search.word());
-  if (word.empty() || (search.found().empty() && absent.empty()))
+  const std::vector<Found> found = search.found().empty() ? found_by_each(words_of(word)) : search.found();
+  if (word.empty() || (found.empty() && absent.empty()))
     throw InputError(fmt::format("keys {}: no key is about this{}; {}", word,
                                  word_suggestion(search.word(), search.paths()), kLimits));
   std::string text;
   if (!absent.empty())
     text = wrapped(fmt::format("{}: not there: {}. {}.", word, absent, kLimits), kWidth) + "\n";
-  for (const Found& found : search.found()) text += line_of(found);
+  for (const Found& one : found) text += line_of(one);
   return text;
 }
 

@@ -79,7 +79,9 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
         const auto j = static_cast<Index>(other.number);
         const Vec3 d = placed[i].point - other.position - shift;
         const Real reach = placed[i].radius + other.radius + skin;
-        if (dot(d, d) < reach * reach && rule_.may_touch(surfaces_.at(i).carrier, surfaces_.at(j).carrier))
+        const Surface &one = surfaces_.at(i), &two = surfaces_.at(j);
+        if (dot(d, d) < reach * reach && rule_.may_touch(one.carrier, two.carrier) &&
+            model_.contact.law(one.material, two.material).acts())
           partners[i].push_back({j, image});
       });
     }

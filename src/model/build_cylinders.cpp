@@ -16,7 +16,11 @@ Joint build_line(const DeckTable& table, const Model& model, const Connection& c
   check_same_kind(table, model, connection);
   find_end_points(table, model, connection, line.point);
   line.distance = start_distance(model, line.body, line.point);
-  if (line.distance == 0) table.fail("name", "the two points of a cylinder must not coincide at t = 0");
+  // Points that differ by round-off alone give the line no direction.
+  constexpr Real kRoundOff = 1e-12;
+  const Real size = norm(to_global_point(model, line.body[0], line.point[0]));
+  if (line.distance <= kRoundOff * size)
+    table.fail("name", "the two points of a cylinder must not coincide at t = 0");
   for (std::size_t side = 0; side < 2; ++side)
     line.marker[side] = connection.markers ? (*connection.markers)[side].orientation
                                            : marker_at(model, line.body[side], {}, identity3()).orientation;

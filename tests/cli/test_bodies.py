@@ -67,6 +67,35 @@ class BodiesTest(CommandLineTest):
         return json.loads((self.folder / output / "run_record.json").read_text())
 
 
+CONCENTRIC = """
+gravity = [0.0, 0.0, -9.8]
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+leaving = "drift"
+[time]
+end = 0.01
+[[contact.pairs]]
+stiffness = 0.0
+""" + "".join(f"""
+[[bodies]]
+name = "{name}"
+kind = "spatial"
+position = [0.0, 0.0, 0.0]
+mass = 1.0
+inertia_tensor = [0.01, 0.01, 0.01, 0.0, 0.0, 0.0]
+shapes = [{{ radius = {radius} }}]
+""" for name, radius in (("a", 0.2), ("b", 0.1)))
+
+
+class ContactTest(BodiesTest):
+    def test_concentric_shapes_of_a_pair_without_stiffness(self):
+        """Their contact has no normal, and no force that would need one."""
+        self.deck = self.write("deck.toml", CONCENTRIC)
+        self.run_deck(DONE, "out")
+
+
 class StartVelocityTest(BodiesTest):
     RAMP = 'kind = "ramp", rate = 1.85'
 

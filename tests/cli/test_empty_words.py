@@ -15,6 +15,8 @@ class EmptyWordsTest(CommandLineTest):
                              ((*run, "--restart", "", "--overwrite"), "--restart"),
                              ((*run, "--restart", "", "--allow-changes"), "--restart"),
                              ((*run, "--output", ""), "--output"), ((*run, "--output="), "--output"),
+                             ((*run, "--output=", "--overwrite"), "--output"), ((*run, "--output", " "), "--output"),
+                             ((*run, "--restart=", "--overwrite"), "--restart"), (("keys", " "), "word"),
                              ((*run, "--backend", ""), "--backend"), ((*run, "--set", ""), "--set"),
                              (("run", ""), "deck"), (("check", ""), "deck"), ((*check, "--set", ""), "--set"),
                              ((*check, "--picture", ""), "--picture"), (("new", ""), "example"),

@@ -150,6 +150,13 @@ class WordsTest(unittest.TestCase):
                           ("a, contacts of it", "number", {"contacts/a/contacts": "a"})])
 
 
+class EmptyWordsTest(CommandTest):
+    def test_an_empty_name_is_refused(self):
+        for words in (("urdf", ""), ("export", NET, "-o", ""), ("picture", ""), ("report", NET, "-o", " ")):
+            with self.subTest(words=words):
+                self.assertIn("is empty; is a variable of a script not set?", self.command(2, *words))
+
+
 class CompareTest(CommandTest):
     def change(self, folder, name, dataset, row, by):
         with h5py.File(folder / name, "r+") as file:
