@@ -127,9 +127,9 @@ class RanksTest(unittest.TestCase):
         names, *rows = csv.reader((self.folder / output / "history.csv").open())
         return {name: [float(row[k]) for row in rows] for k, name in enumerate(names)}
 
-    def datasets(self, output, name):
+    def datasets(self, output, name, chunks=True):
         """Contents and layout of an HDF5 file, without the times of day in it and what a checkpoint says that the run
-        took; None without libraries or file."""
+        took; None without libraries or file. chunks: with their sizes, which the first start of a run plans."""
         path = self.folder / output / name
         if results is None or not path.exists():
             return None
@@ -138,7 +138,7 @@ class RanksTest(unittest.TestCase):
             value = item[()] if item.shape is not None else b""
             if item.dtype.kind == "O":  # texts of any length
                 value = b"\n".join(value.tolist())
-            return (item.dtype, item.shape, item.chunks, item.compression, item.compression_opts, dict(item.attrs),
+            return (item.dtype, item.shape, chunks and item.chunks, item.compression, item.compression_opts, dict(item.attrs),
                     value if isinstance(value, bytes) else value.tobytes())
         return results.files.read(path, lambda file: {at: contents(item)
                                                       for at, item in results.files.datasets(file).items()

@@ -157,6 +157,10 @@ class SameBitsTest(RanksTest):
         self.assertGreater(record["counts"]["rebalances"], 0)
         self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
 
+    def assert_same_content(self, parts, whole, name):
+        """The first part of a run plans the chunks of its files, for fewer snapshots than the whole run has."""
+        self.assertEqual(self.datasets(parts, name, chunks=False), self.datasets(whole, name, chunks=False), name)
+
     def test_a_restart_on_another_number_of_ranks_continues_the_run(self):
         for name, ((deck, *overrides), _) in MAIN_CASES.items():
             with self.subTest(case=name):
@@ -168,17 +172,17 @@ class SameBitsTest(RanksTest):
                 self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
                 self.assertEqual(self.hash(parts), self.hash(whole))
                 self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
+                self.assert_same_content(parts, whole, "surfaces.vtkhdf")
                 surfaces = self.datasets(parts, "surfaces.vtkhdf")
-                self.assertEqual(surfaces, self.datasets(whole, "surfaces.vtkhdf"))
                 self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
                 if surfaces is not None and "works" in name:
                     self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
                 if results is not None and LINES[0] in overrides:
                     for lines in ("contacts.vtkhdf", "links.vtkhdf"):
-                        self.assertEqual(self.datasets(parts, lines), self.datasets(whole, lines), lines)
+                        self.assert_same_content(parts, whole, lines)
                     self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
                 for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
-                    self.assertEqual(self.datasets(parts, series), self.datasets(whole, series), series)
+                    self.assert_same_content(parts, whole, series)
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])

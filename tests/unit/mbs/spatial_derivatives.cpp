@@ -11,6 +11,7 @@
 
 #include "mbs/hht_method.hpp"
 #include "mbs/rigid_body_system.hpp"
+#include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_run.hpp"
@@ -199,7 +200,8 @@ TEST_CASE("in space the reaction of a joint is what its rows do to the second bo
     probe.evaluate(probe.position, probe.velocity);
     std::vector<Real> force(probe.velocity.size(), 0);
     probe.terms.constraint_jacobian.multiply_transposed(-1, probe.multipliers, force);
-    const auto reaction = probe.system.reactions(at, {})[0];
+    const std::vector<Real> memory(static_cast<std::size_t>(memory_count(model)), 0);
+    const auto reaction = probe.system.reactions(at, memory)[0];
     const Real* f = &force[6];
     const Mat3 a = rotation_matrix(model.bodies[1].orientation);
     const Vec3 about_centre = reaction.torque + cross(a * model.joints[0].point[1], reaction.force);
