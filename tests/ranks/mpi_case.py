@@ -138,8 +138,8 @@ class RanksTest(unittest.TestCase):
             value = item[()] if item.shape is not None else b""
             if item.dtype.kind == "O":  # texts of any length
                 value = b"\n".join(value.tolist())
-            return (item.dtype, item.shape, chunks and item.chunks, item.compression, item.compression_opts, dict(item.attrs),
-                    value if isinstance(value, bytes) else value.tobytes())
+            return (item.dtype, item.shape, chunks and item.chunks, item.compression, item.compression_opts,
+                    dict(item.attrs), value if isinstance(value, bytes) else value.tobytes())
         return results.files.read(path, lambda file: {at: contents(item)
                                                       for at, item in results.files.datasets(file).items()
                                                       if at != "texts/starts"})

@@ -192,7 +192,7 @@ TEST_CASE("in space the constraint Jacobian and right-hand sides are the derivat
 TEST_CASE("in space the reaction of a joint is what its rows do to the second body") {
   for (const auto& [name, model] : samples()) {
     if (model.joints.empty() || model.joints[0].body[1] == kGround || !model.drivers.empty() ||
-        !model.couplers.empty())
+        !model.couplers.empty() || model.joints[0].telescopes)  // a cylinder has no rows
       continue;
     INFO(name);
     Probe probe(model);
