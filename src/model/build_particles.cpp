@@ -210,8 +210,7 @@ void Group::place_lattice() {
 // Each position depends on all before it: every rank finds all, and keeps its part of them.
 void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
   const FillRegion region(table_, model_, names_);
-  PackingBox box{region.min(), region.max(), model_.space.dimension, table_.real("gap"),
-                 table_.integer("tries")};
+  PackingBox box = region.packing(table_.real("gap"), table_.integer("tries"));
   const StartMeshes meshes(model_);
   const auto clear = [&](Vec3 p, Real r, Real gap) {
     return is_clear_of_planes(model_, p, r) && meshes.is_clear(p, r, gap);

@@ -123,6 +123,14 @@ std::vector<Plane> planes_of(const TriangleMesh& hull, int dimension) {
   return planes;
 }
 
+// A unit vector across a unit vector.
+Vec3 perpendicular_to(Vec3 axis) {
+  const Vec3 a{std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)};
+  const Vec3 least = a.x <= a.y && a.x <= a.z ? Vec3{1, 0, 0} : a.y <= a.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+  const Vec3 beside = cross(axis, least);
+  return (1 / norm(beside)) * beside;
+}
+
 }  // namespace
 
 FillRegion::FillRegion(const DeckTable& table, const Model& model, const ModelNames& names)
@@ -142,10 +150,26 @@ FillRegion::FillRegion(const DeckTable& table, const Model& model, const ModelNa
   if (mesh) add_mesh(table, model, names);
   if (body && !mesh) add_body(table, model, names);
   add_box(table);
+  // A box that cuts off most of an oblique cylinder is the smaller one.
+  constexpr Real kMuch = 0.9;
+  const Vec3 extent = max_ - min_;
+  if (drawn_ && drawn_->volume > kMuch * extent.x * extent.y * extent.z) drawn_.reset();
 }
 
 bool FillRegion::holds(Vec3 p, Real radius) const {
+  if (drawn_ && !lies_in_box(p, radius)) return false;
   return std::ranges::all_of(parts_, [&](const auto& part) { return part(p, radius); });
+}
+
+bool FillRegion::lies_in_box(Vec3 p, Real radius) const {
+  const Vec3 below = p - min_, above = max_ - p;
+  return std::min({below.x, below.y, below.z, above.x, above.y, above.z}) >= radius;
+}
+
+PackingBox FillRegion::packing(Real gap, std::int64_t tries) const {
+  PackingBox box{min_, max_, dimension_, gap, tries};
+  box.drawn = drawn_;
+  return box;
 }
 
 Real FillRegion::share(const IsFree& is_free) const {
@@ -154,8 +178,13 @@ Real FillRegion::share(const IsFree& is_free) const {
   RandomNumbers random(1);
   int found = 0;
   for (int i = 0; i < kPoints; ++i) {
-    const Real x = random.uniform(min_.x, max_.x), y = random.uniform(min_.y, max_.y);
-    const Vec3 p{x, y, dimension_ == 3 ? random.uniform(min_.z, max_.z) : 0};
+    Vec3 p;
+    if (drawn_) {
+      p = drawn_->draw(random, point);
+    } else {
+      const Real x = random.uniform(min_.x, max_.x), y = random.uniform(min_.y, max_.y);
+      p = {x, y, dimension_ == 3 ? random.uniform(min_.z, max_.z) : 0};
+    }
     found += holds(p, point) && is_free(p, point);
   }
   return static_cast<Real>(found) / kPoints;
@@ -201,6 +230,14 @@ void FillRegion::add_cylinder(const DeckTable& table) {
     const Real along = dot(p - from, axis);
     return along >= r && along <= length - r && norm(p - from - along * axis) <= radius - r;
   });
+  const Vec3 across = perpendicular_to(axis), third = cross(axis, across);
+  drawn_ = DrawnRegion{[=](RandomNumbers& random, Real r) {
+                         const Real along = random.uniform(r, length - r);
+                         const Real one = random.uniform(r - radius, radius - r);
+                         const Real two = random.uniform(r - radius, radius - r);
+                         return from + along * axis + one * across + two * third;
+                       },
+                       4 * radius * radius * length};
   const auto beside = [&](Real u) { return radius * std::sqrt(std::max(1 - u * u, Real(0))); };
   const Vec3 around{beside(axis.x), beside(axis.y), beside(axis.z)};
   stay_within(smaller(from, to) - around, larger(from, to) + around);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,12 @@ class FillRegion {
 
   // Whether a box alone is given.
   bool is_box() const { return parts_.empty(); }
-  // Whether a sphere lies in all of the region but the box around it.
+  // Whether a sphere lies in the region; of a box alone nothing is asked.
   bool holds(Vec3 p, Real radius) const;
-  // Around all of it, and within the space unless a box alone is given [m].
-  Vec3 min() const { return min_; }
-  Vec3 max() const { return max_; }
-  // The part of this box that is of the region and free, by random points; 0: none was found.
+  // The box around all of it, within the space unless a box alone is given, and where positions are drawn.
+  PackingBox packing(Real gap, std::int64_t tries) const;
+  // The part of what positions are drawn from that is of the region and free, by random points; 0: none was
+  // found.
   Real share(const IsFree& is_free) const;
   // For messages: "the box (min, max)", "the region (cylinder_radius, mesh)".
   const std::string& name() const { return name_; }
@@ -38,12 +39,14 @@ class FillRegion {
   void add_circle(const DeckTable& table);
   void add_mesh(const DeckTable& table, const Model& model, const ModelNames& names);
   void add_body(const DeckTable& table, const Model& model, const ModelNames& names);
+  bool lies_in_box(Vec3 p, Real radius) const;
   void stay_within(Vec3 min, Vec3 max);
   void stay_within_points(const std::vector<Vec3>& points);
 
   int dimension_;
   Vec3 min_, max_;
   std::vector<std::function<bool(Vec3, Real)>> parts_;
+  std::optional<DrawnRegion> drawn_;
   std::string name_;
 };
 

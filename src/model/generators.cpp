@@ -17,9 +17,17 @@ namespace scree {
 namespace {
 
 Vec3 random_place(const PackingBox& box, Real radius, RandomNumbers& random) {
+  if (box.drawn) return box.drawn->draw(random, radius);
   const Real x = random.uniform(box.min.x + radius, box.max.x - radius);
   const Real y = random.uniform(box.min.y + radius, box.max.y - radius);
   return {x, y, box.dimension == 3 ? random.uniform(box.min.z + radius, box.max.z - radius) : 0};
+}
+
+// Of the region [m^3, in 2D m^2]. gap: between neighbours; it does not keep off walls.
+Real volume_of(const PackingBox& box, Real gap) {
+  if (box.drawn) return box.share * box.drawn->volume;
+  const Vec3 extent = box.max - box.min;
+  return box.share * (extent.x + gap) * (extent.y + gap) * (box.dimension == 2 ? 1 : extent.z + gap);
 }
 
 bool fits(const PackingBox& box, Real radius) {
@@ -34,10 +42,7 @@ constexpr std::size_t kMany = 1000;
 // number. The chance of a place is taken twice as large as it is, to be on the safe side.
 Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, Real scale) {
   constexpr std::size_t kParts = 200;
-  const Vec3 extent = box.max - box.min;
-  const Real volume =
-      box.share * (extent.x + box.gap) * (extent.y + box.gap) *
-      (box.dimension == 2 ? 1 : extent.z + box.gap);  // the gap keeps off neighbours, not walls
+  const Real volume = volume_of(box, box.gap);
   PackingSums sums;
   Real failures = 0;
   for (std::size_t part = 0, i = 0; part < kParts; ++part) {
@@ -158,10 +163,9 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
 
 std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, const std::string& region) {
   constexpr Real kCertain = 20;  // failures: chance would have to be kind as once in 10^8
-  const Vec3 extent = box.max - box.min;
   std::sort(radius.begin(), radius.end(), std::greater<>());
   PackingSums sums;
-  const Real volume = box.share * extent.x * extent.y * (box.dimension == 2 ? 1 : extent.z);
+  const Real volume = volume_of(box, 0);
   for (const Real r : radius) sums.add(box.dimension, r, 1 / volume);
   const bool equal = !radius.empty() && radius.front() == radius.back();
   const Real most_of_all = equal ? densest_fraction(box.dimension) : 1;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,19 @@ namespace scree {
 // Place i of a lattice that is filled along x, then y, then z. size: places per axis.
 Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size, std::int64_t i);
 
+// Where random positions are drawn from instead of the box around them, which an oblique region hardly fills.
+struct DrawnRegion {
+  std::function<Vec3(RandomNumbers& random, Real radius)> draw;
+  Real volume = 0;  // [m^3]
+};
+
 struct PackingBox {
   Vec3 min, max;  // holds the particles entirely [m]
   int dimension = 3;
   Real gap = 0;            // smallest distance between surfaces [m]
   std::int64_t tries = 0;  // random places per particle
-  Real share = 1;          // of the box: the region that they stand in and are tried in
+  Real share = 1;          // of the box, or of what is drawn from: the region that they stand in
+  std::optional<DrawnRegion> drawn;
 };
 
 // Whether a sphere may stand at a point [m].

@@ -89,6 +89,22 @@ TEST_CASE("a cylinder on an oblique axis, cut by a box") {
   }
 }
 
+// The box around it is 2,000 times as large.
+TEST_CASE("a thin cylinder on an oblique axis is filled as one along x is") {
+  const auto filled = [&](const std::string& ends) {
+    return model_of(kSpace + group(2500, "cylinder_radius = 0.02\nends = " + ends + "\n",
+                                   "{ kind = \"constant\", value = 0.004 }"));
+  };
+  const Model oblique = filled("[[-0.9, -0.9, -0.9], [0.9, 0.9, 0.9]]");
+  const Vec3 axis = (1 / std::sqrt(3.0)) * Vec3{1, 1, 1};
+  for (const Vec3 p : oblique.particles.position) {
+    REQUIRE(norm(cross(p, axis)) <= 0.02 - 0.004 + kRoundOff);
+    REQUIRE(std::abs(dot(p, axis)) <= 0.9 * std::sqrt(3.0) - 0.004 + kRoundOff);
+  }
+  check_free(oblique);
+  CHECK(filled("[[-1.5, 0.0, 0.0], [1.5, 0.0, 0.0]]").particles.size() == 2500);
+}
+
 TEST_CASE("the inside of a mesh that stands nowhere, up to a level") {
   const std::string ball = "[[meshes]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.5\nlevels = 3\n";
   const Model tank = model_of(kSpace + ball + group(600, "mesh = \"ball\"\nmax = [2.0, 2.0, 0.1]\n"));
