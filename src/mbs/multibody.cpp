@@ -12,10 +12,10 @@
 #include "mbs/hht_method.hpp"
 #include "mbs/joint_readings.hpp"
 #include "mbs/newton_solver.hpp"
-#include "mbs/passed_stops.hpp"
 #include "mbs/reaction_watch.hpp"
 #include "mbs/rigid_body_system.hpp"
 #include "mbs/start_checks.hpp"
+#include "mbs/start_elements.hpp"
 #include "mbs/start_velocities.hpp"
 #include "model/connections.hpp"
 #include "physics/time_stepping.hpp"
@@ -55,7 +55,7 @@ struct Multibody::Impl {
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
         corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
-        stops(stops_of(model)),
+        start_elements(model),
         motion(model.bodies.size()) {
     for (const Body& body : model.bodies) weight += body.mass * norm(model.gravity);
     start.memory.assign(system.joint_forces().memory().size(), 0);
@@ -97,7 +97,7 @@ struct Multibody::Impl {
   ReactionWatch watch;
   TimeControl time_control;
   bool corrects_start;
-  std::vector<Stop> stops;
+  StartElements start_elements;
   Real weight = 0;  // of all bodies [N]
   std::vector<BodyMotion> motion;
   MultibodyState end;    // of the step that accept() closes; its arrays change places with the caller's
@@ -187,9 +187,9 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
 }
 
 std::vector<std::string> Multibody::start_warnings() {
-  if (impl_->stops.empty()) return {};
+  if (impl_->start_elements.empty()) return {};
   const MultibodyState state = initial_state(std::vector<BodyWrench>(impl_->motion.size()));
-  return passed_stops(impl_->system, impl_->stops, state, impl_->weight);
+  return impl_->start_elements.findings(impl_->system, state, impl_->weight);
 }
 
 void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {

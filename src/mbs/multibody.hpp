@@ -90,8 +90,9 @@ class Multibody {
   // time t [s]. Throws InputError where a joint or driver does not hold there.
   void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
 
-  // Warnings of joint limits that the start position has passed, one text for each: their efforts and the
-  // energy that they hold. Throws InputError where it can hardly be meant (mbs/passed_stops.hpp).
+  // Warnings of joint limits that the start position has passed, with their efforts and the energy that they
+  // hold, and of servos that start where the step does not suit them, one text for each. Throws InputError
+  // where it can hardly be meant (mbs/passed_stops.hpp, mbs/thrown_servos.hpp).
   std::vector<std::string> start_warnings();
 
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.

@@ -83,5 +83,51 @@ class JointForcesTest(CommandLineTest):
         self.press(BAD_INPUT, "other2", *restart, "--set", "motors.0.type=effort", "--set", "motors.0.effort=1.0")
 
 
+SERVO = """
+gravity = [0.0, 0.0]
+[space]
+dimension = 2
+min = [-1.0, -1.0]
+max = [1.0, 1.0]
+[time]
+end = 0.5
+step = 1e-2
+control = "fixed"
+[[bodies]]
+name = "arm"
+position = [0.0, 0.0]
+mass = 1.0
+inertia = 0.8
+[[joints]]
+name = "hinge"
+type = "revolute"
+bodies = ["ground", "arm"]
+point = [0.0, 0.0]
+[[motors]]
+name = "servo"
+joint = "hinge"
+type = "position"
+position = 0.3
+position_gain = 1e7
+rate_gain = 1e5
+"""
+
+
+class ServoTest(CommandLineTest):
+    def test_a_servo_that_its_first_step_throws_off(self):
+        """Its period of 1.8 ms is not resolved by steps of 10 ms: they take it 0.38 rad off, 0.3 rad being the way."""
+        deck = self.write("servo.toml", SERVO)
+        warned = "servo 'servo' starts 0.3 rad beside its position"
+        self.assertIn(warned, self.expect(DONE, "check", deck).stderr)
+        out = self.folder / "out"
+        run = self.expect(DONE, "run", deck, "--output", out, "--set", "time.end=0.01")
+        self.assertIn("may throw joint 'hinge' 0.375 rad off", run.stderr)
+        self.assertAlmostEqual(0.3 - results.columns(out)["efforts/servo/coordinate"][-1], 0.375, delta=0.05)
+        for remedy in ("motors.servo.limit=50.0", "motors.servo.position=0.0", "time.control=adaptive",
+                       "time.step=1e-3", "motors.servo.position_gain=1e4"):
+            words = ["--set", remedy, *(("--set", "motors.servo.rate_gain=100.0") if "1e4" in remedy else ())]
+            self.assertNotIn("servo 'servo' starts", self.expect(DONE, "check", deck, *words).stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,0 +1,30 @@
+// Elements of joints that are judged by where they start.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbs/passed_stops.hpp"
+#include "mbs/thrown_servos.hpp"
+
+namespace scree {
+
+class StartElements {
+ public:
+  explicit StartElements(const Model& model) : stops_(stops_of(model)), servos_(servos_of(model)) {}
+
+  bool empty() const { return stops_.empty() && servos_.empty(); }
+  // Warnings, as passed_stops() and thrown_servos() have them; throws as these do.
+  std::vector<std::string> findings(const RigidBodySystem& system, const MultibodyState& start,
+                                    Real weight) const {
+    std::vector<std::string> all = passed_stops(system, stops_, start, weight);
+    for (std::string& one : thrown_servos(system, servos_, start)) all.push_back(std::move(one));
+    return all;
+  }
+
+ private:
+  std::vector<Stop> stops_;
+  std::vector<Servo> servos_;
+};
+
+}  // namespace scree
