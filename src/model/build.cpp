@@ -87,6 +87,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
+    check_driven_lengths(model, log);
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
     for (const std::string& finding : angles_in_degrees(root)) log.warning(finding);
   });

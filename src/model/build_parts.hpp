@@ -69,5 +69,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
 // Warns of steps in which particles go farther than their radius; refuses explicit steps past the stability
 // limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);
+// Warns of drivers, and of cylinders of type length, that ask for a distance of two points of 0 or less.
+void check_driven_lengths(const Model& model, Log& log);
 
 }  // namespace scree

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "base/error.hpp"
@@ -58,11 +59,16 @@ std::string separator_of(const std::string& cell) {
                                                  : "blanks";
 }
 
-bool is_number(const std::string& cell) {
+// Nothing where the cell is no number. std::from_chars() reads no sign above 0.
+std::optional<Real> number_of(const std::string& cell) {
   Real value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size();
+  const char* const begin = cell.data() + (cell.size() > 1 && cell[0] == '+' && cell[1] != '-' ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return value;
 }
+
+bool is_number(const std::string& cell) { return number_of(cell).has_value(); }
 
 std::string example_header(int dimension) { return dimension == 2 ? "x,y,radius" : "x,y,z,radius"; }
 
@@ -79,12 +85,10 @@ std::string value_trouble(const std::string& column, Real value) {
 
 // Throws InputError without the place.
 Real parse_cell(const std::string& cell, const std::string& column) {
-  Real value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  const bool read = error == std::errc() && end == cell.data() + cell.size();
-  const std::string trouble = read ? value_trouble(column, value) : "must be a number";
+  const std::optional<Real> value = number_of(cell);
+  const std::string trouble = value ? value_trouble(column, *value) : "must be a number";
   if (!trouble.empty()) throw InputError(fmt::format("column {} = {}: {}", column, cell, trouble));
-  return value;
+  return *value;
 }
 
 std::vector<std::string> parse_header(const std::vector<std::string>& cells, int dimension,

@@ -26,6 +26,35 @@ std::string refusal(const std::string& tables) { return model_error(kDeck + tabl
 
 }  // namespace
 
+TEST_CASE("a length of 0 or less, of a cylinder or a driver, is a warning with its time") {
+  const auto warnings = [](const std::string& tables) {
+    std::vector<std::string> all = model_warnings(kDeck + tables);
+    std::erase_if(all, [](const std::string& text) { return !contains(text, "asks for a length"); });
+    return all;
+  };
+  const auto cylinder = [&](const std::string& length) {
+    return warnings(kOne + "type = \"length\"\nposition_gain = 9.0\nlength = " + length + "\n");
+  };
+  CHECK(cylinder("0.4").empty());
+  CHECK(cylinder("0.0").size() == 1);
+  const auto step = [](const std::string& last) {
+    return "{ kind = \"step\", value = 0.4, end_value = " + last + ", start = 0.0, end = 0.01 }";
+  };
+  CHECK(cylinder(step("0.1")).empty());
+  const std::vector<std::string> negative = cylinder(step("-0.2"));
+  REQUIRE(negative.size() == 1);
+  CHECK(contains(negative[0], "cylinder 'c' asks for a length of -0.2 m at t = 0.01 s"));
+  const auto driver = [&](const std::string& last) {
+    return warnings(
+        "[[joints]]\nname = \"rod\"\ntype = \"distance\"\nbodies = [\"ground\", \"boom.0\"]\n"
+        "points = [[0.1, -0.3], [0.1, 0.1]]\n[[drivers]]\nname = \"stroke\"\njoint = \"rod\"\nmotion = " +
+        step(last) + "\n");
+  };
+  CHECK(driver("0.5").empty());
+  REQUIRE(driver("-0.2").size() == 1);
+  CHECK(contains(driver("-0.2")[0], "driver 'stroke' asks for a length of -0.2 m"));
+}
+
 TEST_CASE("a cylinder is a joint without rows, a motor on its length, and a stop") {
   const Model model = model_of(kDeck + kOne +
                                "type = \"speed\"\nspeed = 0.2\ngain = 3.0\nintegral_gain = 7.0\n"

@@ -48,7 +48,7 @@ void write_hdf5(const std::string& path, const std::map<std::string, std::vector
 
 TEST_CASE("cells of CSV may stand in quotes, with commas and quotes in them") {
   const Folder folder;
-  const std::string path = folder.write("q.csv", "\"x\", \"y\" ,\"radius\"\r\n\"0.1\",\"-2e-1\",0.05\r\n");
+  const std::string path = folder.write("q.csv", "\"x\", \"y\" ,\"radius\"\r\n\"+0.1\",\"-2e-1\",0.05\r\n");
   const ParticleColumns columns = read_particle_file(path, 2);
   CHECK(columns.at("y") == std::vector<Real>{-0.2});
   CHECK(columns.at("radius") == std::vector<Real>{0.05});
