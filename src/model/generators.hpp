@@ -31,7 +31,7 @@ struct PackingBox {
   Real gap = 0;            // smallest distance between surfaces [m]
   std::int64_t tries = 0;  // random places per particle
   Real share = 1;          // of the box, or of what is drawn from: the region that they stand in
-  std::optional<DrawnRegion> drawn;
+  std::optional<DrawnRegion> drawn{};
 };
 
 // Whether a sphere may stand at a point [m].
