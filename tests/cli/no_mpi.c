@@ -7,5 +7,5 @@ static int refuse(void) {
   exit(77);
 }
 
-int MPI_Init(int *count, char ***words) { return refuse(); }
-int MPI_Init_thread(int *count, char ***words, int required, int *provided) { return refuse(); }
+int MPI_Init(int* count, char*** words) { return refuse(); }
+int MPI_Init_thread(int* count, char*** words, int required, int* provided) { return refuse(); }
