@@ -91,7 +91,7 @@ Deck load_deck(const std::string& path, const std::vector<std::string>& override
   if (is_lfs_pointer(text.view())) throw IoError(fmt::format("deck {}: {}", path, kLfsPointerTrouble));
   if (const std::string kind = kind_of_file(text.view().substr(0, kFileBeginning)); !kind.empty())
     throw InputError(
-        fmt::format("{}: is {}; a deck is text in TOML{}", path, kind, way_to_a_deck(path, kind)));
+        fmt::format("{}:1: is {}; a deck is text in TOML{}", path, kind, way_to_a_deck(path, kind)));
   return parse_deck(text.str(), path, overrides);
 }
 
