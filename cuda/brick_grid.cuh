@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "dem/neighbor_list.hpp"
+#include "dem/search/neighbor_list.hpp"
 
 namespace scree {
 

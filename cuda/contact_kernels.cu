@@ -1,5 +1,5 @@
 #include "contact_kernels.cuh"
-#include "model/choose_law.hpp"
+#include "model/derived/choose_law.hpp"
 
 namespace scree {
 

@@ -1,5 +1,5 @@
 // The contact stages on the device for the law of this run, chosen once. All pointers are the device's;
-// everything is queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
+// everything is queued and nothing waits. The CPU's counterpart is src/dem/laws/contact_kernels.hpp.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "dem/contact_items.hpp"
-#include "dem/contact_kernels.hpp"
-#include "dem/leaver_items.hpp"
-#include "dem/mixed_rubbing_items.hpp"
-#include "dem/step_items.hpp"
-#include "dem/surface_items.hpp"
+#include "dem/contact/contact_items.hpp"
+#include "dem/explicit/mixed_rubbing_items.hpp"
+#include "dem/implicit/step_items.hpp"
+#include "dem/laws/contact_kernels.hpp"
+#include "dem/reports/leaver_items.hpp"
+#include "dem/surface_contact/surface_items.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
 #include "for_each.cuh"

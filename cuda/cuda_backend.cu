@@ -1,5 +1,5 @@
 #include "cuda_backend.cuh"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 
 namespace scree {
 

@@ -1,5 +1,5 @@
-// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu_backend.hpp as kernels; arithmetic
-// stays in src/physics, items in src/dem.
+// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu/cpu_backend.hpp as kernels;
+// arithmetic stays in src/physics, items in src/dem.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 #include "cuda_particles.cuh"
 #include "cuda_reports.cuh"
 #include "cuda_rubbing.cuh"
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 
 namespace scree {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cuda_items.cuh"
-#include "dem/surface_side.hpp"
+#include "dem/host/surface_side.hpp"
 
 namespace scree {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cuda_step_queue.cuh"
-#include "dem/explicit_run.hpp"
+#include "dem/backend/explicit_run.hpp"
 
 namespace scree {
 

@@ -1,4 +1,4 @@
-// The schedule of src/dem/cpu_implicit.cpp and block_solver.cpp.
+// The schedule of src/dem/cpu/cpu_implicit.cpp and block_solver.cpp.
 #include <cmath>
 
 #include "cuda_bodies.cuh"

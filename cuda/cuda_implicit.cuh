@@ -2,9 +2,9 @@
 #pragma once
 
 #include "cuda_solver.cuh"
-#include "dem/implicit_step.hpp"
-#include "dem/line_search.hpp"
-#include "dem/turning_items.hpp"
+#include "dem/backend/implicit_step.hpp"
+#include "dem/implicit/line_search.hpp"
+#include "dem/implicit/turning_items.hpp"
 
 namespace scree {
 

@@ -12,7 +12,7 @@
 #include "device_room.cuh"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 #include "particle_arrays.cuh"
 #include "partition/decomposition.hpp"
 #include "partition/subdomain.hpp"

@@ -7,7 +7,7 @@
 #include "cuda_bodies.cuh"
 #include "cuda_implicit.cuh"
 #include "cuda_owners.cuh"
-#include "dem/rank_list.hpp"
+#include "dem/backend/rank_list.hpp"
 
 namespace scree {
 

@@ -4,7 +4,7 @@
 
 #include "base/countable.hpp"
 #include "cuda_owners.cuh"
-#include "dem/rank_list.hpp"
+#include "dem/backend/rank_list.hpp"
 
 namespace scree {
 namespace {

@@ -1,11 +1,11 @@
-// Which rank owns which particles where there are several: src/dem/cpu_list.cpp for the GPU's backend.
+// Which rank owns which particles where there are several: src/dem/cpu/cpu_list.cpp for the GPU's backend.
 // Particles that change their rank, few after the first list, go through the host.
 #pragma once
 
 #include <vector>
 
 #include "cuda_items.cuh"
-#include "dem/particle_fields.hpp"
+#include "dem/particles/particle_fields.hpp"
 
 namespace scree {
 

@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "cuda_particles.cuh"
-#include "dem/device.hpp"
-#include "dem/explicit_run.hpp"
-#include "dem/particle_store.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/backend/explicit_run.hpp"
+#include "dem/particles/particle_store.hpp"
 
 namespace scree {
 namespace {

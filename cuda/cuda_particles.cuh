@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cuda_list.cuh"
-#include "dem/rank_particles.hpp"
+#include "dem/backend/rank_particles.hpp"
 
 namespace scree {
 

@@ -4,7 +4,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include "cuda_reports.cuh"
-#include "dem/inside_energies.hpp"
+#include "dem/backend/inside_energies.hpp"
 
 namespace scree {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cuda_bodies.cuh"
-#include "dem/reports.hpp"
+#include "dem/backend/reports.hpp"
 #include "trace_item.cuh"
 
 namespace scree {

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "contact_kernels.cuh"
-#include "dem/ledger_items.hpp"
-#include "dem/wall_items.hpp"
+#include "dem/reports/ledger_items.hpp"
+#include "dem/surface_contact/wall_items.hpp"
 #include "device.cuh"
 #include "partition/ranks.hpp"
 #include "sums.cuh"

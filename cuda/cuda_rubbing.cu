@@ -1,4 +1,4 @@
-// The schedule of src/dem/cpu_rubbing.cpp.
+// The schedule of src/dem/cpu/cpu_rubbing.cpp.
 #include <algorithm>
 #include <cmath>
 

@@ -1,12 +1,12 @@
-// The schedule of the linear solves of implicit steps: iterate_chebyshev() of dem/block_solver.hpp on the
-// device.
+// The schedule of the linear solves of implicit steps: iterate_chebyshev() of dem/implicit/block_solver.hpp
+// on the device.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "cuda_items.cuh"
-#include "dem/block_solver.hpp"
+#include "dem/implicit/block_solver.hpp"
 
 namespace scree {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cuda_control.cuh"
-#include "dem/mixed_items.hpp"
+#include "dem/explicit/mixed_items.hpp"
 #include "step_graph.cuh"
 
 namespace scree {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "device.cuh"
 
 namespace scree {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "dem/particle_fields.hpp"
+#include "dem/particles/particle_fields.hpp"
 #include "for_each.cuh"
 #include "halo_transport.cuh"
 #include "partition/halo.hpp"

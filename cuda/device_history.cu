@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "base/countable.hpp"
-#include "dem/device.hpp"
-#include "dem/particle_fields.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/particles/particle_fields.hpp"
 #include "device_history.cuh"
 #include "for_each.cuh"
 #include "kept_rows.cuh"

@@ -1,11 +1,12 @@
-// What the contacts of a rank's particles remember, on its GPU: src/dem/cpu_history.hpp for device memory.
+// What the contacts of a rank's particles remember, on its GPU: src/dem/host/cpu_history.hpp for device
+// memory.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "dem/history_slots.hpp"
-#include "dem/kept_contacts.hpp"
+#include "dem/history/history_slots.hpp"
+#include "dem/history/kept_contacts.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
 #include "device_surfaces.cuh"

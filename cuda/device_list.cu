@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/countable.hpp"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "device_list.cuh"
 #include "for_each.cuh"
 

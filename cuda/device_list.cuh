@@ -1,9 +1,9 @@
-// Neighbour list on the device: the same rows as those of src/dem/neighbor_list.hpp, laid out for coalesced
-// reads.
+// Neighbour list on the device: the same rows as those of src/dem/search/neighbor_list.hpp, laid out for
+// coalesced reads.
 #pragma once
 
 #include "brick_grid.cuh"
-#include "dem/contact_walk.hpp"
+#include "dem/contact/contact_walk.hpp"
 #include "device_room.cuh"
 
 namespace scree {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "base/countable.hpp"
-#include "dem/mesh_step_touches.hpp"
+#include "dem/surface_contact/mesh_step_touches.hpp"
 #include "device_meshes.cuh"
 #include "for_each.cuh"
 #include "lane_team.cuh"

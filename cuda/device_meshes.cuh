@@ -6,14 +6,14 @@
 
 #include "brick_grid.cuh"
 #include "contact_kernels.cuh"
-#include "dem/mesh_rows.hpp"
-#include "dem/surface_items.hpp"
-#include "dem/surface_rows.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/search/surface_rows.hpp"
+#include "dem/surface_contact/surface_items.hpp"
+#include "dem/surfaces/mesh_rows.hpp"
+#include "dem/surfaces/surfaces.hpp"
 #include "device.cuh"
 #include "kept_views.cuh"
 #include "mesh/standing.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

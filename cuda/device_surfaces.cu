@@ -1,7 +1,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include "base/countable.hpp"
-#include "dem/surface_rows.hpp"
+#include "dem/search/surface_rows.hpp"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
 #include "step_graph.cuh"

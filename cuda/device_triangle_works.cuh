@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "contact_kernels.cuh"
-#include "dem/triangle_works.hpp"
+#include "dem/reports/triangle_works.hpp"
 #include "device.cuh"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "device.cuh"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 #include "partition/halo_plan.hpp"
 
 namespace scree {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "dem/history_slots.hpp"
+#include "dem/history/history_slots.hpp"
 
 namespace scree {
 

@@ -1,9 +1,9 @@
 // What contacts remember at the slots of a list on the device, and how it is named.
 #pragma once
 
-#include "dem/history_slots.hpp"
-#include "dem/particle_fields.hpp"
-#include "dem/sheet_names.hpp"
+#include "dem/history/history_slots.hpp"
+#include "dem/history/sheet_names.hpp"
+#include "dem/particles/particle_fields.hpp"
 #include "device_list.cuh"
 #include "device_surfaces.cuh"
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "dem/mixed_items.hpp"
-#include "dem/particle_fields.hpp"
+#include "dem/explicit/mixed_items.hpp"
+#include "dem/particles/particle_fields.hpp"
 #include "device_room.cuh"
 
 namespace scree {

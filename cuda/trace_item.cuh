@@ -3,7 +3,7 @@
 
 #include "base/hd.hpp"
 #include "base/vec3.hpp"
-#include "dem/reports.hpp"
+#include "dem/backend/reports.hpp"
 #include "particle_arrays.cuh"
 
 namespace scree {

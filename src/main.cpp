@@ -14,7 +14,7 @@
 #include "commands/commands.hpp"
 #include "partition/mpi_session.hpp"
 #include "partition/ranks.hpp"
-#include "run/signals.hpp"
+#include "run/report/signals.hpp"
 
 namespace scree {
 namespace {

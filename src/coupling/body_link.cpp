@@ -4,7 +4,7 @@
 #include <span>
 
 #include "base/error.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/surfaces/surfaces.hpp"
 
 namespace scree {
 

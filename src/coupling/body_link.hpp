@@ -8,9 +8,9 @@
 
 #include "coupling/loaded_bodies.hpp"
 #include "coupling/wall_motion.hpp"
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 #include "partition/ranks.hpp"
 
 namespace scree {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "model/limits.hpp"
-#include "model/mesh_corners.hpp"
-#include "model/touching.hpp"
+#include "model/checks/limits.hpp"
+#include "model/derived/mesh_corners.hpp"
+#include "model/derived/touching.hpp"
 
 namespace scree {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "base/timer.hpp"
 #include "coupling/body_link.hpp"
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

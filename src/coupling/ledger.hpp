@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "model/body_exchange.hpp"
-#include "model/body_load.hpp"
-#include "model/model.hpp"
+#include "model/checks/body_load.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/model.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {

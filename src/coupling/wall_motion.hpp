@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "model/body_exchange.hpp"
-#include "model/model.hpp"
-#include "model/scalar_function.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/model.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

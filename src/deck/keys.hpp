@@ -125,8 +125,8 @@ Key table(const std::string& name, const TableKeys& keys);
 Key tables(const std::string& name, const TableKeys& keys);
 
 // Of an orientation: quaternion, or rotation_axis and rotation_angle, or z_axis with or without x_axis, each
-// after `prefix`; DeckTable's reader is read_orientation (model/frames.hpp). what: "the body's frame"; outer:
-// the frame in which that stands.
+// after `prefix`; DeckTable's reader is read_orientation (model/derived/frames.hpp). what: "the body's
+// frame"; outer: the frame in which that stands.
 std::vector<Key> orientation_keys(const std::string& prefix, const std::string& what,
                                   const std::string& outer);
 

@@ -5,9 +5,9 @@
 
 #include "mbs/body_poses.hpp"
 #include "mbs/mechanical_system.hpp"
-#include "model/bodies.hpp"
-#include "model/body_exchange.hpp"
-#include "model/body_layout.hpp"
+#include "model/data/bodies.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/body_layout.hpp"
 
 namespace scree {
 

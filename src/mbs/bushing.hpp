@@ -8,7 +8,7 @@
 
 #include "mbs/force_elements.hpp"
 #include "mbs/measure.hpp"
-#include "model/bodies.hpp"
+#include "model/data/bodies.hpp"
 
 namespace scree {
 

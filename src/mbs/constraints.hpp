@@ -8,7 +8,7 @@
 
 #include "mbs/body_poses.hpp"
 #include "mbs/sparse_term.hpp"
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

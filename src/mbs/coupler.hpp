@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "mbs/constraints.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

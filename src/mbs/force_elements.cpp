@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

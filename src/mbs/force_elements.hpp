@@ -6,7 +6,7 @@
 
 #include "mbs/body_poses.hpp"
 #include "mbs/sparse_term.hpp"
-#include "model/bodies.hpp"
+#include "model/data/bodies.hpp"
 
 namespace scree {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "mbs/joints.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/joint_coordinates.hpp"
 
 namespace scree {
 

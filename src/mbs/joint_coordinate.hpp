@@ -9,14 +9,14 @@
 #include "mbs/constraints.hpp"
 #include "mbs/joint_laws.hpp"
 #include "mbs/mechanical_system.hpp"
-#include "model/body_layout.hpp"
-#include "model/model.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 
 // C = c, one row: the row of a driver (mbs/joints.hpp) with the motion f = 0. joint: its number; wanted: as
-// of coordinate_of (model/joint_coordinates.hpp). Throws InputError, which begins with `title`, for a joint
-// without such a coordinate.
+// of coordinate_of (model/derived/joint_coordinates.hpp). Throws InputError, which begins with `title`, for a
+// joint without such a coordinate.
 std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Model& model, int joint,
                                              std::optional<JointCoordinate> wanted, const BodyLayout& layout);
 

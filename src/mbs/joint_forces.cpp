@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mbs/joint_coordinate.hpp"
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 
 namespace scree {
 

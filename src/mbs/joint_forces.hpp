@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mbs/joint_force.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "mbs/integral.hpp"
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {

@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "mbs/dual.hpp"
-#include "model/joint_forces.hpp"
+#include "model/data/joint_forces.hpp"
 
 namespace scree {
 

@@ -1,6 +1,6 @@
 #include "mbs/joint_parts.hpp"
 
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 
 namespace scree {
 

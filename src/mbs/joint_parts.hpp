@@ -6,9 +6,9 @@
 
 #include "mbs/constraints.hpp"
 #include "mbs/measure.hpp"
-#include "model/body_layout.hpp"
-#include "model/model.hpp"
-#include "model/scalar_function.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/data/model.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

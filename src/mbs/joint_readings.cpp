@@ -1,7 +1,7 @@
 #include "mbs/joint_readings.hpp"
 
 #include "mbs/joint_coordinate.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/joint_coordinates.hpp"
 
 namespace scree {
 

@@ -8,8 +8,8 @@
 #include "mbs/constraints.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/multibody.hpp"
-#include "model/body_layout.hpp"
-#include "model/model.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "mbs/joint_parts.hpp"
-#include "model/bodies.hpp"
-#include "model/scalar_function.hpp"
+#include "model/data/bodies.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

@@ -8,7 +8,7 @@
 #include "mbs/integral.hpp"
 #include "mbs/joint_laws.hpp"
 #include "mbs/limited_line.hpp"
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

@@ -17,7 +17,7 @@
 #include "mbs/start_checks.hpp"
 #include "mbs/start_elements.hpp"
 #include "mbs/start_velocities.hpp"
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "model/body_exchange.hpp"
-#include "model/model.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -9,7 +9,7 @@
 
 #include "base/rotation.hpp"
 #include "base/types.hpp"
-#include "model/body_layout.hpp"
+#include "model/data/body_layout.hpp"
 
 namespace scree {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {

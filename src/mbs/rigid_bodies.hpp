@@ -10,8 +10,8 @@
 #include "mbs/hht_method.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/multibody.hpp"
-#include "model/body_exchange.hpp"
-#include "model/model.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -8,9 +8,9 @@
 #include "mbs/body_coupling.hpp"
 #include "mbs/coupler.hpp"
 #include "mbs/joints.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
-#include "model/mesh_corners.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
+#include "model/derived/mesh_corners.hpp"
 
 namespace scree {
 

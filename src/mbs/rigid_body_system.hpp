@@ -12,9 +12,9 @@
 #include "mbs/measure.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/rigid_bodies.hpp"
-#include "model/body_exchange.hpp"
-#include "model/body_layout.hpp"
-#include "model/model.hpp"
+#include "model/data/body_exchange.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

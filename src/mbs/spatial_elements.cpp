@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/measure.hpp"
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {

@@ -5,7 +5,7 @@
 
 #include "base/mat3.hpp"
 #include "base/types.hpp"
-#include "model/body_layout.hpp"
+#include "model/data/body_layout.hpp"
 
 namespace scree {
 

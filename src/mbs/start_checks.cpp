@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {

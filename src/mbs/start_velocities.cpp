@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/mat3.hpp"
-#include "model/body_exchange.hpp"
+#include "model/data/body_exchange.hpp"
 
 namespace scree {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 namespace scree {
 

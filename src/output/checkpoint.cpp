@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
-#include "model/id_range.hpp"
+#include "model/data/id_range.hpp"
 #include "output/durable_file.hpp"
 #include "output/file_seal.hpp"
 #include "output/hdf5_file.hpp"

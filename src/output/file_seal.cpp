@@ -13,7 +13,7 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
-#include "model/id_range.hpp"
+#include "model/data/id_range.hpp"
 #include "output/durable_file.hpp"
 
 namespace scree {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "model/hdf5_open.hpp"
+#include "model/builder/hdf5_open.hpp"
 #include "output/hdf5_parts.hpp"
 
 namespace scree {

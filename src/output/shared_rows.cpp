@@ -7,7 +7,7 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
-#include "model/hdf5_open.hpp"
+#include "model/builder/hdf5_open.hpp"
 #include "output/durable_file.hpp"
 
 #if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)

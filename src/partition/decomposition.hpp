@@ -9,7 +9,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 #include "partition/ranks.hpp"
 #include "partition/subdomain.hpp"
 

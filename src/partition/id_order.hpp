@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "model/id_range.hpp"
+#include "model/data/id_range.hpp"
 #include "partition/ranks.hpp"
 
 namespace scree {

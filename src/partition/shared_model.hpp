@@ -1,7 +1,7 @@
 // The ranks of a run as builders of one model.
 #pragma once
 
-#include "model/share.hpp"
+#include "model/data/share.hpp"
 #include "partition/ranks.hpp"
 
 namespace scree {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/space_box.hpp"
+#include "model/derived/space_box.hpp"
 
 namespace scree {
 namespace {

@@ -4,7 +4,7 @@
 #include "base/box.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -15,7 +15,7 @@
 namespace scree {
 
 // What steps of velocity-verlet are good, and are chosen where a deck leaves its step out: at most these
-// shares, and no longer than trial impacts keep their rebounds (model/explicit_step.hpp).
+// shares, and no longer than trial impacts keep their rebounds (model/checks/explicit_step.hpp).
 inline constexpr Real kStableShare = Real(1) / 3;  // of the stability limit in dense contact
 inline constexpr Real kNeckShare = 0.01;  // of the shortest contact, where a neck must let go within one
 // Phase that a body on its contacts turns in a step [rad]: its contacts are staggered with the particles'.

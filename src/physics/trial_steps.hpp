@@ -31,9 +31,9 @@ inline Vec3 trial_start(const TrialImpact& impact, Real gap) {
          gap * Vec3{impact.sliding, 0, -impact.approach};
 }
 
-// In velocity Verlet, or where the law moves in its form by half steps (dem/step_items.hpp). Every trial has
-// step(h), which says whether the contact was closed at the end of the step, and parting() and across(): the
-// relative velocity along the normal and across it.
+// In velocity Verlet, or where the law moves in its form by half steps (dem/implicit/step_items.hpp). Every
+// trial has step(h), which says whether the contact was closed at the end of the step, and parting() and
+// across(): the relative velocity along the normal and across it.
 template <class Law>
 class ExplicitTrial {
  public:

@@ -16,7 +16,7 @@
 #include "base/version.hpp"
 #include "bed_cases.hpp"
 #include "bed_run.hpp"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "mbs/petsc_session.hpp"
 #include "partition/shared_model.hpp"
 #include "support/measured.hpp"

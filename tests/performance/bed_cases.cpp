@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "coupling/coupled_step.hpp"
-#include "dem/particle_store.hpp"
-#include "model/particle_file.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "model/builder/particle_file.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {

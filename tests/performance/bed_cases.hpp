@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
-#include "model/share.hpp"
+#include "model/data/model.hpp"
+#include "model/data/share.hpp"
 
 namespace scree {
 

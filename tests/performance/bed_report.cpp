@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/measured.hpp"
 
 namespace scree {

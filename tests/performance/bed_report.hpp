@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/timer.hpp"
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "partition/ranks.hpp"
 
 namespace scree {

@@ -7,8 +7,8 @@
 #include <ctime>
 #include <numeric>
 
-#include "dem/device.hpp"
-#include "dem/particle_store.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/particles/particle_store.hpp"
 #include "partition/shared_model.hpp"
 
 namespace scree {

@@ -1,6 +1,6 @@
 // The particles' backend on all ranks of mpirun against one rank alone, bit for bit; failures reach every
 // rank.
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 
 #include <mpi.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "dem/particle_store.hpp"
+#include "dem/particles/particle_store.hpp"
 #include "support/catch.hpp"
 #include "support/particle_bits.hpp"
 #include "support/petsc_run.hpp"

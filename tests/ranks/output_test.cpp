@@ -15,7 +15,7 @@
 #include "output/shared_rows.hpp"
 #include "output/snapshot.hpp"
 #include "partition/id_order.hpp"
-#include "run/state.hpp"
+#include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/checkpoint_arrays.hpp"
 #include "support/file_size_limit.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "model/random.hpp"
+#include "model/derived/random.hpp"
 #include "partition/decomposition.hpp"
 #include "partition/halo.hpp"
 #include "partition/ranks.hpp"

@@ -27,11 +27,11 @@ def files(root, suffixes=None, under=None):
     return sorted(f for f in found if suffixes is None or f.suffix in suffixes)
 
 
-def room_order(root):
-    """Per room the rooms that its files may include, from the line "base <- physics <- { a, b } <- main"."""
-    lines = [line for line in (root / ROOMS).read_text().splitlines() if re.match(r"    \w+ <- ", line)]
+def order_on(page):
+    """What each folder may include, itself among it, from a page's line "base <- physics <- { a, b } <- main"."""
+    lines = [line for line in page.read_text().splitlines() if re.match(r"    \w+ <- ", line)]
     if len(lines) != 1:
-        raise ValueError(f"{ROOMS}: {len(lines)} lines with the order of the rooms")
+        raise ValueError(f"{page}: {len(lines)} lines with the order of the rooms")
     allowed, left = {}, set()
     for part in lines[0].split("<-"):
         beside = [room.strip() for room in part.strip(" {}").split(",")]
@@ -39,6 +39,19 @@ def room_order(root):
             allowed[room] = left | {room}
         left = left | set(beside)
     return allowed
+
+
+def room_order(root):
+    """Per room the rooms that its files may include."""
+    return order_on(root / ROOMS)
+
+
+def included(root, file):
+    """The numbers of the lines of a file that include one of ours, with what they include."""
+    for number, line in enumerate((root / file).read_text().splitlines(), 1):
+        include = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
+        if include is not None:
+            yield number, pathlib.PurePosixPath(include[1])
 
 
 def wrong_includes(root):
@@ -51,14 +64,30 @@ def wrong_includes(root):
         seen = allowed.get(room, set()) if in_src else allowed["dem"]
         if in_src and room not in allowed:
             findings.append(f"{file}: {room} is no room of {ROOMS}")
-        for number, line in enumerate((root / file).read_text().splitlines(), 1):
-            include = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
-            if include is None:
-                continue
-            target = pathlib.PurePosixPath(include[1])
+        for number, target in included(root, file):
             own_of_cuda = not in_src and (root / "cuda" / target).is_file()
             if not own_of_cuda and (len(target.parts) < 2 or target.parts[0] not in seen):
                 findings.append(f"{file}:{number}: {room} may not include {target}")
+    return findings
+
+
+def wrong_includes_in_rooms(root):
+    """Arrows against the order of a room's sub-rooms, which the room's page gives where the room has any."""
+    findings = []
+    for room in sorted(folder for folder in (root / "src").iterdir() if folder.is_dir()):
+        sub_rooms = sorted(folder.name for folder in room.iterdir() if folder.is_dir())
+        if not sub_rooms:
+            continue
+        allowed = order_on(room / "README.md")
+        findings += [f"{room.name}/{sub_room} is no sub-room of src/{room.name}/README.md"
+                     for sub_room in sub_rooms if sub_room not in allowed]
+        for file in files(root, CPP, f"src/{room.name}"):
+            if len(file.parts) < 4:
+                findings.append(f"{file}: in none of the sub-rooms of {room.name}")
+                continue
+            for number, target in included(root, file):
+                if target.parts[0] == room.name and target.parts[1] not in allowed.get(file.parts[2], set()):
+                    findings.append(f"{file}:{number}: {room.name}/{file.parts[2]} may not include {target}")
     return findings
 
 

@@ -34,6 +34,9 @@ class Project(unittest.TestCase):
         self.assertGreater(len(checks.files(ROOT, checks.CPP, "src")), 100)
         self.assert_none(checks.wrong_includes(ROOT))
 
+    def test_sub_rooms_include_sub_rooms_to_their_left(self):
+        self.assert_none(checks.wrong_includes_in_rooms(ROOT))
+
     def test_every_room_is_in_the_order(self):
         rooms = {path.name for path in (ROOT / "src").iterdir() if path.is_dir()} | {"main"}
         self.assertEqual(rooms, set(checks.room_order(ROOT)))
@@ -85,6 +88,25 @@ class Checks(unittest.TestCase):
                 path.parent.mkdir(exist_ok=True)
                 path.write_text(f'\n#  include "{include}"\n')
                 self.assertTrue(checks.wrong_includes(root))
+
+    def test_includes_in_rooms(self):
+        right = {"src__dem__README_DOT_md": "    contact <- { explicit, implicit } <- cpu\n",
+                 "src__dem__explicit__a_DOT_hpp": '#include "dem/contact/x.hpp"\n#include "base/x.hpp"\n',
+                 "src__dem__cpu__a_DOT_cpp": '#include "dem/cpu/a.hpp"\n#include "dem/implicit/x.hpp"\n',
+                 "src__base__a_DOT_hpp": ""}
+        with tree(**right) as root:
+            self.assertEqual(checks.wrong_includes_in_rooms(root), [])
+        for name, include in (("src__dem__contact__a_DOT_hpp", "dem/cpu/x.hpp"),
+                              ("src__dem__implicit__a_DOT_hpp", "dem/explicit/x.hpp"),
+                              ("src__dem__cpu__a_DOT_hpp", "dem/x.hpp"), ("src__dem__a_DOT_hpp", "base/x.hpp"),
+                              ("src__dem__new__a_DOT_hpp", "base/x.hpp")):
+            with self.subTest(name=name, include=include), tree(**right) as root:
+                path = root / name.replace("__", "/").replace("_DOT_", ".")
+                path.parent.mkdir(exist_ok=True)
+                path.write_text(f'#include "{include}"\n')
+                self.assertTrue(checks.wrong_includes_in_rooms(root))
+        with tree(src__dem__cpu__a_DOT_hpp="", src__dem__README_DOT_md="no order\n") as root:
+            self.assertRaises(ValueError, checks.wrong_includes_in_rooms, root)
 
     def test_lengths(self):
         with tree(a_DOT_py="x\n" * 400 + "", b_DOT_md="x\n" * 500, c_DOT_py="x" * 120 + "\n") as root:

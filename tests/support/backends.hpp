@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/measured.hpp"
 
 namespace scree {

@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
-#include "dem/contact_walk.hpp"
-#include "dem/history_slots.hpp"
-#include "dem/kept_contacts.hpp"
-#include "dem/particle_store.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/contact/contact_walk.hpp"
+#include "dem/history/history_slots.hpp"
+#include "dem/history/kept_contacts.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "dem/surfaces/surfaces.hpp"
 #include "support/bits.hpp"
 #include "support/remembering_law.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/reports.hpp"
+#include "dem/backend/reports.hpp"
 #include "partition/id_order.hpp"
 #include "support/bits.hpp"
 

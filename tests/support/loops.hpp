@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "support/spatial_run.hpp"
 
 namespace scree {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/build.hpp"
+#include "model/builder/build.hpp"
 #include "support/decks.hpp"
 
 namespace scree {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mbs/multibody.hpp"
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 #include "support/petsc_run.hpp"
 
 namespace scree {

@@ -1,4 +1,4 @@
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/remembering_backend.hpp"
 
 namespace scree {

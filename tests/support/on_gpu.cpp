@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 
 namespace {
 

@@ -2,6 +2,6 @@
 // that Scree is for, so that there is a reason on every machine.
 #include <cstdio>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 
 int main() { std::puts(scree::device_trouble().c_str()); }

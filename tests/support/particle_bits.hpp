@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/particle_store.hpp"
+#include "dem/particles/particle_store.hpp"
 #include "support/bits.hpp"
 
 namespace scree {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/build.hpp"
+#include "model/builder/build.hpp"
 #include "support/catch.hpp"
 
 namespace scree {

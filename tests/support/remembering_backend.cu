@@ -1,6 +1,6 @@
 #include "contact_kernels_impl.cuh"
 #include "cuda_backend.cuh"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/remembering_backend.hpp"
 
 namespace scree {

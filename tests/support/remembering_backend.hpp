@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "dem/contact_kernels_impl.hpp"
-#include "dem/cpu_backend.hpp"
+#include "dem/cpu/cpu_backend.hpp"
+#include "dem/laws/contact_kernels_impl.hpp"
 #include "support/backends.hpp"
 #include "support/remembering_law.hpp"
 

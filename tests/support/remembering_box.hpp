@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "run/restart.hpp"
-#include "run/state.hpp"
+#include "run/restart/restart.hpp"
+#include "run/state/state.hpp"
 #include "support/remembering_backend.hpp"
 #include "unit/dem/random_box.hpp"
 

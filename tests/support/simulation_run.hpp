@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "coupling/ledger.hpp"
-#include "dem/particle_store.hpp"
-#include "run/balance.hpp"
-#include "run/step_loop.hpp"
-#include "run/target_contacts.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "run/loop/step_loop.hpp"
+#include "run/record/target_contacts.hpp"
+#include "run/report/balance.hpp"
 #include "support/backends.hpp"
 #include "support/petsc_run.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "support/bits.hpp"
 #include "support/checkpoint_arrays.hpp"
 #include "support/particle_bits.hpp"

@@ -1,6 +1,6 @@
 // The functions of device.hpp in a build without CUDA.
 #include "base/error.hpp"
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 
 namespace scree {
 

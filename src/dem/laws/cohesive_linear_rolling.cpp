@@ -1,4 +1,4 @@
-#include "dem/contact_kernels_impl.hpp"
+#include "dem/laws/contact_kernels_impl.hpp"
 #include "physics/cohesion.hpp"
 
 namespace scree {

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "dem/particle_store.hpp"
-#include "run/state.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "run/state/state.hpp"
 #include "support/backends.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "model/body_load.hpp"
+#include "model/checks/body_load.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/catch.hpp"
 #include "support/contact_line_bits.hpp"
 #include "support/near.hpp"

@@ -1,6 +1,6 @@
 // What contacts remember on the GPU against the CPU: bit for bit, with rows pruned or not and either form of
 // the step's kernel, and from one backend to the other.
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "launches.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"

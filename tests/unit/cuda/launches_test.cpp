@@ -2,9 +2,9 @@
 // explicit step's kernel, bits are the same.
 #include "launches.hpp"
 
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "output/checkpoint.hpp"
-#include "run/state.hpp"
+#include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/state_bits.hpp"

@@ -1,6 +1,6 @@
 // What is said about device memory before a run against what the run takes.
-#include "dem/device.hpp"
-#include "model/particle_file.hpp"
+#include "dem/backend/device.hpp"
+#include "model/builder/particle_file.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "unit/dem/random_box.hpp"

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dem/device.hpp"
-#include "model/random.hpp"
+#include "dem/backend/device.hpp"
+#include "model/derived/random.hpp"
 #include "output/checkpoint.hpp"
 #include "partition/subdomain.hpp"
-#include "run/simulation.hpp"
+#include "run/loop/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/near.hpp"

@@ -1,11 +1,11 @@
 // The particles' linear solve against Gaussian elimination of the same matrix.
-#include "dem/block_solver.hpp"
+#include "dem/implicit/block_solver.hpp"
 
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "model/random.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 

@@ -1,5 +1,5 @@
 // The rule of the line search on potentials of one variable, whose minimum along the correction is known.
-#include "dem/line_search.hpp"
+#include "dem/implicit/line_search.hpp"
 
 #include <limits>
 

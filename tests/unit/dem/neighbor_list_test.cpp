@@ -1,11 +1,11 @@
 // The neighbour list against a search over all pairs and images.
-#include "dem/neighbor_list.hpp"
+#include "dem/search/neighbor_list.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "dem/paired_rows.hpp"
+#include "dem/explicit/paired_rows.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // The fields that snapshots are made of.
-#include "dem/output_fields.hpp"
+#include "dem/reports/output_fields.hpp"
 
 #include <set>
 

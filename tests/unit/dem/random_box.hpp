@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "dem/backend.hpp"
-#include "dem/particle_store.hpp"
-#include "dem/surfaces.hpp"
-#include "model/model.hpp"
-#include "model/random.hpp"
+#include "dem/backend/backend.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "dem/surfaces/surfaces.hpp"
+#include "model/data/model.hpp"
+#include "model/derived/random.hpp"
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
 #include "support/backends.hpp"

@@ -1,9 +1,9 @@
 // The Newton matrix of contacts that rub: its products against differences of forces, its blocks against its
 // products, its bounds, the blocks' inverse.
-#include "dem/rubbing_matrix.hpp"
+#include "dem/implicit/rubbing_matrix.hpp"
 
-#include "dem/rubbing_items.hpp"
-#include "model/random.hpp"
+#include "dem/implicit/rubbing_items.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 

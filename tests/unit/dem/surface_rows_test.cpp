@@ -1,12 +1,12 @@
 // Which surfaces each particle is near, against a search over all of them and their images.
-#include "dem/surface_rows.hpp"
+#include "dem/search/surface_rows.hpp"
 
 #include <algorithm>
 #include <tuple>
 #include <vector>
 
-#include "dem/neighbor_list.hpp"
-#include "dem/surface_side.hpp"
+#include "dem/host/surface_side.hpp"
+#include "dem/search/neighbor_list.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
 #include "random_box.hpp"

@@ -1,11 +1,11 @@
 // Surfaces on bodies: how a sphere lies to them, and what their contacts sum to.
-#include "dem/surfaces.hpp"
+#include "dem/surfaces/surfaces.hpp"
 
 #include <array>
 #include <vector>
 
-#include "dem/surface_sums.hpp"
-#include "model/random.hpp"
+#include "dem/surfaces/surface_sums.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 
 namespace scree {

@@ -1,4 +1,4 @@
-#include "dem/triangle_works.hpp"
+#include "dem/reports/triangle_works.hpp"
 
 #include "support/catch.hpp"
 

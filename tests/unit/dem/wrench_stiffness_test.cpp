@@ -1,7 +1,7 @@
 // The wrench's stiffness and damping against differences of the wrench.
 #include <cmath>
 
-#include "model/body_exchange.hpp"
+#include "model/data/body_exchange.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

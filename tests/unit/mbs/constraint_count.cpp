@@ -1,7 +1,7 @@
 // The model's number of constraint equations, which checkpoints are compared with, is that of the system.
 #include "mbs/rigid_body_system.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 

@@ -1,7 +1,7 @@
 // Motors, a spring and limits for tests of derivatives: each acts, bends and resists where its joint is.
 #pragma once
 
-#include "model/model.hpp"
+#include "model/data/model.hpp"
 
 namespace scree {
 

@@ -11,8 +11,8 @@
 
 #include "mbs/hht_method.hpp"
 #include "mbs/rigid_body_system.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_run.hpp"
 #include "unit/mbs/differences.hpp"

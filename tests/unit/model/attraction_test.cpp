@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/limits.hpp"
+#include "model/checks/limits.hpp"
 #include "physics/cohesion.hpp"
 #include "physics/restitution.hpp"
 #include "support/catch.hpp"

@@ -1,7 +1,7 @@
 // Bodies, rows, joints and force elements.
 #include <numbers>
 
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

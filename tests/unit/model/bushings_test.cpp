@@ -1,8 +1,8 @@
 // Bushings as a deck makes them.
 #include <fmt/format.h>
 
-#include "model/connections.hpp"
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
+#include "model/derived/connections.hpp"
 #include "physics/spatial_rotation.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

@@ -1,12 +1,12 @@
 // Random groups in regions: every particle lies inside, by formulas of the region's shape, and is free.
-#include "model/fill_region.hpp"
+#include "model/builder/fill_region.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 
-#include "model/start_meshes.hpp"
+#include "model/derived/start_meshes.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

@@ -1,5 +1,5 @@
 // How finely round meshes are cut where the deck leaves it out.
-#include "model/fit_segments.hpp"
+#include "model/builder/fit_segments.hpp"
 
 #include <fmt/format.h>
 

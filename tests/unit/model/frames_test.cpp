@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "physics/spatial_rotation.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

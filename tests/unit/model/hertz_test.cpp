@@ -1,7 +1,7 @@
 // Hertz's law from a deck: moduli of the materials, restitutions of their pairs, and what is refused.
 #include <cmath>
 
-#include "model/limits.hpp"
+#include "model/checks/limits.hpp"
 #include "physics/restitution.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

@@ -1,6 +1,6 @@
 // Motors, springs and limits on joints, and couplers, as a deck makes them.
-#include "model/connections.hpp"
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
+#include "model/derived/connections.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

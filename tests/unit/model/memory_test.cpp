@@ -1,5 +1,5 @@
 // What a model takes is compared with what is free before it is built.
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"

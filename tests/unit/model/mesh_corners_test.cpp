@@ -1,5 +1,5 @@
 // Meshes of bodies on planes: which touch, how stiff they lie, and what is refused.
-#include "model/mesh_corners.hpp"
+#include "model/derived/mesh_corners.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "model/mesh_plausibility.hpp"
+#include "model/checks/mesh_plausibility.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

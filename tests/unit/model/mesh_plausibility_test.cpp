@@ -1,5 +1,5 @@
 // Warnings of meshes: too fine for the particles, folds that contacts are too soft for, shells that cross.
-#include "model/mesh_plausibility.hpp"
+#include "model/checks/mesh_plausibility.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // Pairs of materials that the deck does not give: the rules, what becomes of every key, and what is refused.
-#include "model/mixing.hpp"
+#include "model/builder/mixing.hpp"
 
 #include <algorithm>
 #include <cmath>

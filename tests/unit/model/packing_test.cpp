@@ -1,5 +1,5 @@
 // The chance of a random place that random groups are judged by, against places tried.
-#include "model/generators.hpp"
+#include "model/derived/generators.hpp"
 #include "physics/plausible.hpp"
 #include "physics/random_packing.hpp"
 #include "support/catch.hpp"

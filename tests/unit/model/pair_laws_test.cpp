@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "model/limits.hpp"
+#include "model/checks/limits.hpp"
 #include "physics/plausible.hpp"
 #include "physics/restitution.hpp"
 #include "support/catch.hpp"

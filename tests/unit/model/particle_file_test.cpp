@@ -1,5 +1,5 @@
 // Particles from CSV and HDF5 files.
-#include "model/particle_file.hpp"
+#include "model/builder/particle_file.hpp"
 
 #include <hdf5.h>
 

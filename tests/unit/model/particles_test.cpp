@@ -4,7 +4,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "model/generators.hpp"
+#include "model/derived/generators.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

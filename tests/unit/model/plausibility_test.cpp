@@ -1,6 +1,6 @@
 // Decks that can be computed but can hardly be meant, one after the other; and numbers that cannot be
 // computed with.
-#include "model/plausibility.hpp"
+#include "model/checks/plausibility.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"

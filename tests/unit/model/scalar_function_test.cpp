@@ -1,4 +1,4 @@
-#include "model/scalar_function.hpp"
+#include "model/derived/scalar_function.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Rows and arrays of shapes, and what collides with nothing.
-#include "model/shape_places.hpp"
+#include "model/derived/shape_places.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // What lies inside the space, and beyond which of its sides.
-#include "model/space_box.hpp"
+#include "model/derived/space_box.hpp"
 
 #include <limits>
 

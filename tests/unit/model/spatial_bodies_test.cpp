@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "physics/spatial_rotation.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

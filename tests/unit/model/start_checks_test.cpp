@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/connections.hpp"
-#include "model/limits.hpp"
+#include "model/checks/limits.hpp"
+#include "model/derived/connections.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

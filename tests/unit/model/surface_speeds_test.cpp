@@ -1,5 +1,5 @@
 // How fast the surfaces are that the deck moves, and what follows for stiffness and step.
-#include "model/surface_speeds.hpp"
+#include "model/derived/surface_speeds.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/body_load.hpp"
-#include "model/impact_speed.hpp"
-#include "model/limits.hpp"
+#include "model/checks/body_load.hpp"
+#include "model/checks/impact_speed.hpp"
+#include "model/checks/limits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

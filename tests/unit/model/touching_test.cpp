@@ -1,5 +1,5 @@
 // Who may touch whom, and the sizes of what touches.
-#include "model/touching.hpp"
+#include "model/derived/touching.hpp"
 
 #include "support/catch.hpp"
 

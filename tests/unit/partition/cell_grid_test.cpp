@@ -1,7 +1,7 @@
 // Every point of the space and its margin has one cell; cells are as large as asked.
 #include "partition/cell_grid.hpp"
 
-#include "model/random.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 
 namespace scree {

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "model/random.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 
 namespace scree {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/random.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 
 namespace scree {

@@ -1,5 +1,5 @@
 // What energies are measured by, and when a run warns of what the time integration did to them.
-#include "run/balance.hpp"
+#include "run/report/balance.hpp"
 
 #include <algorithm>
 #include <set>

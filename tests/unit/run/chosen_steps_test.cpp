@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-#include "model/explicit_step.hpp"
-#include "model/impact_trials.hpp"
-#include "model/limits.hpp"
-#include "run/step_trials.hpp"
+#include "model/checks/explicit_step.hpp"
+#include "model/checks/impact_trials.hpp"
+#include "model/checks/limits.hpp"
+#include "run/report/step_trials.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -1,5 +1,5 @@
 // The contacts that snapshots show say of each particle what other outputs say, and leave no trace.
-#include "run/contact_network.hpp"
+#include "run/record/contact_network.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // What contacts remember returns from a checkpoint bit for bit, enters the hash, and is refused where it
 // cannot be; where nothing is remembered a checkpoint has nothing of it.
-#include "run/contact_rows.hpp"
+#include "run/state/contact_rows.hpp"
 
 #include "base/error.hpp"
-#include "dem/history_slots.hpp"
+#include "dem/history/history_slots.hpp"
 #include "output/hdf5_file.hpp"
-#include "run/checkpoint_datasets.hpp"
-#include "run/state.hpp"
+#include "run/restart/checkpoint_datasets.hpp"
+#include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/decks.hpp"
 #include "support/state_bits.hpp"

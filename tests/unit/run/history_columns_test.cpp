@@ -1,5 +1,5 @@
 // Each column of the history shows its own value.
-#include "run/history_columns.hpp"
+#include "run/record/history_columns.hpp"
 
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 // What snapshots tell of triangles.
-#include "run/mesh_surfaces.hpp"
+#include "run/record/mesh_surfaces.hpp"
 
 #include <algorithm>
 

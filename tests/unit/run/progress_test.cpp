@@ -1,5 +1,5 @@
 // What a run says of how far it is.
-#include "run/progress.hpp"
+#include "run/report/progress.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // The files are the same whether snapshots are written at once or beside later steps.
-#include "run/recorder.hpp"
+#include "run/record/recorder.hpp"
 
 #include <unistd.h>
 
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "dem/cpu_backend.hpp"
+#include "dem/cpu/cpu_backend.hpp"
 #include "output/hdf5_file.hpp"
-#include "run/step_clock.hpp"
+#include "run/state/step_clock.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

@@ -6,9 +6,9 @@
 
 #include "base/error.hpp"
 #include "deck/deck.hpp"
-#include "model/build.hpp"
-#include "run/restart.hpp"
-#include "run/simulation.hpp"
+#include "model/builder/build.hpp"
+#include "run/loop/simulation.hpp"
+#include "run/restart/restart.hpp"
 #include "support/petsc_run.hpp"
 
 namespace scree {

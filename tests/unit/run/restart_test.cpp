@@ -1,6 +1,6 @@
 // What a restart refuses: damaged checkpoints, datasets of wrong lengths, other decks; and what
 // --allow-changes goes on with.
-#include "run/restart.hpp"
+#include "run/restart/restart.hpp"
 
 #include <bit>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "run/checkpoint_datasets.hpp"
+#include "run/restart/checkpoint_datasets.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/state_bits.hpp"

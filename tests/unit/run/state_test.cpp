@@ -1,5 +1,5 @@
 // The state returns from its packed form bit for bit, and says what is missing.
-#include "run/state.hpp"
+#include "run/state/state.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Steps land on output times, are bisected and rejoin their grid, grow and shrink within limits.
-#include "run/step_clock.hpp"
+#include "run/state/step_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // How many explicit steps the loop takes at once.
-#include "run/step_loop.hpp"
+#include "run/loop/step_loop.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "dem/cpu_backend.hpp"
-#include "run/balance.hpp"
-#include "run/recorder.hpp"
+#include "dem/cpu/cpu_backend.hpp"
+#include "run/record/recorder.hpp"
+#include "run/report/balance.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"

@@ -1,5 +1,5 @@
 // What the report and the warning of a deck say of its steps.
-#include "run/step_trials.hpp"
+#include "run/report/step_trials.hpp"
 
 #include <fmt/format.h>
 

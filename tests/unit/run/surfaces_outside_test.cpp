@@ -1,5 +1,5 @@
 // Surfaces beyond open sides, and particles that leave there.
-#include "run/surfaces_outside.hpp"
+#include "run/report/surfaces_outside.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"

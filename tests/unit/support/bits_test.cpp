@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "run/state.hpp"
+#include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/state_bits.hpp"
 

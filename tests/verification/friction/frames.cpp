@@ -2,7 +2,7 @@
 // the whole and flying; a clump that holds together by attraction, at rest, flying, and turning as one body.
 #include <map>
 
-#include "dem/history_slots.hpp"
+#include "dem/history/history_slots.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

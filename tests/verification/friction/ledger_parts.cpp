@@ -2,7 +2,7 @@
 // what their contacts remember.
 #include <fmt/format.h>
 
-#include "dem/history_slots.hpp"
+#include "dem/history/history_slots.hpp"
 #include "physics/energy.hpp"
 #include "physics/spring_slider.hpp"
 #include "support/bars.hpp"

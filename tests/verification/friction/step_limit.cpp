@@ -2,7 +2,7 @@
 // tangential springs, stay as they are below it and run away above it.
 #include <fmt/format.h>
 
-#include "model/limits.hpp"
+#include "model/checks/limits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

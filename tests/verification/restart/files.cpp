@@ -5,7 +5,7 @@
 
 #include "output/checkpoint.hpp"
 #include "output/hdf5_file.hpp"
-#include "run/simulation.hpp"
+#include "run/loop/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/petsc_run.hpp"

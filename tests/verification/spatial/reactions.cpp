@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "deck/choices.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/joint_coordinates.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/near.hpp"

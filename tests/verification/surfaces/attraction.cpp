@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/triangle_works.hpp"
+#include "dem/reports/triangle_works.hpp"
 #include "physics/cohesion.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "dem/history_slots.hpp"
-#include "run/state.hpp"
+#include "dem/history/history_slots.hpp"
+#include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/triangle_works.hpp"
+#include "dem/reports/triangle_works.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -1,0 +1,261 @@
+// How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they
+// hold.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dem/backend/backend.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/explicit/mixed_items.hpp"
+#include "dem/history/kept_contacts.hpp"
+#include "dem/host/surface_side.hpp"
+#include "dem/implicit/turning_items.hpp"
+#include "dem/reports/contact_line_items.hpp"
+#include "dem/reports/output_fields.hpp"
+#include "dem/reports/triangle_works.hpp"
+#include "dem/search/neighbor_list.hpp"
+#include "model/derived/choose_law.hpp"
+#include "partition/halo.hpp"
+
+namespace scree {
+namespace {
+
+// Bytes per particle or item, by the array groups of cuda/cuda_*.cuh.
+constexpr double kItemFields = bytes_in_arrays<kItemArrays>();
+constexpr double kSecondMotion = bytes_in_arrays<kMotion>();
+constexpr double kOwnedFields = bytes_in_arrays<kOwnedArrays>();
+constexpr double kSpinFields = bytes_in_arrays<kSpins>();  // where particles rotate, and as much again
+constexpr double kOwnedSpinFields = bytes_in_arrays<kOwnedSpins>();
+constexpr double kRollingFields = bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
+constexpr double kStartAcceleration = sizeof(Vec3);                  // of implicit steps, of each kind
+constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and the surfaces' rows
+constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);  // sorted, and their order
+constexpr double kStepArrays =
+    5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+// The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
+constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
+                                  sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
+constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
+constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
+constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
+                                         sizeof(RubbingEntry::Shear) +
+                                         sizeof(Real);  // the last: frozen limits
+constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
+                                 sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
+constexpr double kSpinReportArrays = sizeof(SpringEnergies);
+constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts attract
+// Per surface that is placed, and per entry of the rows of surfaces where there are any: DeviceSurfaces.
+constexpr double kSurfaceArrays = 2 * sizeof(PlacedSurface) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
+                                2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
+constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPerSlot;
+// And where there are meshes: DeviceMeshes.
+constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
+constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
+                 kRowOfTriangle = sizeof(Index);
+constexpr double kSpareRoom = 1.125;  // of arrays that may grow with every list
+constexpr double kFilledSlots = 0.8;  // of a list of a settled bed; contacts remember at these alone
+constexpr double kCellBytes = sizeof(Index);
+constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
+
+// Of a snapshot.
+double output_bytes(const Output& output) {
+  double bytes = sizeof(Vec3);
+  for (const OutputField& field : computed_fields(output)) bytes += static_cast<double>(field.bytes);
+  return bytes;
+}
+
+struct Sizes {
+  double particles, ghosts, items, cells, slots;
+  bool on_bodies;                     // whether there are surfaces
+  double entries, groups, triangles;  // of their rows
+};
+
+bool equal_radii(const Model& model) {
+  const auto [smallest, largest] =
+      std::minmax_element(model.particles.radius.begin(), model.particles.radius.end());
+  return model.particles.size() == 0 || *largest <= 1.2 * *smallest;
+}
+
+// Slots of a list in slices of 32 rows, of particles as they are at the start.
+double slots_at_start(const ParticleStore& store, const ItemLayout& layout, NeighborBuilder& builder,
+                      Real skin) {
+  constexpr Index kSlice = 32;
+  NeighborList list;
+  builder.build(store, layout, builder.cells(skin, layout.owned), {}, skin, list);
+  double slots = 0;
+  for (Index first = 0; first < layout.owned; first += kSlice) {
+    Index width = 0;
+    for (Index i = first; i < std::min(first + kSlice, layout.owned); ++i)
+      width = std::max(width, list.offsets[i + 1] - list.offsets[i]);
+    slots += static_cast<double>(width) * kSlice;
+  }
+  return slots;
+}
+
+// The rows of surfaces, of particles and bodies as they are at the start.
+SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const ItemLayout& layout,
+                          NeighborBuilder& builder) {
+  const Subdomain subdomain(model.space);
+  SurfaceSide side(model, subdomain, Ranks());
+  std::vector<BodyMotion> motion;
+  for (const Body& body : model.bodies) motion.push_back(start_motion(body));
+  motion.resize(side.surfaces().carriers());  // walls begin where they are
+  side.set_motion(motion);
+  side.bring_into_box(), side.place();
+  SurfaceRows rows;
+  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), {side.places()},
+                         model.contact.skin, rows);
+  return rows;
+}
+
+// Memory of a mesh on the device [B], whether or not anything touches it: the arrays of a MeshView.
+double bytes_of_mesh(const SurfaceMesh& mesh) {
+  const auto of = [](const auto& values) {
+    return static_cast<double>(values.size() * sizeof(values.front()));
+  };
+  return of(mesh.vertices) + of(mesh.triangles) + of(mesh.parts) + of(mesh.features) + of(mesh.tests) +
+         of(mesh.patches) + of(mesh.first_neighbour) + of(mesh.neighbours) + of(mesh.boxes);
+}
+
+Sizes sizes_of(const Model& model) {
+  const Subdomain subdomain(model.space);
+  NeighborBuilder builder(model);
+  const Real skin = model.contact.skin;
+  const bool periodic = subdomain.period() != Vec3{}, equal = equal_radii(model);
+  const Index particles = count_on_rank(model.particles.size(), model.particles.totals);
+  Sizes sizes{};
+  sizes.on_bodies = SurfaceSet(model).placed() > 0;
+  sizes.particles = static_cast<double>(particles);
+  ParticleStore store;  // only where it is needed: it is as large as the model
+  if (periodic || !equal || sizes.on_bodies) store.load(initial_records(model.particles, subdomain));
+  ItemLayout layout;
+  layout.owned = layout.active = layout.items = store.owned;
+  if (periodic)
+    sizes.ghosts =
+        static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
+  sizes.items = sizes.particles + sizes.ghosts;
+  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, particles).count());
+  sizes.slots = slots_per_particle(model) * sizes.particles;
+  if (sizes.on_bodies) {
+    const SurfaceRows rows = rows_at_start(model, store, layout, builder);
+    sizes.entries = static_cast<double>(rows.surfaces.size());
+    sizes.groups = static_cast<double>(rows.groups.size());
+    sizes.triangles = static_cast<double>(rows.triangles.size());
+  }
+  if (equal) return sizes;
+  sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
+  return sizes;
+}
+
+// What explicit steps need beside the list: DeviceRoom.
+double bytes_of_steps(const Model& model, const Sizes& n) {
+  // Of pruned entries; they stand in the forces' place if they fit.
+  const double places = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
+  double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
+  if (places > n.particles * sizeof(Vec3)) of_steps += places;
+  // Where particles rotate these stand in the place of what is of an instant.
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() && !model.attracts())
+    of_steps += n.particles * kMixedArrays;
+  return of_steps;
+}
+
+// The list, what contacts remember at its entries, and the room that explicit steps share with what is kept
+// from one list to the next and has no room in the second arrays.
+double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
+  const int numbers = history_of(model.contact);
+  double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
+                 n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
+  if (numbers > 0) {
+    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kRoomInRows;
+    bytes += kFilledSlots * n.slots * records_of(numbers) * sizeof(Vec4) + 3 * n.particles * sizeof(Index) +
+             at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
+  }
+  const double second = n.items * (kSecondMotion + (model.rotates() ? kSpinFields : 0)),
+               kept = std::max(0.0, n.particles * bytes_remembered(numbers, 0) - second);
+  if (!explicit_steps) return bytes + kept + n.particles * sizeof(Vec3);
+  return bytes + n.particles * sizeof(Index) + std::max(kept, bytes_of_steps(model, n));
+}
+
+double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
+  const double spare = n.ghosts > 0 ? 1.125 : 1;  // arrays that grow when ghosts are found
+  double bytes = n.items * (kItemFields * spare + kSecondMotion) + n.particles * kOwnedFields;
+  if (model.rotates())
+    bytes += n.items * kSpinFields * (spare + 1) + n.particles * (kOwnedSpinFields + kSpinReportArrays);
+  if (model.rolls()) bytes += n.particles * kRollingFields;
+  if (model.attracts()) bytes += n.particles * kCohesionReportArrays;
+  if (!explicit_steps) bytes += n.particles * kStartAcceleration * (model.rotates() ? 2 : 1);
+  return bytes;
+}
+
+// Of surfaces that are placed, their contacts, and what these remember.
+double surface_bytes(const Model& model, const Sizes& n) {
+  if (!n.on_bodies) return 0;
+  const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
+  double per_entry = kEntryArrays;
+  if (implicit && model.rotates()) per_entry += kRubbingArraysPerEntry;
+  if (model.output.contacts) per_entry += sizeof(ShownContact);
+  if (const int numbers = kept_numbers(model, history_of(model.contact)); numbers != 0)
+    per_entry += kSpareRoom * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
+  const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
+  if (!model.meshes.empty()) per_entry += kSpareRoom * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
+  return bytes + per_entry * n.entries +
+         kSpareRoom * (kGroupArrays * n.groups + kRowOfTriangle * n.triangles);
+}
+
+}  // namespace
+
+// Slots of a settled bed of equal particles, of which most rows of 32 hold one that has more neighbours than
+// the mean.
+double slots_per_particle(const Model& model) {
+  constexpr double kDiscs = 8, kSpheres = 9.5, kPerDiameter = 15, kMost = 16;
+  if (model.space.dimension == 2) return kDiscs;
+  const Real seen = model.contact.skin + model.contact.reach,
+             diameter = 2 * model.particles.totals.largest_radius;
+  return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * seen / diameter) : kSpheres;
+}
+
+std::size_t device_memory_of_meshes(const Model& model) {
+  double bytes = static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
+  for (const ModelMesh& mesh : model.meshes) bytes += sizeof(MeshView) + bytes_of_mesh(*mesh.surface);
+  return static_cast<std::size_t>(bytes);
+}
+
+std::size_t device_memory(const Model& model) {
+  const Sizes n = sizes_of(model);
+  const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
+  double bytes =
+      field_bytes(model, n, explicit_steps) + n.ghosts * kGhostArrays + list_bytes(model, n, explicit_steps);
+  if (!explicit_steps)
+    bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
+                             : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  bytes += surface_bytes(model, n) + static_cast<double>(device_memory_of_meshes(model));
+  bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
+           static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
+  if (model.output.contacts)
+    bytes += n.particles * sizeof(Index) + static_cast<double>(kLinesAtOnce) * sizeof(ContactLine);
+  return static_cast<std::size_t>(bytes);
+}
+
+// What is free the ranks of a GPU may see at different times: the least counts.
+DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own) {
+  const DeviceClaim& mine = claims[static_cast<std::size_t>(own)];
+  DeviceLoad load{.free = mine.free};
+  for (const DeviceClaim& claim : claims) {
+    if (claim.device != mine.device) continue;
+    load.needed += claim.needed, load.free = std::min(load.free, claim.free), ++load.ranks;
+  }
+  return load;
+}
+
+std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name) {
+  const DeviceLoad load = load_of_device(claims, own);
+  if (load.needed <= load.free) return "";
+  const std::string who = load.ranks == 1
+                              ? "the model needs about "
+                              : fmt::format("{} ranks share a GPU and together need about ", load.ranks);
+  return fmt::format("{}{} MB of device memory, {} MB are free on {}", who, load.needed / 1000000,
+                     load.free / 1000000, name);
+}
+
+}  // namespace scree

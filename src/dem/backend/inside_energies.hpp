@@ -1,0 +1,15 @@
+// The energies of the particles that have not left the space, from sums of their item.
+#pragma once
+
+#include "dem/backend/reports.hpp"
+#include "dem/reports/ledger_items.hpp"
+
+namespace scree {
+
+// sums: of InsideItem, indexed by InsideTerm. bodies: whose contacts' losses are with them, as in the ledger.
+inline InsideEnergies make_inside_energies(const Real* sums, const SurfaceSide& bodies) {
+  return {sums[kInsideKinetic], sums[kInsideGravitational],
+          sums[kInsideIntegratorLoss] + bodies.losses().integrator_loss};
+}
+
+}  // namespace scree

@@ -1,0 +1,226 @@
+// What happens for one particle in the contact stages that look at one instant. One text for the CPU and
+// CUDA.
+#pragma once
+
+#include <type_traits>
+
+#include "dem/contact/contact_walk.hpp"
+
+namespace scree {
+
+// A particle's share of a contact's energies with another particle; those with surfaces are all its own.
+inline constexpr Real kPairShare = 0.5;
+
+// With what the contact will remember.
+template <class Load, class History>
+struct LoadWithHistory : Load {
+  History history;
+};
+
+// What a contact does at an instant.
+struct LoadOf {
+  template <class Law, class Pair>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
+    return law.load(pair);
+  }
+  template <class Law, class Pair, class History>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const History& old) const {
+    const auto outcome = law.load(pair, old);
+    return LoadWithHistory<std::remove_cvref_t<decltype(outcome.load)>, History>{outcome.load,
+                                                                                 outcome.history};
+  }
+  template <class Views>
+  SCREE_HD const ContactLoadOf<Real, Vec3>* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry].load : nullptr;
+  }
+};
+
+// Of one contact, or of all that acts on a particle.
+template <int kKinds>
+struct TotalForce {
+  Vec3 force;       // [N], gravity included
+  Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
+  Vec3 torque;      // about its centre, of laws that move [N m]
+  [[no_unique_address]] LossesOf<kKinds> losses;  // parts of the dissipation, over the step [J]
+
+  SCREE_HD TotalForce& operator+=(const TotalForce& part) {
+    force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
+    return *this;
+  }
+  // Of a contact; losses: by these kinds at least.
+  template <int kMore>
+  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesOf<kMore>& losses) {
+    TotalForce out{load.force, load.loss, load.torque_i, {}};
+    out.losses.add(losses);
+    return out;
+  }
+  // Of the contacts with other particles the particle has its share.
+  SCREE_HD void share() { loss_power *= kPairShare, losses.scale(kPairShare); }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static TotalForce nothing() {
+    constexpr Real z = -0.0;
+    TotalForce out{{z, z, z}, z, {z, z, z}, {}};
+    out.losses.fill(z);
+    return out;
+  }
+};
+
+// What a contact of a law that moves does to one of its partners.
+template <int kKinds>
+struct TurningForceOf {
+  using Result = TotalForce<kKinds>;
+
+  template <class Law, class Pair, class History>
+  SCREE_HD LoadWithHistory<Result, History> operator()(const Law& law, const Pair& pair,
+                                                       const History& old) const {
+    const auto outcome = law.load(pair, old);
+    return {Result::of(outcome.load, outcome.losses()), outcome.history};
+  }
+};
+
+// What it does to both, with its losses; of those with bodies what was found before.
+struct TurningLoad {
+  ContactLoadOf<Real, Vec3> load;
+  RubbingLosses losses;
+};
+struct TurningLoadOf {
+  template <class Law, class Pair, class History>
+  SCREE_HD LoadWithHistory<TurningLoad, History> operator()(const Law& law, const Pair& pair,
+                                                            const History& old) const {
+    const auto outcome = law.load(pair, old);
+    return {{outcome.load, outcome.losses()}, outcome.history};
+  }
+  template <class Views>
+  SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  }
+};
+
+// Total force on particle i at the current positions and velocities, and its share of the dissipation.
+// kAccepts: as in ContactWalk, at the end of an explicit step.
+template <class Laws, class Rows, bool kAccepts = false>
+struct ContactForceItem {
+  std::conditional_t<kAccepts, ExplicitWalk<Laws, Rows>, ContactWalk<Laws, Rows>> walk;
+  Vec3 gravity;
+  Vec3* force;                 // [N]
+  Real* loss_power;            // [W]
+  Vec3* angular_acceleration;  // of laws that move [rad/s^2]
+
+  static constexpr bool kMoves = LawOf<Laws>::kMoves;
+  static constexpr int kKinds = kLossKindsOf<LawOf<Laws>>;
+  using Total = TotalForce<kKinds>;
+
+  SCREE_HD void operator()(Index i) const { store(i, total(i)); }
+
+  SCREE_HD void store(Index i, const Total& sum) const {
+    force[i] = sum.force;
+    loss_power[i] = sum.loss_power;
+    if constexpr (kMoves) angular_acceleration[i] = reciprocal(walk.in.spin[i].w) * sum.torque;
+  }
+
+  SCREE_HD Total total(Index i) const {
+    const Self self = walk.self(i);
+    Total sum = weight(self);
+    add_neighbors(self, sum);
+    add_surfaces(self, sum);
+    return sum;
+  }
+
+  // The two parts of it, in this order, on top of the weight.
+  using Self = typename decltype(walk)::Self;
+  SCREE_HD Total weight(const Self& self) const { return {self.u.w * gravity, 0, {}, {}}; }
+  SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
+    if constexpr (kMoves)
+      walk.template sum_neighbors<kAccepts>(self, TurningForceOf<kKinds>{}, sum);
+    else
+      walk.template neighbors<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+    sum.share();
+  }
+  SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
+    if constexpr (kMoves)
+      walk.template surfaces<kAccepts>(self, TurningLoadOf{}, [&](const auto& contact, Index) {
+        sum += Total::of(contact.load, contact.losses);
+      });
+    else
+      walk.template surfaces<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+  }
+
+ private:
+  template <class Load>
+  SCREE_HD static void add(const Load& load, Total& sum) {
+    sum.force += load.force;
+    sum.loss_power += load.loss;
+  }
+};
+
+// Over the contacts of a particle, each with its weight.
+struct TouchSums {
+  Real energy = 0;         // elastic [J]
+  SpringEnergies springs;  // parts of it
+  Real cohesion = 0;       // likewise
+  Real share = 0;          // sum of the weights
+  Index contacts = 0;
+};
+
+// Elastic energy of a closed contact [J].
+struct EnergyOf {
+  template <class Law>
+  SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair) const {
+    const auto normal = law.normal.of_pair(pair.size);
+    return {normal.energy(pair.geometry.overlap), {}, cohesion_of(normal, pair.geometry.overlap)};
+  }
+  // With that of the springs that it remembers.
+  template <class Law, class History>
+  requires Law::kMoves SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
+                                                         const History& history) const {
+    return law.energy_of(pair, history);
+  }
+  template <class Views>
+  SCREE_HD const ContactEnergy* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry].energy : nullptr;
+  }
+};
+
+// share(j): the weight of a contact with item j; those with surfaces count in full.
+template <class Laws, class Rows, class Share>
+SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, const Share& share) {
+  TouchSums sum;
+  const auto add = [&](const ContactEnergy& energy, Real weight) {
+    sum.energy += weight * energy.sum;
+    if constexpr (LawOf<Laws>::kMoves) sum.springs.add(energy.springs, weight);
+    if constexpr (kMayAttract<typename LawOf<Laws>::Normal>) sum.cohesion += weight * energy.cohesion;
+    sum.share += weight;
+    ++sum.contacts;
+  };
+  const auto self = walk.self(i);
+  walk.neighbors(self, EnergyOf{}, [&](const ContactEnergy& energy, Index j) { add(energy, share(j)); });
+  walk.surfaces(self, EnergyOf{}, [&](const ContactEnergy& energy, Index) { add(energy, 1); });
+  return sum;
+}
+
+// Per particle.
+struct EnergyOutputs {
+  Real* energy;  // [J]
+  Index* contacts;
+  Real* pairs;              // half of each contact with another particle, all of any other
+  SpringEnergies* springs;  // parts of the energy; null where particles do not rotate
+  Real* cohesion;           // likewise; null where none attract [J]
+};
+
+// Elastic energy of particle i's share of its contacts, their number, and its share of that number.
+template <class Laws, class Rows>
+struct ContactEnergyItem {
+  ContactWalk<Laws, Rows> walk;
+  EnergyOutputs out;
+
+  SCREE_HD void operator()(Index i) const {
+    const TouchSums sum = touch_sums(walk, i, [](Index) { return kPairShare; });
+    out.energy[i] = sum.energy;
+    out.contacts[i] = sum.contacts;
+    out.pairs[i] = sum.share;
+    if (out.springs != nullptr) out.springs[i] = sum.springs;
+    if (out.cohesion != nullptr) out.cohesion[i] = sum.cohesion;
+  }
+};
+
+}  // namespace scree

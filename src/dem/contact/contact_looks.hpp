@@ -1,0 +1,179 @@
+// What a walk over contacts sees of the items: at an instant, or over a step. One text for the CPU and CUDA.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include "dem/contact/contact_views.hpp"
+#include "physics/contact_law.hpp"
+#include "physics/step_contact.hpp"
+
+namespace scree {
+
+// A look says what a walk sees of the items: what it reads of item i itself, which others touch it, and the
+// pair of the two. This is the look at one instant; the pair is a PairState.
+struct AtInstant {
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, u;  // x, y, z, radius; velocity, mass
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], in.velocity[i]};
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return {self.p, in.position};
+  }
+  template <class Rows>
+  SCREE_HD PairState pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    return pair(self.p, self.u, in.position[j], in.velocity[j]);
+  }
+  SCREE_HD static PairState pair(Vec4 p, Vec4 u, Vec4 q, Vec4 w) {
+    return {sphere_pair(xyz(p) - xyz(q), p.w + q.w), xyz(u) - xyz(w), {p.w, q.w, u.w, w.w}};
+  }
+  template <class Rows>
+  SCREE_HD PairState wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    return {wall_pair(self.p, plane), xyz(self.u), wall_size(in, self.i, self.p.w, self.u.w)};
+  }
+  template <class Pair>
+  SCREE_HD static bool closed(const Pair& pair) {
+    return pair.geometry.overlap > 0;
+  }
+};
+
+// The look of laws that move (ContactLaw::kMoves): over the step that ends at this instant. The velocities
+// and angular velocities are those of the middle of the step; the pair is a MovingPair.
+struct OverMotion {
+  Real h;  // [s]
+
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, u, spin;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], in.velocity[i], in.spin[i]};
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return {self.p, in.position};
+  }
+  template <class Rows>
+  SCREE_HD MovingPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    const Vec4 q = in.position[j], w = in.velocity[j];
+    const PairState state = AtInstant::pair(self.p, self.u, q, w);
+    return {state, motion(state, partner(self.p, self.spin), partner(q, in.spin[j]))};
+  }
+  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
+  SCREE_HD ContactMotion motion(const PairState& state, const TurningPartner& i,
+                                const TurningPartner& j) const {
+    return sphere_motion(state.geometry, h * state.velocity, i, j, h);
+  }
+  template <class Rows>
+  SCREE_HD MovingPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const PairState state = AtInstant{}.wall(in, {self.i, self.material, self.p, self.u}, plane);
+    return {state,
+            face_motion(state.geometry, plane.normal, h * state.velocity, partner(self.p, self.spin), {}, h)};
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
+};
+
+// The same at an instant alone; the pair is an InstantPair.
+struct AtMovingInstant {
+  using Self = OverMotion::Self;
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return OverMotion{0}.self(in, i);
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return OverMotion{0}.test(in, self);
+  }
+  template <class Rows>
+  SCREE_HD InstantPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    return at_instant(OverMotion{0}.pair(in, self, j), xyz(self.spin), xyz(in.spin[j]));
+  }
+  template <class Rows>
+  SCREE_HD InstantPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    return at_instant(OverMotion{0}.wall(in, self, plane), xyz(self.spin), {});
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return OverMotion::closed(pair); }
+};
+
+// The law that a choice of laws is about; what it sees at an instant, and over an explicit step.
+template <class Laws>
+using LawOf = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
+template <class Laws>
+using InstantLook = std::conditional_t<LawOf<Laws>::kMoves, AtMovingInstant, AtInstant>;
+template <class Laws>
+using StepLook = std::conditional_t<LawOf<Laws>::kMoves, OverMotion, AtInstant>;
+
+// Where a step started, all items, and whether contacts that open or close within it are resolved; else the
+// force at its end counts for the whole step, as in the paper.
+struct StepStart {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;
+  Real h;  // [s]
+  bool resolve_events;
+};
+
+// One contact over an implicit step, as it lies between its two partners.
+struct ContactPath {
+  ContactStep step;
+  Vec3 normal0, normal1;  // at its start and its end
+  Vec3 travel;            // of i relative to j [m]
+  PairSize size;
+};
+
+// The look over an implicit step: at what touches at its start or its end; the pair is a ContactPath.
+struct OverStep {
+  StepStart start;
+
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, p0;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], start.position[i]};
+  }
+  template <class Rows>
+  SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
+    return [&in, &self, this](Index j) {
+      return touch(self.p, in.position[j]) || touch(self.p0, start.position[j]);
+    };
+  }
+  template <class Rows>
+  SCREE_HD ContactPath pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    const Index i = self.i;
+    const Vec4 q = in.position[j], u = in.velocity[i], w = in.velocity[j];
+    const Real reach = self.p.w + q.w;
+    const Vec3 r = xyz(self.p) - xyz(q), r0 = xyz(self.p0) - xyz(start.position[j]);
+    return path(sphere_pair(r, reach), xyz(u) - xyz(w), sphere_pair(r0, reach),
+                xyz(start.velocity[i]) - xyz(start.velocity[j]), r - r0, {self.p.w, q.w, u.w, w.w});
+  }
+  template <class Rows>
+  SCREE_HD ContactPath wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const Vec4 u = in.velocity[self.i];
+    return path(wall_pair(self.p, plane), xyz(u), wall_pair(self.p0, plane), xyz(start.velocity[self.i]),
+                xyz(self.p) - xyz(self.p0), wall_size(in, self.i, self.p.w, u.w));
+  }
+  SCREE_HD static bool closed(const ContactPath& path) {
+    return path.step.overlap1 > 0 || path.step.overlap0 > 0;
+  }
+  SCREE_HD ContactPath path(const ContactGeometry& end, Vec3 end_velocity, const ContactGeometry& begin,
+                            Vec3 begin_velocity, Vec3 travel, const PairSize& size) const {
+    const Vec3 normal0 = begin.normal(), normal1 = end.normal();
+    return {{begin.overlap, -dot(normal0, begin_velocity), end.overlap, -dot(normal1, end_velocity), start.h},
+            normal0,
+            normal1,
+            travel,
+            size};
+  }
+};
+
+}  // namespace scree

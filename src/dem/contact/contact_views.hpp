@@ -1,0 +1,145 @@
+// What a walk over contacts is made of: the laws of all pairs of materials, the rows of a list, the items
+// that it reads, and the tests of what touches. One text for the CPU and CUDA.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/history/history_slots.hpp"
+#include "dem/surfaces/surface_sums.hpp"
+#include "dem/surfaces/surfaces.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// The law of every contact: one pair of materials, or a table of them.
+template <class Law>
+struct OneLaw {
+  Law law;
+  SCREE_HD const Law& get(int, int) const { return law; }
+};
+
+template <class Law>
+struct LawTable {
+  const Law* laws;  // [materials * materials]
+  int materials;
+  SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
+};
+
+// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the entry's number among
+// those of the list, too: the slot in packed rows, where contacts remember in all rows.
+template <class Evaluate>
+inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
+template <class Evaluate>
+SCREE_HD auto evaluate_entry(const Evaluate& evaluate, Index j, std::int64_t slot) {
+  if constexpr (kAsksForSlot<Evaluate>)
+    return evaluate(j, slot);
+  else
+    return evaluate(j);
+}
+
+// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
+// another type of the same form on a GPU.
+struct PackedRows {
+  const Index* offsets;  // [items + 1]
+  const Index* neighbors;
+
+  // Slot of the row's first entry, and from one entry to the next.
+  SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
+  SCREE_HD static constexpr int stride() { return 1; }
+  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
+  // no side effects: it may be called for others, too. It may ask for the slot (evaluate_entry).
+  template <class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
+                                 const Add& add) const {
+    const Index end = offsets[i + 1];
+    for (Index k = offsets[i]; k < end; ++k)
+      if (const Index j = neighbors[k]; touches(j)) add(evaluate_entry(evaluate, j, k));
+  }
+};
+
+// Whether rows are summed up together with those of other items: sum_contacts(i, test, evaluate, sum) calls
+// evaluate(i, j, slot) once for every contact, maybe of another row.
+template <class Rows>
+inline constexpr bool kShared = false;
+template <class Rows>
+requires Rows::kShared inline constexpr bool kShared<Rows> = true;
+
+// Read-only views of items and neighbour list.
+template <class Rows>
+struct ContactViews {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;  // x, y, z, mass
+  const int* material;
+  Rows rows;
+  const Index* surface_offsets;  // [particles + 1]
+  const Index* surfaces;         // numbers
+  SurfaceNumbers numbers;
+  const SurfaceLoad* loads;  // per entry of the surfaces: what placed ones do at this instant,
+  const SurfaceStep* steps;  // and over an implicit step
+  HistoryViews history{};
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
+  Real reach = 0;              // Contact::reach [m]
+  // Radii [m] that laws take at planes instead of the items' own; null: the items' own. Packed rows alone
+  // have it.
+  const Real* law_radius = nullptr;
+};
+
+// The same with other rows.
+template <class Rows, class From>
+SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
+  return {in.position, in.velocity, in.material, rows,    in.surface_offsets, in.surfaces,  in.numbers,
+          in.loads,    in.steps,    in.history,  in.spin, in.reach,           in.law_radius};
+}
+
+SCREE_HD bool touch(Vec4 p, Vec4 q) {
+  const Vec3 r = xyz(p) - xyz(q);
+  const Real reach = p.w + q.w;
+  return dot(r, r) < reach * reach;
+}
+
+// Whether other items touch the one at p, or come within a margin of that [m].
+struct TouchTest {
+  Vec4 p;
+  const Vec4* position;  // all items
+  SCREE_HD bool operator()(Index j) const { return touch(p, position[j]); }
+  SCREE_HD bool near(Index j, Real margin) const {
+    const Vec4 q = position[j];
+    const Vec3 r = xyz(p) - xyz(q);
+    const Real reach = p.w + q.w + margin;
+    return dot(r, r) < reach * reach;
+  }
+};
+
+// Whether partners that are apart may have a contact by this law.
+template <class Law>
+inline constexpr bool kReaches = false;
+template <class Law>
+requires requires { Law::kReaches; }
+inline constexpr bool kReaches<Law> = Law::kReaches;
+
+// The same for laws that reach beyond touch [m]: those in reach may have a contact.
+template <class Test>
+struct ReachTest {
+  Test test;
+  Real reach;
+  SCREE_HD bool operator()(Index j) const { return test.near(j, reach); }
+  SCREE_HD bool near(Index j, Real margin) const { return test.near(j, reach + margin); }
+};
+
+SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {
+  return plane_pair(xyz(p), p.w, wall.point, wall.normal);
+}
+
+SCREE_HD PairSize wall_size(Real radius, Real mass) { return {radius, kInfinity, mass, kInfinity}; }
+template <class Rows>
+SCREE_HD PairSize wall_size(const ContactViews<Rows>& in, Index i, Real radius, Real mass) {
+  if constexpr (std::is_same_v<Rows, PackedRows>)
+    if (in.law_radius != nullptr) radius = in.law_radius[i];
+  return wall_size(radius, mass);
+}
+
+}  // namespace scree

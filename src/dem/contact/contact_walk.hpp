@@ -1,0 +1,273 @@
+// The one place that walks over what touches an item: the row of its neighbours, and the surfaces near it.
+// One text for the CPU and CUDA; what is done with a contact its visitors say.
+#pragma once
+
+#include <type_traits>
+
+#include "dem/contact/contact_looks.hpp"
+
+namespace scree {
+
+// Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the surface's number.
+// `of` is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
+// Contacts with placed surfaces were evaluated before, once for particle and body: of.stored(in, entry)
+// has what `of` would return, null where they do not touch.
+//
+// Where the law remembers something, an `of` that wants to see it is called as of(law, pair, history), and
+// its result has as `history` what the contact will remember. Only the walk of an item that accepts a step,
+// with kAccepts, stores that; all others leave no trace.
+template <class Laws, class Rows, class Look = InstantLook<Laws>>
+struct ContactWalk {
+  ContactViews<Rows> in;
+  Laws laws;
+  Look look{};
+
+  using Self = typename Look::Self;
+  using Law = LawOf<Laws>;
+  SCREE_HD Self self(Index i) const { return look.self(in, i); }
+
+  template <bool kAccepts = false, class Of, class Visit>
+  SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
+    walk<kAccepts>(self, reaching(look.test(in, self)), of, visit);
+  }
+  // Adds `of` the contacts with neighbours, its Result each, to sum.
+  SCREE_HD_CALLER
+  template <bool kAccepts, class Of, class Sum>
+  SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
+    if constexpr (kShared<Rows>) {
+      in.rows.sum_contacts(self.i, reaching(look.test(in, self)), SharedContact<kAccepts, Of>{*this, of},
+                           sum);
+    } else {
+      neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
+    }
+  }
+  // The contact of items i and j at a slot of i's row, by `of` that sees what it remembers.
+  template <class Of>
+  SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
+    const Self owner = self(i);
+    auto pair = look.pair(in, owner, j);
+    if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+    return of(laws.get(owner.material, in.material[j]), pair,
+              in.history.template read<Law>(in.history.neighbors, slot));
+  }
+  // What the contact at a slot remembers will be read soon.
+  SCREE_HD void prepare(std::int64_t slot) const {
+    fetch_ahead(in.history.neighbors + slot * records_of(Law::kHistory));
+  }
+  // Of the neighbours those of which only(j) holds.
+  template <class Only, class Of, class Visit>
+  SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
+    const auto test = reaching(look.test(in, self));
+    walk<false>(
+        self, [&](Index j) { return only(j) && test(j); }, of, visit);
+  }
+  template <bool kAccepts = false, class Of, class Visit>
+  SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
+    for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
+      const Index surface = in.surfaces[entry];
+      if (!in.numbers.at_rest(surface)) {
+        if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
+        continue;
+      }
+      const WallPlane& plane = in.numbers.planes[surface];
+      auto pair = look.wall(in, self, plane);
+      if constexpr (requires { look.at_entry(pair, entry); }) look.at_entry(pair, entry);
+      if (!may_be_closed(pair)) continue;
+      const Law& law = laws.get(self.material, plane.material);
+      if constexpr (sees_history<Of, decltype(pair)>()) {
+        const auto history = in.history.template read<Law>(in.history.ground, entry);
+        const bool closed = found_closed(law, pair, history);
+        if (!closed && !found_breaking(pair, history)) continue;
+        const auto contact = of(law, pair, history);
+        if constexpr (kAccepts)
+          if (closed && lasts(contact))
+            in.history.template write<Law>(in.history.ground, entry, contact.history);
+        visit(contact, surface);
+      } else if (found_closed(law, pair, ContactHistory{})) {
+        visit(of(law, pair), surface);
+      }
+    }
+  }
+
+ private:
+  // Evaluates contacts of any row.
+  template <bool kAccepts, class Of>
+  struct SharedContact {
+    const ContactWalk& walk;
+    const Of& of;
+
+    SCREE_HD typename Of::Result operator()(Index i, Index j, std::int64_t slot) const {
+      const auto& in = walk.in;
+      const Self owner = walk.look.self(in, i);
+      const Law& law = walk.laws.get(owner.material, in.material[j]);
+      const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+      const auto pair = walk.look.pair(in, owner, j);
+      [[maybe_unused]] const bool closed = found_closed(law, pair, history);
+      if constexpr (kReaches<Law>)
+        if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
+      const auto contact = of(law, pair, history);
+      if constexpr (kAccepts)
+        if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
+      return contact;
+    }
+    // What of a row may have a contact.
+    SCREE_HD auto test(const Self& of_row) const { return walk.reaching(walk.look.test(walk.in, of_row)); }
+    SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
+  };
+
+  // What of the row may have a contact.
+  template <class Test>
+  SCREE_HD auto reaching(const Test& test) const {
+    if constexpr (kReaches<Law> && requires { test.near(Index{}, Real{}); })
+      return ReachTest<Test>{test, in.reach};
+    else
+      return test;
+  }
+  // Over a step that may open and close contacts the look alone says what touches.
+  template <class Pair>
+  static constexpr bool kLawCloses = kReaches<Law>&& std::is_base_of_v<PairState, Pair>;
+  template <class Pair>
+  SCREE_HD bool may_be_closed(const Pair& pair) const {
+    if constexpr (kLawCloses<Pair>)
+      return pair.geometry.overlap > -in.reach;
+    else
+      return Look::closed(pair);
+  }
+  // Of what may_be_closed(), or a test of the row, has let through.
+  template <class Pair, class History>
+  SCREE_HD static bool found_closed(const Law& law, const Pair& pair, const History& history) {
+    if constexpr (kLawCloses<Pair>)
+      return law.closed(pair, history);
+    else
+      return true;
+  }
+
+  // What a step has parted may have something to lose.
+  template <class Pair, class History>
+  SCREE_HD static bool found_breaking(const Pair&, const History& history) {
+    if constexpr (kReaches<Law> && std::is_same_v<Pair, MovingPair>)
+      return Law::breaks(history);
+    else
+      return false;
+  }
+
+  // Whether a contact is there at the end of the step: of one that has ended nothing is remembered.
+  template <class Contact>
+  SCREE_HD static bool lasts(const Contact& contact) {
+    if constexpr (requires { contact.lasts; })
+      return contact.lasts;
+    else
+      return true;
+  }
+
+  template <class Of, class Pair>
+  SCREE_HD static constexpr bool sees_history() {
+    if constexpr (Law::kHistory > 0)
+      return std::is_invocable_v<const Of&, const Law&, const Pair&,
+                                 decltype(in.history.template read<Law>(nullptr, 0))>;
+    else
+      return false;
+  }
+
+  template <bool kAccepts, class Test, class Of, class Visit>
+  SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    using Pair = decltype(look.pair(in, self, 0));
+    if constexpr (kLawCloses<Pair>)
+      walk_reaching<kAccepts>(self, test, of, visit);
+    else if constexpr (sees_history<Of, Pair>())
+      walk_with_history<kAccepts>(self, test, of, visit);
+    else
+      walk_without(self, test, of, visit);
+  }
+
+  template <class Test, class Of, class Visit>
+  SCREE_HD void walk_without(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    struct Found {
+      decltype(of(laws.get(0, 0), look.pair(in, self, 0))) contact;
+      Index j;
+    };
+    in.rows.for_each_contact(
+        self.i, test,
+        [&](Index j) {
+          return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j)), j};
+        },
+        [&](const Found& found) { visit(found.contact, found.j); });
+  }
+
+  template <bool kAccepts, class Test, class Of, class Visit>
+  SCREE_HD void walk_with_history(const Self& self, const Test& test, const Of& of,
+                                  const Visit& visit) const {
+    struct Found {
+      decltype(of(laws.get(0, 0), look.pair(in, self, 0), in.history.template read<Law>(nullptr, 0))) contact;
+      Index j;
+      std::int64_t slot;
+    };
+    in.rows.for_each_contact(
+        self.i, test,
+        [&](Index j, std::int64_t slot) {
+          const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+          auto pair = look.pair(in, self, j);
+          if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+          return Found{of(laws.get(self.material, in.material[j]), pair, history), j, slot};
+        },
+        [&](const Found& found) {
+          if constexpr (kAccepts)
+            if (lasts(found.contact))
+              in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
+          visit(found.contact, found.j);
+        });
+  }
+
+  // What the test has found may turn out to be no contact: it is evaluated where it is added.
+  template <bool kAccepts, class Test, class Of, class Visit>
+  SCREE_HD void walk_reaching(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    using Pair = decltype(look.pair(in, self, 0));
+    constexpr bool kSeesHistory = sees_history<Of, Pair>();
+    struct Place {
+      Index j;
+      std::int64_t slot;
+    };
+    const auto add = [&](const Place& at) {
+      const Law& law = laws.get(self.material, in.material[at.j]);
+      const auto pair = look.pair(in, self, at.j);
+      if constexpr (kSeesHistory) {
+        const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
+        const bool closed = found_closed(law, pair, history);
+        if (!closed && !found_breaking(pair, history)) return;
+        const auto contact = of(law, pair, history);
+        if constexpr (kAccepts)
+          if (closed) in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
+        visit(contact, at.j);
+      } else if (found_closed(law, pair, ContactHistory{})) {
+        visit(of(law, pair), at.j);
+      }
+    };
+    if constexpr (kSeesHistory)
+      in.rows.for_each_contact(
+          self.i, test,
+          [](Index j, std::int64_t slot) {
+            return Place{j, slot};
+          },
+          add);
+    else
+      in.rows.for_each_contact(
+          self.i, test,
+          [](Index j) {
+            return Place{j, 0};
+          },
+          add);
+  }
+};
+
+// Over an explicit step of h [s] that ends now; laws that do not move see its end.
+template <class Laws, class Rows>
+using ExplicitWalk = ContactWalk<Laws, Rows, StepLook<Laws>>;
+template <class Laws, class Rows>
+SCREE_HD ExplicitWalk<Laws, Rows> explicit_walk(const ContactViews<Rows>& in, const Laws& laws, Real h) {
+  if constexpr (LawOf<Laws>::kMoves)
+    return {in, laws, {h}};
+  else
+    return {in, laws};
+}
+
+}  // namespace scree

@@ -1,0 +1,153 @@
+// What happens for one particle's contacts over an implicit step: forces, Newton matrix, energy books. One
+// text for the CPU and CUDA.
+#pragma once
+
+#include <cstdint>
+
+#include "dem/contact/contact_items.hpp"
+#include "dem/contact/contact_walk.hpp"
+#include "physics/contact_books.hpp"
+#include "physics/step_contact.hpp"
+
+namespace scree {
+
+// One touching pair in the Newton matrix. In single precision: the matrix only says where the iteration goes,
+// the residual says where it ends, and the entries are most of what a matrix product reads.
+struct alignas(16) ContactEntry {
+  float x, y, z;   // b [sqrt(kg)]
+  Index neighbor;  // j
+
+  SCREE_HD Vec3 b() const { return {x, y, z}; }
+};
+
+SCREE_HD ContactEntry contact_entry(Vec3 b, Index neighbor) {
+  return {static_cast<float>(b.x), static_cast<float>(b.y), static_cast<float>(b.z), neighbor};
+}
+
+// Newton matrix of the touching pairs: row i is sum over its entries of b (b . (x_i - x_j)), with
+// b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to
+// the front of a row.
+struct ContactMatrix {
+  Index* count;           // entries of row i
+  ContactEntry* entries;  // [slots of the list]
+  Sym3* diagonal;         // sum of b b^T over the row, walls included [kg]
+};
+
+// Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.
+struct StepForces {
+  Vec3 *step_force, *end_force;  // gravity included [N]
+  Real* magnitude;               // sum of |F| over contacts and gravity: the scale of the residual [N]
+};
+
+// Weights of stiffness and damping in the Newton matrix.
+struct NewtonWeights {
+  Real stiffness;  // newmark_position_gain [s^2]
+  Real damping;    // newmark_velocity_gain [s]
+
+  SCREE_HD Real of(const StepContactForce& c) const { return stiffness * c.stiffness + damping * c.damping; }
+};
+
+struct StepContactOf {
+  bool resolve_events;
+
+  template <class Law>
+  SCREE_HD StepContact operator()(const Law& law, const ContactPath& c) const {
+    return of(law.normal.of_pair(c.size), c);
+  }
+  template <class Views>
+  SCREE_HD const StepContact* stored(const Views& in, Index entry) const {
+    return in.steps[entry].touches ? &in.steps[entry].contact : nullptr;
+  }
+  template <class NormalLaw>
+  SCREE_HD StepContact of(const NormalLaw& law, const ContactPath& c) const {
+    const ContactForce end =
+        c.step.acts_at_end() ? contact_force(law, c.step.overlap1, c.step.rate1) : ContactForce{0, 0, 0, 0};
+    if (!resolve_events) return {{end.force, end.stiffness, end.damping}, end.force, c.normal1};
+    return {step_contact_force(law, c.step), end.force, c.normal1};
+  }
+};
+
+// What it adds to the energy ledger.
+struct StepBooksOf {
+  StepContactOf step;
+
+  template <class Law>
+  SCREE_HD ContactBooks operator()(const Law& law, const ContactPath& c) const {
+    const auto normal = law.normal.of_pair(c.size);
+    const Real force0 = start_force(normal, c.step);
+    const Real force1 = step.of(normal, c).step.force;
+    return contact_books(normal, c.step, Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.travel));
+  }
+  template <class Views>
+  SCREE_HD const ContactBooks* stored(const Views& in, Index entry) const {
+    return in.steps[entry].touches ? &in.steps[entry].books : nullptr;
+  }
+};
+
+template <class Laws, class Rows>
+using StepWalk = ContactWalk<Laws, Rows, OverStep>;
+
+// Force and Newton matrix row of particle i in an implicit step.
+template <class Laws, class Rows>
+struct ContactSystemItem {
+  StepWalk<Laws, Rows> walk;
+  Vec3 gravity;
+  NewtonWeights weights;
+  StepForces out;
+  ContactMatrix matrix;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec3 weight = walk.in.velocity[i].w * gravity;
+    Vec3 step_force = weight, end_force = weight;
+    Real magnitude = norm(weight);
+    Index entries = 0;
+    std::int64_t slot = walk.in.rows.first(i);
+    Sym3 diagonal;
+    const auto add = [&](const StepContact& c) {
+      step_force += c.step.force * c.normal;
+      end_force += c.end_force * c.normal;
+      magnitude += std::abs(c.step.force);
+      const Real s = weights.of(c.step);
+      diagonal += outer(s, c.normal);
+      return s;
+    };
+    const auto self = walk.self(i);
+    const StepContactOf of{walk.look.start.resolve_events};
+    walk.neighbors(self, of, [&](const StepContact& c, Index j) {
+      const Real s = add(c);
+      matrix.entries[slot] = contact_entry(std::sqrt(s) * c.normal, j);
+      ++entries, slot += Rows::stride();
+    });
+    walk.surfaces(self, of, [&](const StepContact& c, Index) { add(c); });
+    out.step_force[i] = step_force, out.end_force[i] = end_force;
+    out.magnitude[i] = magnitude;
+    matrix.count[i] = entries;
+    matrix.diagonal[i] = diagonal;
+  }
+};
+
+// What the contacts of item i over a step add to the energy ledger; share: that of those with neighbours.
+// kAccepts: as in ContactWalk.
+template <bool kAccepts = false, class Laws, class Rows>
+SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
+  ContactBooks sum;
+  const auto self = walk.self(i);
+  const StepBooksOf of{{walk.look.start.resolve_events}};
+  walk.template neighbors<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, share); });
+  walk.template surfaces<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
+  return sum;
+}
+
+// Books particle i's share of its contacts over an accepted step.
+template <class Laws, class Rows>
+struct ContactBooksItem {
+  StepWalk<Laws, Rows> walk;
+  Real *contact_loss, *integrator_loss;  // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    const ContactBooks sum = books_of<true>(walk, i, kPairShare);
+    contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,216 @@
+#include "dem/cpu/cpu_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "base/countable.hpp"
+
+namespace scree {
+
+// With the ghosts where their particles are now: it is the places that name contacts.
+void CpuList::leave_slots() {
+  if (!items_.history.at_slots()) return;
+  items_.refresh_ghosts();
+  items_.history.leave_slots(items_.listed());
+}
+
+void CpuList::wrap_positions() {
+  ParticleStore& store = items_.store;
+  GlobalId bad = CpuItems::kNone;
+  for (Index i = 0; i < store.owned; ++i) {
+    Vec3 p = xyz(store.position[i]);
+    if (!wrap_if_sound(items_.model.space.min, items_.subdomain.period(), store.drifting[i], p,
+                       store.image[i]))
+      bad = std::min(bad, id_of(store.row_key[i]));
+    store.position[i] = vec4(p, store.position[i].w);
+  }
+  items_.fail_if_any(bad, kUnsoundPosition[0], kUnsoundPosition[1]);
+}
+
+// Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.
+void CpuList::decompose() {
+  const ParticleStore& store = items_.store;
+  std::vector<std::int64_t> weight(static_cast<std::size_t>(store.owned), 1);
+  if (row_length_.size() == weight.size())
+    for (std::size_t i = 0; i < weight.size(); ++i) weight[i] += row_length_[i];
+  const DomainGrid grid = make_domain_grid(items_.model.space, builder_.cutoff(items_.model.contact.skin));
+  Decomposition next(items_.ranks, grid, {store.position.data(), weight.size()}, weight);
+  balance_.rebalances += decomposition_.exists() && next.boxes() != decomposition_.boxes();
+  decomposition_ = std::move(next);
+}
+
+// migrate: every particle goes to the rank whose box it is in.
+void CpuList::migrate() {
+  ParticleStore& store = items_.store;
+  const Ranks& ranks = items_.ranks;
+  if (!decomposition_.exists() || balance_.imbalance > items_.model.parallel.imbalance) decompose();
+  std::vector<std::vector<Particle>> leaving(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> left(leaving.size());  // where they stood
+  std::vector<Index> staying;
+  for (Index i = 0; i < store.owned; ++i) {
+    const int owner = decomposition_.owner(xyz(store.position[i]));
+    if (owner == ranks.rank()) {
+      staying.push_back(i);
+      continue;
+    }
+    leaving[static_cast<std::size_t>(owner)].push_back(particle_at(store, i));
+    left[static_cast<std::size_t>(owner)].push_back(i);
+  }
+  balance_.migrated += store.owned - static_cast<std::int64_t>(staying.size());
+  const std::vector<Particle> arriving = ranks.deal_out(leaving);
+  countable(staying.size() + arriving.size(), kTooManyParticles);
+  items_.history.migrate(ranks, left, staying);
+  store.reorder(staying);
+  for (const Particle& particle : arriving) store.add(particle);
+}
+
+namespace {
+
+// The place of a cell among all, the shortest axis fastest: what is near in the space is then as near in
+// memory as it can be, and most neighbours are still in the caches.
+class CellOrder {
+ public:
+  explicit CellOrder(const CellGrid& grid) {
+    int axes[3] = {0, 1, 2};
+    std::stable_sort(axes, axes + 3, [&](int a, int b) { return grid.cells[a] < grid.cells[b]; });
+    Index stride = 1;
+    for (const int axis : axes) stride_[axis] = std::exchange(stride, stride * grid.cells[axis]);
+  }
+  Index operator()(const CellPlace& c) const {
+    return stride_[0] * c.x + stride_[1] * c.y + stride_[2] * c.z;
+  }
+
+ private:
+  Index stride_[3];
+};
+
+}  // namespace
+
+// Owned particles in the order of their cells; those outside at the end.
+void CpuList::sort_cells(Real skin) {
+  ParticleStore& store = items_.store;
+  const Ranks& ranks = items_.ranks;
+  const std::int64_t particles = ranks.sum(static_cast<std::int64_t>(store.owned));
+  cells_ = ranks.alone() ? builder_.cells(skin, particles)
+                         : builder_.cells(skin, particles, decomposition_.box(ranks.rank(), items_.subdomain),
+                                          store.owned);
+  const CellOrder order(cells_.own);
+  const Index outside = cells_.own.count();
+  std::vector<Index> cell(store.owned), start(outside + 2, 0), from(store.owned);
+  store.active = 0;
+  for (Index i = 0; i < store.owned; ++i) {
+    const CellPlace c = cells_.place(xyz(store.position[i]));
+    // Without a cell: has left; whether it may is asked at the end of the step.
+    cell[i] = store.drifting[i] || c.x < 0 ? outside : order(c);
+    store.active += cell[i] != outside;
+    ++start[cell[i] + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (Index i = 0; i < store.owned; ++i) from[start[cell[i]]++] = i;
+  store.reorder(from), items_.history.reorder(from);
+}
+
+void CpuList::lay_out_items(Real skin) {
+  ParticleStore& store = items_.store;
+  ItemLayout& layout = items_.layout;
+  Halo& halo = items_.halo;
+  layout.owned = store.owned, layout.active = store.active;
+  const Real width = builder_.cutoff(skin);
+  halo.exchange(items_.ranks, decomposition_, items_.subdomain,
+                {store.position.data(), static_cast<std::size_t>(store.active)}, width);
+  layout.items = countable(static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()),
+                           kTooManyItems);
+  store.resize_items(layout.items);
+  for_each_array<kNames | kGhostCopies>([&](auto& array) { halo.update(std::span(array), layout.owned); },
+                                        store);
+  for (Index g = 0; g < halo.size(); ++g) {
+    std::int64_t& key = store.row_key[layout.owned + g];
+    key = row_key(id_of(key), halo.images()[g]);
+  }
+}
+
+void CpuList::place_bodies(std::span<const BodyMotion> motion) {
+  items_.side.set_motion(motion);
+  if (current_) surface_bound_ += items_.side.place();
+}
+
+void CpuList::build(Real skin, StageTimers& timers) {
+  {
+    const auto scope = timers.time(Stage::migrate);
+    leave_slots();
+    wrap_positions();
+    if (!items_.ranks.alone()) migrate();
+  }
+  {
+    const auto scope = timers.time(Stage::sort_cells);
+    sort_cells(skin);
+  }
+  {
+    const auto scope = timers.time(Stage::exchange_halo);
+    lay_out_items(skin);
+    items_.refresh_ghosts();
+    items_.side.bring_into_box();
+    items_.side.place();
+  }
+  const auto scope = timers.time(Stage::neighbors);
+  const ParticleStore& store = items_.store;
+  builder_.build(store, items_.layout, cells_, {items_.side.places(), items_.history.remembered()}, skin,
+                 items_.list);
+  items_.pairs.is_current = items_.pairs.keeps_records = false;
+  items_.side.build_list(skin);
+  items_.history.take_slots(items_.listed());
+  built_at_ = store.position;
+  items_.spare_position = store.position, items_.spare_velocity = store.velocity;
+  items_.spare_spin = store.angular_velocity;
+  bound_ = surface_bound_ = 0;
+  current_ = true;
+  ++builds_;
+  const Halo& halo = items_.halo;
+  balance_.halo = {store.owned, halo.size(), halo.receivers(),
+                   static_cast<std::int64_t>(halo.sent()) * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
+  if (!items_.ranks.alone()) measure_balance();
+}
+
+// The sum of the steps' largest displacements is cheap; the exact value follows past it.
+bool CpuList::covers(Real step) {
+  if (!current_) return false;
+  bound_ += std::max(step, surface_bound_);
+  surface_bound_ = 0;
+  return bound_ < items_.list.skin / 2 || displacement() <= 1;
+}
+
+Real CpuList::displacement() {
+  if (!current_) return 2;
+  Real squared = 0;
+  for (Index i = 0; i < items_.layout.active; ++i) {
+    const Vec3 d = xyz(items_.store.position[i]) - xyz(built_at_[i]);
+    const Real value = dot(d, d);
+    if (!(value <= squared) && !std::isnan(squared)) squared = value;  // a NaN counts as expired
+  }
+  Real largest[2] = {std::sqrt(squared), items_.side.list_displacement()};
+  items_.ranks.max(largest);
+  if (!std::isfinite(largest[0]) || !std::isfinite(largest[1])) return 2;
+  bound_ = std::max(largest[0], largest[1]), surface_bound_ = 0;
+  return bound_ / (items_.list.skin / 2);
+}
+
+void CpuList::keep_rows(const std::vector<Index>& staying) {
+  if (items_.ranks.alone()) return;
+  for (std::size_t k = 0; k < staying.size(); ++k) row_length_[k] = row_length_[staying[k]];
+  row_length_.resize(staying.size());
+}
+
+void CpuList::measure_balance() {
+  row_length_.resize(static_cast<std::size_t>(items_.layout.owned));
+  std::int64_t weight = items_.layout.owned;
+  for (Index i = 0; i < items_.layout.owned; ++i) {
+    row_length_[i] = items_.list.offsets[i + 1] - items_.list.offsets[i];
+    weight += row_length_[i];
+  }
+  balance_.imbalance = measure_imbalance(items_.ranks, weight);
+  balance_.largest = std::max(balance_.largest, balance_.imbalance);
+}
+
+}  // namespace scree

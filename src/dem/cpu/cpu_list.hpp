@@ -1,0 +1,54 @@
+// Who owns which particles, and the neighbour list of the serial backend.
+#pragma once
+
+#include <vector>
+
+#include "dem/backend/rank_list.hpp"
+#include "dem/cpu/cpu_items.hpp"
+
+namespace scree {
+
+class CpuList : public RankList {
+ public:
+  explicit CpuList(CpuItems& items) : items_(items), builder_(items.model) {}
+
+  void place_bodies(std::span<const BodyMotion> motion) override;
+  Real displacement() override;
+  void build(Real skin, StageTimers& timers) override;
+  std::int64_t entries() const override { return static_cast<std::int64_t>(items_.list.neighbors.size()); }
+  std::int64_t builds() const override { return builds_; }
+  LoadBalance balance() const override { return balance_; }
+
+  // Whether the list sees every pair that can touch, once more after explicit steps that moved particles by
+  // at most `step` [m]. Collective.
+  bool covers(Real step);
+  // Particles came or left: the list is no longer one of these.
+  void outdate() { current_ = false; }
+  // Of the owned particles these stay, in this order.
+  void keep_rows(const std::vector<Index>& staying);
+
+ private:
+  // Parts of build, in their order.
+  void leave_slots();
+  void wrap_positions();
+  void migrate();
+  void decompose();
+  void sort_cells(Real skin);
+  // Sizes all item arrays, fills in ghosts.
+  void lay_out_items(Real skin);
+  void measure_balance();
+
+  CpuItems& items_;
+  NeighborBuilder builder_;
+  Decomposition decomposition_;  // with several ranks, from the first list on
+  LoadBalance balance_;
+  std::vector<Index> row_length_;  // of the particles when the list was built, with several ranks
+  SearchCells cells_;
+  std::vector<Vec4> built_at_;  // positions of all items when the list was built
+  bool current_ = false;        // whether the items are those that the list was built of
+  std::int64_t builds_ = 0;
+  Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
+  Real surface_bound_ = 0;  // of any surface since `bound_` was last brought up to date, at most [m]
+};
+
+}  // namespace scree

@@ -1,0 +1,116 @@
+#include "dem/cpu/cpu_particles.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/for_each.hpp"
+#include "dem/backend/explicit_run.hpp"
+#include "dem/reports/ledger_items.hpp"
+
+namespace scree {
+
+void CpuParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
+  items_.side.load(shapes);
+  count_on_rank(records.size(), items_.model.particles.totals);
+  items_.store.load(records);
+  items_.history.load({}, items_.store.owned);
+  items_.surfaces.load_works({});
+  list_.outdate();
+}
+
+std::vector<Particle> CpuParticles::records() {
+  std::vector<Particle> out = items_.store.records();
+  for (Particle& r : out)
+    if (!r.drifting) r.position = items_.subdomain.wrap(r.position, r.image);
+  return out;
+}
+
+KeptContacts CpuParticles::contacts() {
+  if (!items_.history.exists()) return {};
+  std::vector<Index> order(static_cast<std::size_t>(items_.store.owned));
+  std::iota(order.begin(), order.end(), 0);
+  const std::vector<std::int64_t>& key = items_.store.row_key;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+  return items_.history.contacts(items_.listed()).rows(order);
+}
+
+std::vector<std::int64_t> CpuParticles::works() {
+  std::vector<std::int64_t> words = items_.surfaces.works();
+  items_.side.add_works(words);
+  return words;
+}
+
+void CpuParticles::initial_forces() {
+  ParticleStore& store = items_.store;
+  items_.refresh_ghosts();
+  items_.find_loads();
+  items_.kernels->forces(items_.views(), items_.model.gravity, items_.layout.owned, store.force.data(),
+                         store.loss_power.data(), store.angular_acceleration.data());
+  for_each(Serial{}, items_.layout.owned,
+           StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
+  if (is_verlet(items_.model))
+    items_.side.book_losses(0);
+  else
+    std::fill(store.loss_power.begin(), store.loss_power.end(), 0);
+}
+
+std::vector<Leaver> CpuParticles::outside() {
+  ParticleStore& store = items_.store;
+  const Model& model = items_.model;
+  const Ranks& ranks = items_.ranks;
+  const ParticleViews views = views_of(store);
+  std::vector<Leaver> leavers;
+  if (!ranks.any(items_.any_outside())) return leavers;
+  for (Index i = 0; i < store.owned; ++i) {
+    const Vec3 p = xyz(store.position[i]);
+    if (store.drifting[i] || items_.subdomain.inside(p)) continue;
+    const Real energy = energy_of_motion(views, i, model.gravity, items_.subdomain.period());
+    const Real shift = verlet_energy_shift(verlet_step(model), views, i);
+    leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
+                       store.contact_loss[i], store.integrator_loss[i] - shift, losses_of(views, i), 0,
+                       ranks.rank()});
+  }
+  items_.find_loads();
+  items_.kernels->leavers(items_.views(), items_.subdomain.box(), static_cast<Index>(leavers.size()),
+                          leavers.data());
+  leavers = ranks.gather_everywhere(std::move(leavers));
+  std::sort(leavers.begin(), leavers.end(),
+            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  return leavers;
+}
+
+// Before the leavers are wrapped and marked.
+void CpuParticles::take_contacts_out() {
+  ParticleStore& store = items_.store;
+  const Model& model = items_.model;
+  const bool verlet = is_verlet(model);
+  items_.kernels->departures(
+      items_.views(store.position, verlet ? items_.spare_velocity : store.velocity,
+                   verlet ? items_.spare_spin : store.angular_velocity),
+      model.gravity, items_.subdomain.box(), items_.layout.owned,
+      {store.force.data(), store.acceleration.data(), verlet ? store.loss_power.data() : nullptr,
+       store.integrator_loss.data(), store.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
+       verlet_step(model), store.angular_acceleration.data()});
+}
+
+void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
+  ParticleStore& store = items_.store;
+  take_contacts_out();
+  items_.history.leave_slots(items_.listed());
+  for (const Leaver& leaver : leavers) {
+    if (leaver.rank != items_.ranks.rank()) continue;
+    const auto i = static_cast<std::size_t>(leaver.local_index);
+    const Vec4& p = store.position[i];
+    store.position[i] = vec4(items_.subdomain.wrap(xyz(p), store.image[i]), p.w);
+    store.drifting[i] = 1;
+  }
+  list_.outdate();
+  if (items_.model.space.leaving != Leaving::remove) return;
+  std::vector<Index> staying;
+  for (Index i = 0; i < store.owned; ++i)
+    if (!store.drifting[i]) staying.push_back(i);
+  list_.keep_rows(staying);
+  store.reorder(staying), items_.history.reorder(staying);
+}
+
+}  // namespace scree

@@ -1,0 +1,314 @@
+// The explicit step in mixed precision: state and sums at about double precision, contact forces in single.
+// Between two builds of the neighbour list only; the state at rest is in double.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact/contact_items.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// Place on a grid of quanta, modulo 2^32: the difference of two near places is exact. What another particle
+// reads.
+struct alignas(16) MixedPlace {
+  std::uint32_t x, y, z;
+  float radius;  // [m]
+};
+
+// Velocity that the contact law sees, and mass. What another particle reads.
+struct alignas(16) MixedMotion {
+  float x, y, z;  // [m/s]
+  float mass;     // [kg]
+};
+
+// The rest of the place: 2^-16 of a quantum. What no other particle reads.
+struct alignas(8) MixedFraction {
+  std::uint16_t x, y, z;
+  std::uint16_t near_side;  // whether the particle may leave the space before the list expires
+};
+
+// The velocity in the middle of the step, less the one that the law sees: small, so that a single holds it to
+// far below the last bit of the velocity.
+struct alignas(16) MixedRest {
+  float x, y, z;  // [m/s]
+  float loss;     // dissipated since the last conversion [J]
+};
+
+// Angular velocity in the middle of the step, and the moment of inertia. What another particle reads.
+struct alignas(16) MixedSpin {
+  float x, y, z;  // [rad/s]
+  float inertia;  // [kg m^2]
+};
+
+// What a single leaves out of the angular velocity.
+struct alignas(16) MixedSpinRest {
+  float x, y, z;   // [rad/s]
+  float friction;  // dissipated by it since the last conversion [J]
+};
+
+struct MixedViews {
+  MixedPlace* place[2];  // all items; a step reads one and writes the other
+  MixedMotion* motion[2];
+  MixedFraction* fraction;  // owned particles
+  MixedRest* rest;
+  MixedSpin* spin[2];        // all items; null where particles do not rotate
+  MixedSpinRest* spin_rest;  // owned particles; likewise
+};
+
+// Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
+struct QuantumGrid {
+  Real quantum = 1;                         // power of two [m]
+  Real fraction = 1, inverse_fraction = 1;  // 2^-16 of it
+
+  SCREE_HD std::int64_t count(Real x) const {
+    return static_cast<std::int64_t>(std::rint(x * inverse_fraction));
+  }
+  // The place that has moved on from x: by the difference of the low bits.
+  SCREE_HD Real moved(Real x, std::uint32_t place, std::uint16_t part) const {
+    const std::int64_t from = count(x);
+    const auto whole = static_cast<std::int32_t>(place - static_cast<std::uint32_t>(from >> 16));
+    const std::int64_t parts = static_cast<std::int64_t>(part) - (from & 0xffff);
+    return static_cast<Real>(from + whole * std::int64_t{65536} + parts) * fraction;
+  }
+};
+
+// The place dx [m] on, and the rest of it.
+SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace place, MixedFraction& rest) {
+  const auto move = [&](std::uint32_t& whole, std::uint16_t& part, Real by) {
+    const std::int64_t parts = part + grid.count(by);
+    whole += static_cast<std::uint32_t>(parts >> 16);
+    part = static_cast<std::uint16_t>(parts & 0xffff);
+  };
+  move(place.x, rest.x, dx.x), move(place.y, rest.y, dx.y), move(place.z, rest.z, dx.z);
+  return place;
+}
+
+inline QuantumGrid make_quantum_grid(Real reach) {
+  int exponent = 0;
+  std::frexp(reach, &exponent);
+  const Real quantum = std::ldexp(Real(1), exponent - 28);
+  return {quantum, std::ldexp(quantum, -16), std::ldexp(1 / quantum, 16)};
+}
+
+SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
+  return {static_cast<std::uint32_t>(grid.count(p.x) >> 16),
+          static_cast<std::uint32_t>(grid.count(p.y) >> 16),
+          static_cast<std::uint32_t>(grid.count(p.z) >> 16), static_cast<float>(p.w)};
+}
+
+// The same place a whole number of periods away.
+SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shift) {
+  // Rounded alike in both directions: two particles see each other at opposite differences.
+  const auto whole = [&](Real x) { return static_cast<std::uint32_t>((grid.count(x) + 32768) >> 16); };
+  place.x += whole(shift.x), place.y += whole(shift.y), place.z += whole(shift.z);
+  return place;
+}
+
+// Position of a particle that was at `from` when it was converted [m].
+SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place,
+                             const MixedFraction& part) {
+  return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y),
+          grid.moved(from.z, place.z, part.z)};
+}
+
+// Position of one relative to the other [m].
+SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedPlace& q) {
+  const auto along = [](std::uint32_t a, std::uint32_t b) {
+    return static_cast<float>(static_cast<std::int32_t>(a - b));
+  };
+  return quantum * Vec3f{along(p.x, q.x), along(p.y, q.y), along(p.z, q.z)};
+}
+
+// TouchTest for places on the grid.
+struct MixedTouchTest {
+  MixedPlace p;
+  const MixedPlace* place;  // all items
+  float quantum;            // [m]
+  SCREE_HD bool operator()(Index j) const { return near(j, 0); }
+  SCREE_HD bool near(Index j, Real margin) const {
+    const MixedPlace q = place[j];
+    const Vec3f r = mixed_difference(quantum, p, q);
+    const float reach = p.radius + q.radius + static_cast<float>(margin);
+    return dot(r, r) < reach * reach;
+  }
+};
+
+// From the double state of an open explicit step.
+struct ToMixedItem {
+  const Vec4 *position, *velocity, *spin;  // null unless particles rotate: then both are of the middle
+  const Vec3* acceleration;
+  MixedViews out;
+  QuantumGrid grid;
+  OpenBox box;
+  Real h, half_skin;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 p = position[i], v = velocity[i];
+    const Vec3f seen = in_single(xyz(v));
+    out.place[0][i] = mixed_place(grid, p);
+    out.motion[0][i] = {seen.x, seen.y, seen.z, static_cast<float>(v.w)};
+    const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
+    out.fraction[i] = {part(p.x), part(p.y), part(p.z),
+                       static_cast<std::uint16_t>(box.inside(xyz(p), 2 * half_skin) ? 0 : 1)};
+    const Vec3 middle = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
+    const Vec3f rest = in_single(middle - in_double(seen));
+    out.rest[i] = {rest.x, rest.y, rest.z, 0};
+    if (spin != nullptr) {
+      const Vec4 w = spin[i];
+      const Vec3f single = in_single(xyz(w));
+      out.spin[0][i] = {single.x, single.y, single.z, static_cast<float>(w.w)};
+      const Vec3f left = in_single(xyz(w) - in_double(single));
+      out.spin_rest[i] = {left.x, left.y, left.z, 0};
+    }
+  }
+};
+
+// Back to the double state. position, velocity: as they were converted, so many steps ago.
+struct FromMixedItem {
+  MixedViews in;
+  int parity;
+  QuantumGrid grid;
+  Vec4 *position, *velocity, *spin;    // null unless particles rotate
+  Vec3* acceleration;                  // not where they do
+  Real *contact_loss, *friction_loss;  // the second: null unless particles rotate
+  const std::uint8_t* drifting;
+  Vec3 gravity;
+  Real h;
+  Index steps;
+
+  SCREE_HD void operator()(Index i) const {
+    if (drifting[i]) return drift(i);
+    const MixedMotion u = (parity == 0 ? in.motion[0] : in.motion[1])[i];
+    const MixedPlace place = (parity == 0 ? in.place[0] : in.place[1])[i];
+    const MixedRest rest = in.rest[i];
+    const Vec3 seen{u.x, u.y, u.z}, middle = seen + Vec3{rest.x, rest.y, rest.z};
+    // A velocity that is not finite must not hide behind a place that always is.
+    const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], place, in.fraction[i]) : middle;
+    position[i] = vec4(x, position[i].w);
+    contact_loss[i] += rest.loss;
+    if (spin != nullptr) {
+      velocity[i] = vec4(middle, velocity[i].w);
+      take_spin(i);
+      return;
+    }
+    velocity[i] = vec4(seen, velocity[i].w);
+    acceleration[i] = verlet_acceleration(h, seen, middle);
+  }
+
+ private:
+  SCREE_HD void take_spin(Index i) const {
+    const MixedSpin w = (parity == 0 ? in.spin[0] : in.spin[1])[i];
+    const MixedSpinRest rest = in.spin_rest[i];
+    spin[i] = vec4(Vec3{w.x, w.y, w.z} + Vec3{rest.x, rest.y, rest.z}, spin[i].w);
+    friction_loss[i] += rest.friction;
+  }
+  // No list covers what drifts, so that it may be farther away than places tell apart; but it feels gravity
+  // alone.
+  SCREE_HD void drift(Index i) const {
+    if (steps == 0) return;
+    const Vec4 p = position[i], v = velocity[i];
+    const Vec3 first = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
+    const Vec3 last = verlet_middle_after(steps, h, first, gravity);
+    position[i] = vec4(xyz(p) + verlet_displacement_of(steps, h, first, gravity), p.w);
+    velocity[i] = vec4(spin != nullptr ? last : verlet_predicted_from_middle(h, last, gravity), v.w);
+    if (spin == nullptr) acceleration[i] = gravity;
+  }
+};
+
+// The look at places on the grid: pairs of particles in single precision, walls, for which the whole position
+// is needed, in double.
+struct AtMixedInstant {
+  const MixedPlace* place;  // all items
+  const MixedMotion* motion;
+  const MixedFraction* fraction;
+  QuantumGrid grid;
+
+  struct Self {
+    Index i;
+    int material;
+    MixedPlace p;
+    MixedMotion u;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], place[i], motion[i]};
+  }
+  template <class Rows>
+  SCREE_HD MixedTouchTest test(const ContactViews<Rows>&, const Self& self) const {
+    return {self.p, place, static_cast<float>(grid.quantum)};
+  }
+  template <class Rows>
+  SCREE_HD PairStateOf<float, Vec3f> pair(const ContactViews<Rows>&, const Self& self, Index j) const {
+    const MixedPlace p = self.p, q = place[j];
+    const MixedMotion u = self.u, w = motion[j];
+    const Vec3f r = mixed_difference(static_cast<float>(grid.quantum), p, q);
+    return {sphere_pair(r, p.radius + q.radius),
+            {u.x - w.x, u.y - w.y, u.z - w.z},
+            {p.radius, q.radius, u.mass, w.mass}};
+  }
+  // in.position: as converted.
+  template <class Rows>
+  SCREE_HD PairState wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const Vec4 from = in.position[self.i];
+    const Vec4 x = vec4(mixed_position(grid, from, self.p, fraction[self.i]), from.w);
+    const MixedMotion u = self.u;
+    return {wall_pair(x, plane), Vec3{u.x, u.y, u.z}, wall_size(from.w, u.mass)};
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
+};
+
+// Closes a step and opens the next. Returns the square of the displacement.
+template <class Laws, class Rows>
+struct MixedAdvanceItem {
+  ContactViews<Rows> in;  // position: as converted; velocity is not used
+  Laws laws;
+  Vec3 gravity;
+  MixedViews state;
+  int parity;
+  QuantumGrid grid;
+  Real h;
+
+  SCREE_HD Real operator()(Index i) const {
+    const ContactWalk<Laws, Rows, AtMixedInstant> walk{in, laws, {places(), motions(), state.fraction, grid}};
+    const auto self = walk.self(i);
+    const Real mass = self.u.mass;
+    Vec3 f = mass * gravity;
+    float loss = 0;
+    walk.template neighbors<true>(self, LoadOf{}, [&](const auto& load, Index) {
+      f += in_double(load.force);
+      loss += 0.5f * load.loss;
+    });
+    walk.template surfaces<true>(self, LoadOf{}, [&](const auto& load, Index) {
+      f += load.force;
+      loss += static_cast<float>(load.loss);
+    });
+    return advance(i, self.p, self.u, reciprocal(mass) * f, loss);
+  }
+
+ private:
+  // No indexing by parity: a GPU would copy the arrays of pointers to memory for it.
+  SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
+  SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
+
+  SCREE_HD Real advance(Index i, const MixedPlace& p, const MixedMotion& u, Vec3 a, float loss) const {
+    const MixedRest rest = state.rest[i];
+    const Vec3 old_middle = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
+    const Vec3 middle = verlet_next_middle(h, old_middle, a), dx = h * middle;
+    const Vec3f seen = in_single(verlet_predicted_from_middle(h, middle, a));
+    const Vec3f new_rest = in_single(middle - in_double(seen));
+    MixedFraction part = state.fraction[i];
+    (parity == 0 ? state.place[1] : state.place[0])[i] = moved_by(grid, dx, p, part);
+    state.fraction[i] = part;
+    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
+    state.rest[i] = {new_rest.x, new_rest.y, new_rest.z, rest.loss + static_cast<float>(h) * loss};
+    return dot(dx, dx);
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,50 @@
+// What contacts do to a particle, in vectors of the processor: sums over rows of the serial backend.
+#pragma once
+
+#include <bit>
+
+#include "dem/contact/contact_items.hpp"
+
+namespace scree {
+
+// Four numbers, added by one instruction where the processor has it.
+using Real4 = Real __attribute__((vector_size(4 * sizeof(Real))));
+
+// Of numbers that are in registers one by one, and of four in memory: the other way round the processor
+// waits.
+inline Real4 packed(Real a, Real b, Real c, Real d) { return Real4{a, b, c, d}; }
+inline Real4 packed(const Vec4& a) { return std::bit_cast<Real4>(a); }
+
+// A TotalForce, its numbers in fours: adding two is what TotalForce does.
+template <int kKinds>
+struct alignas(64) PackedForce {
+  static constexpr int kParts = (7 + kKinds + 3) / 4;
+  Real4 part[kParts];
+
+  using Total = TotalForce<kKinds>;
+  static Vec4 part_of(const Total& of, int n) {
+    const auto loss = [&](int k) { return k < kKinds ? of.losses.of[k] : 0; };
+    return n == 0   ? vec4(of.force, of.loss_power)
+           : n == 1 ? vec4(of.torque, loss(0))
+                    : Vec4{loss(1), loss(2)};
+  }
+  static PackedForce of(const Total& total) {
+    PackedForce out;
+    for (int n = 0; n < kParts; ++n) {
+      const Vec4 a = part_of(total, n);
+      out.part[n] = packed(a.x, a.y, a.z, a.w);
+    }
+    return out;
+  }
+  Total total() const {
+    Total out{{part[0][0], part[0][1], part[0][2]}, part[0][3], {part[1][0], part[1][1], part[1][2]}, {}};
+    for (int k = 0; k < kKinds; ++k) out.losses.of[k] = part[(7 + k) / 4][(7 + k) % 4];
+    return out;
+  }
+  PackedForce& operator+=(const PackedForce& b) {
+    for (int n = 0; n < kParts; ++n) part[n] += b.part[n];
+    return *this;
+  }
+};
+
+}  // namespace scree

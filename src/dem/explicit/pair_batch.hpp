@@ -1,0 +1,115 @@
+// Contacts of the serial backend's explicit steps, many at a time: the compiler makes vector instructions of
+// the loop over them where the law allows it.
+#pragma once
+
+#include "dem/explicit/packed_force.hpp"
+
+namespace scree {
+
+// One law for all contacts, with a slider that may have a dashpot beside it.
+template <class Laws>
+inline constexpr bool kMayHaveDashpot = false;
+template <class Law>
+requires Law::Tangential::acts inline constexpr bool kMayHaveDashpot<OneLaw<Law>> = true;
+
+// Pairs that were gathered from their rows, with what their contacts remember, and what they get. Of laws
+// that move.
+template <class Laws>
+class PairBatch {
+ public:
+  static constexpr Index kRoom = 64;  // pairs
+  using Law = LawOf<Laws>;
+  using Packed = PackedForce<kLossKindsOf<Law>>;
+  static constexpr Index kRecords = records_of(Law::kHistory);
+  static constexpr std::int64_t first_record(Index slot) { return std::int64_t{slot} * kRecords; }
+
+  // The k-th pair, and its records.
+  void put(Index k, const OverMotion::Self& i, const OverMotion::Self& j, const Vec4* records) {
+    i_.put(k, i), j_.put(k, j);
+    for (Index r = 0; r < kRecords; ++r) records_[first_record(k) + r] = records[r];
+  }
+
+  // Evaluates the first n over a step. history: says which step that is.
+  [[gnu::noinline, gnu::flatten]] void evaluate(Index n, const Laws& of, const OverMotion& look,
+                                                const HistoryViews& history) {
+    if constexpr (kMayHaveDashpot<Laws>) {
+      if (of.law.tangential.damping_ratio == 0) {
+        // A number that the compiler knows: it leaves out what most runs have none of.
+        Laws without_dashpot = of;
+        without_dashpot.law.tangential.damping_ratio = 0;
+        return evaluate_by(without_dashpot, n, look, history);
+      }
+    }
+    evaluate_by(of, n, look, history);
+  }
+
+  // Of what was evaluated: whether there is a contact at the end of the step, and whether there is anything
+  // to add: a neck that breaks has losses.
+  bool closed(Index k) const { return !kReaches<Law> || closed_[k]; }
+  bool acts(Index k) const { return !kReaches<Law> || acts_[k]; }
+  // Whether j gets what of_j() says: else the contact must be evaluated from its side.
+  bool is_mirrored(Index k) const {
+    return Law::is_mirrored(Law::read_history([&](int n) { return number_of(records(k), n); }));
+  }
+  // What i remembered and remembers of it.
+  const Vec4* old_records(Index k) const { return records_ + first_record(k); }
+  const Vec4* records(Index k) const { return new_records_ + first_record(k); }
+  // What the two get. By parts, of which the compiler makes whole vectors.
+  struct Side {
+    alignas(64) Vec4 part[Packed::kParts][kRoom];
+
+    void put(Index k, const typename Packed::Total& total) {
+      for (int n = 0; n < Packed::kParts; ++n) part[n][k] = Packed::part_of(total, n);
+    }
+    Packed packed(Index k) const {
+      Packed out;
+      for (int n = 0; n < Packed::kParts; ++n) out.part[n] = scree::packed(part[n][k]);
+      return out;
+    }
+  };
+  const Side& of_i() const { return of_i_; }
+  const Side& of_j() const { return of_j_; }
+
+ private:
+  void evaluate_by(const Laws& of, Index n, const OverMotion& look, const HistoryViews& views) {
+    const Laws laws = of;
+    const HistoryViews history = views;
+    const Real h = look.h;
+#pragma GCC ivdep
+    for (Index k = 0; k < n; ++k) {
+      const Vec4 p = i_.position[k], u = i_.velocity[k], v = i_.spin[k];
+      const Vec4 q = j_.position[k], w = j_.velocity[k], s = j_.spin[k];
+      const PairState state = AtInstant::pair(p, u, q, w);
+      // Not by a function that returns the pair: gcc would copy it as a whole.
+      const MovingPair pair{
+          state, OverMotion{h}.motion(state, OverMotion::partner(p, v), OverMotion::partner(q, s))};
+      const auto old = history.template read<Law>(records_, k);
+      const Law& law = laws.get(i_.material[k], j_.material[k]);
+      if constexpr (kReaches<Law>) {
+        closed_[k] = law.closed(pair, old);
+        acts_[k] = closed_[k] || Law::breaks(old);
+        if (!acts_[k]) continue;
+      }
+      const auto outcome = law.load(pair, old);
+      of_i_.put(k, Packed::Total::of(outcome.load, outcome.losses()));
+      of_j_.put(k, Packed::Total::of(outcome.load.exchanged(), outcome.losses()));
+      history.template write<Law>(new_records_, k, outcome.history);
+    }
+  }
+
+  struct Items {
+    alignas(64) Vec4 position[kRoom], velocity[kRoom], spin[kRoom];
+    int material[kRoom];
+
+    void put(Index k, const OverMotion::Self& self) {
+      position[k] = self.p, velocity[k] = self.u, spin[k] = self.spin, material[k] = self.material;
+    }
+  };
+
+  Items i_, j_;
+  alignas(64) Vec4 records_[kRoom * kRecords], new_records_[kRoom * kRecords];
+  Side of_i_, of_j_;
+  bool closed_[kRoom], acts_[kRoom];  // of laws that reach
+};
+
+}  // namespace scree

@@ -1,0 +1,163 @@
+// Rows of the serial backend's explicit steps: a contact of two owned particles is evaluated once, for both.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "dem/explicit/pair_batch.hpp"
+#include "dem/search/pair_list.hpp"
+
+namespace scree {
+
+// What contacts do to the partner in whose row a slot is, from when they are evaluated until the row is
+// summed. Places are used again, the last first: rows that are near each other need few.
+template <class Packed>
+class KeptResults {
+ public:
+  // With nothing at any slot.
+  void resize(std::size_t slots) { places_.resize(slots); }
+  // Makes room for `more`.
+  void reserve(Index more) {
+    while (free_count_ < more) {
+      free_.push_back(0);
+      free_[free_count_++] = static_cast<Index>(results_.size());
+      results_.push_back(nothing());
+    }
+  }
+  Packed& put(Index slot) { return results_[places_[slot] = free_[--free_count_]]; }
+  // Adds what was put to the slot, and forgets it.
+  void take(Index slot, Packed& sum) {
+    const Index place = std::exchange(places_[slot], kNothing);
+    sum += results_[place];
+    free_[free_count_] = place, free_count_ += place != kNothing;
+  }
+
+ private:
+  static Packed nothing() { return Packed::of(Packed::Total::nothing()); }
+  static constexpr Index kNothing = 0;  // whose result changes no sum
+  std::vector<Index> places_;           // per slot
+  std::vector<Packed> results_{nothing()};
+  std::vector<Index> free_{0};  // the first free_count_ of them
+  Index free_count_ = 0;
+};
+
+// The contacts of one step, evaluated some rows ahead of the one that is summed.
+template <class Laws>
+class PairSweep {
+ public:
+  // Before a step.
+  void begin(PairList& pairs) {
+    pairs_ = &pairs, reached_ = next_ = 0;
+    results_.resize(pairs.slots);
+  }
+
+  // For i = 0, 1, ...: adds what the contacts at these slots, those of row i, do to i, in this order.
+  template <class Contact, class Sum>
+  void add_row(Index i, Index slot, Index past_slots, const Contact& contact, Sum& sum) {
+    while (i >= reached_) reach(contact);
+    Packed packed = Packed::of(sum);
+    for (; slot < past_slots; ++slot) results_.take(slot, packed);
+    sum = packed.total();
+  }
+
+ private:
+  using Batch = PairBatch<Laws>;
+  using Packed = typename Batch::Packed;
+  using Law = typename Batch::Law;
+
+  // A contact as its first side sees it; mirror: the other's slot, if that may get the image of this.
+  struct Found {
+    Index i, j, slot, mirror;
+    Vec4* records;
+  };
+
+  // Evaluates the next contacts of all: as many as there is room for, which may end within a row.
+  template <class Contact>
+  [[gnu::noinline, gnu::flatten]] void reach(const Contact& contact) {
+    Index found = 0;
+    for (; reached_ < pairs_->rows(); ++reached_) {
+      const auto test = contact.test(contact.walk.self(reached_));
+      for (const Index end = pairs_->offsets[reached_ + 1]; next_ < end; ++next_) {
+        if (found == Batch::kRoom) return evaluate(contact.walk, found);
+        const ListedPair& pair = pairs_->pairs[next_];
+        Vec4* const records = records_of_pair(next_);
+        fetch_ahead(records);
+        found_[found] = {reached_, pair.j, pair.slot, pair.mirror, records};
+        found += test(pair.j);
+      }
+    }
+    evaluate(contact.walk, found);
+  }
+
+  template <class Walk>
+  [[gnu::noinline]] void evaluate(const Walk& walk, Index found) {
+    const HistoryViews& history = walk.in.history;
+    for (Index k = 0; k < found; ++k)
+      batch_.put(k, walk.self(found_[k].i), walk.self(found_[k].j), found_[k].records);
+    batch_.evaluate(found, walk.laws, walk.look, history);
+    results_.reserve(2 * found);
+    Index again = 0;
+    for (Index k = 0; k < found; ++k) {
+      const Found pair = found_[k];
+      if (batch_.acts(k)) results_.put(pair.slot) = batch_.of_i().packed(k);
+      if (batch_.closed(k)) std::copy_n(batch_.records(k), Batch::kRecords, pair.records);
+      if (pair.mirror == ListedPair::kNone || !batch_.acts(k)) continue;
+      if (batch_.is_mirrored(k))
+        results_.put(pair.mirror) = batch_.of_j().packed(k);
+      else
+        found_[again++] = {pair.j, pair.i, pair.mirror, ListedPair::kNone, mirror_records(k, history)};
+    }
+    if (again > 0) evaluate(walk, again);
+  }
+
+  Vec4* records_of_pair(Index pair) { return pairs_->records.data() + Batch::first_record(pair); }
+  // Of the k-th contact, where its other side has what it remembers itself.
+  Vec4* mirror_records(Index k, const HistoryViews& history) {
+    Vec4* const records = history.neighbors + Batch::first_record(found_[k].mirror);
+    if (records->w != history.step) HistoryViews::mirror<Law>(batch_.old_records(k), records);
+    return records;
+  }
+
+  PairList* pairs_ = nullptr;
+  Index reached_ = 0;  // rows whose contacts were evaluated
+  Index next_ = 0;     // pair to look at
+  KeptResults<Packed> results_;
+  Batch batch_;
+  Found found_[Batch::kRoom];
+};
+
+// Brings what the contacts of pairs remember back to the slots.
+template <class Law>
+void leave_records(PairList& pairs, const HistoryViews& history) {
+  constexpr Index kRecords = records_of(Law::kHistory);
+  const Vec4* records = pairs.records.data();
+  for (const ListedPair& pair : pairs.pairs) {
+    std::copy_n(records, kRecords, history.neighbors + std::int64_t{pair.slot} * kRecords);
+    if (pair.has_mirror())
+      if (Vec4* const mirror = history.neighbors + std::int64_t{pair.mirror} * kRecords;
+          mirror->w != history.step)
+        HistoryViews::mirror<Law>(records, mirror);
+    records += kRecords;
+  }
+  pairs.keeps_records = false;
+}
+
+template <class Laws>
+struct PairedRows {
+  static constexpr bool kShared = true;
+  const Index* offsets;  // as of PackedRows
+  PairSweep<Laws>* sweep;
+
+  template <class Test, class Contact, class Sum>
+  void sum_contacts(Index i, const Test&, const Contact& contact, Sum& sum) const {
+    sweep->add_row(i, offsets[i], offsets[i + 1], contact, sum);
+  }
+};
+
+template <class Laws>
+ContactViews<PairedRows<Laws>> paired_views(const ContactViews<PackedRows>& in, PairSweep<Laws>& sweep) {
+  return with_rows(in, PairedRows<Laws>{in.rows.offsets, &sweep});
+}
+
+}  // namespace scree

@@ -1,0 +1,184 @@
+#include "dem/history/kept_contacts.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "dem/history/history_slots.hpp"
+#include "dem/history/shape_contacts.hpp"
+#include "dem/surfaces/surfaces.hpp"
+
+namespace scree {
+namespace {
+
+// The contacts whose keys are wanted. What they remember is nothing but zeros unless there are as many
+// numbers.
+template <class Wanted>
+KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
+  KeptContacts out;
+  out.numbers = numbers;
+  const std::vector<Real> none(static_cast<std::size_t>(out.width()));
+  for (std::int64_t i = 0; i < all.particles(); ++i) {
+    for (std::int64_t c = all.offsets[static_cast<std::size_t>(i)];
+         c < all.offsets[static_cast<std::size_t>(i) + 1]; ++c)
+      if (const std::int64_t key = all.keys[static_cast<std::size_t>(c)]; wanted(key))
+        out.add(key, numbers == all.numbers ? all.values_of(c) : none);
+    out.end_row();
+  }
+  return out;
+}
+
+// Tells contacts with sheets by their keys.
+class SheetKeys {
+ public:
+  explicit SheetKeys(const Model& model) {
+    const SurfaceSet surfaces(model);
+    for (Index s = 0; s < surfaces.placed(); ++s) {
+      const Surface& surface = surfaces.at(s);
+      if (surface.kind == SurfaceKind::mesh &&
+          model.meshes[static_cast<std::size_t>(surface.mesh)].surface->sheet)
+        sheets_.insert(surfaces.number_of(s));
+    }
+  }
+  bool operator()(std::int64_t key) const { return is_surface(key) && sheets_.count(surface_of(key)) > 0; }
+
+ private:
+  std::set<Index> sheets_;
+};
+
+}  // namespace
+
+int kept_numbers(const Model& model, int of_law) {
+  return of_law == 0 && has_sheets(model) ? kSidesAlone : of_law;
+}
+
+namespace {
+
+// Of these contacts those with the surface of this number.
+Index count_with(std::span<const std::int64_t> keys, Index surface) {
+  return static_cast<Index>(std::ranges::count_if(
+      keys, [&](std::int64_t key) { return is_surface(key) && surface_of(key) == surface; }));
+}
+
+}  // namespace
+
+Index KeptContacts::contacts_with(std::int64_t particle, Index surface) const {
+  const auto first = static_cast<std::size_t>(offsets[static_cast<std::size_t>(particle)]);
+  return count_with({keys.data() + first, static_cast<std::size_t>(contacts(particle))}, surface);
+}
+
+Index ShapeContacts::contacts_with(std::int64_t shape, Index surface) const {
+  const auto of_shape = std::ranges::equal_range(shapes, shape);
+  const auto first = static_cast<std::size_t>(of_shape.begin() - shapes.begin());
+  return count_with({keys.data() + first, of_shape.size()}, surface);
+}
+
+void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
+  const auto row = static_cast<std::size_t>(particle);
+  for (std::int64_t k = from.offsets[row]; k < from.offsets[row + 1]; ++k)
+    add(from.keys[static_cast<std::size_t>(k)], from.values_of(k));
+  end_row();
+}
+
+void KeptContacts::order_from(std::size_t contact) {
+  const auto n = static_cast<std::size_t>(width());
+  for (std::size_t k = contact + 1; k < keys.size(); ++k)
+    for (std::size_t at = k; at > contact && keys[at - 1] > keys[at]; --at) {
+      std::swap(keys[at - 1], keys[at]);
+      std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>((at - 1) * n),
+                       values.begin() + static_cast<std::ptrdiff_t>(at * n),
+                       values.begin() + static_cast<std::ptrdiff_t>(at * n));
+    }
+}
+
+void KeptContacts::append(const KeptContacts& of_others) {
+  const std::int64_t before = std::ssize(keys);
+  for (std::int64_t i = 1; i <= of_others.particles(); ++i)
+    offsets.push_back(before + of_others.offsets[static_cast<std::size_t>(i)]);
+  keys.insert(keys.end(), of_others.keys.begin(), of_others.keys.end());
+  values.insert(values.end(), of_others.values.begin(), of_others.values.end());
+}
+
+KeptContacts KeptContacts::rows(std::span<const Index> particles) const {
+  KeptContacts out;
+  out.numbers = numbers;
+  out.offsets.reserve(particles.size() + 1);
+  for (const Index particle : particles) out.add_row(*this, particle);
+  return out;
+}
+
+std::vector<std::int64_t> KeptContacts::counts() const {
+  std::vector<std::int64_t> counts;
+  counts.reserve(offsets.size());
+  for (std::int64_t i = 0; i < particles(); ++i) counts.push_back(contacts(i));
+  return counts;
+}
+
+void KeptContacts::set_counts(std::span<const std::int64_t> counts) {
+  offsets.assign(1, 0);
+  for (const std::int64_t count : counts) offsets.push_back(offsets.back() + count);
+}
+
+double bytes_remembered(int numbers, double slots) {
+  constexpr double kTouching = 6;
+  if (numbers <= 0) return 0;
+  return slots * records_of(numbers) * static_cast<double>(sizeof(Vec4)) +
+         kTouching * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
+}
+
+double bytes_remembered_with_pairs(int numbers) {
+  constexpr double kPairs = 5;  // two slots each
+  return bytes_remembered(numbers) + kPairs * records_of(numbers) * static_cast<double>(sizeof(Vec4));
+}
+
+KeptContacts KeptContacts::without_surfaces() const {
+  return only(*this, numbers, [](std::int64_t key) { return !is_surface(key); });
+}
+
+KeptContacts sides_of(const KeptContacts& contacts, const Model& model, int numbers) {
+  return only(contacts, numbers, SheetKeys(model));
+}
+
+ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers) {
+  const SheetKeys is_of_sheet(model);
+  ShapeContacts out;
+  out.numbers = numbers;
+  for (std::size_t k = 0; k < contacts.keys.size(); ++k)
+    if (is_of_sheet(contacts.keys[k]))
+      out.shapes.push_back(contacts.shapes[k]), out.keys.push_back(contacts.keys[k]);
+  out.values.resize(out.keys.size() * static_cast<std::size_t>(out.width()));
+  return out;
+}
+
+KeptContacts no_contacts(int numbers, std::int64_t particles) {
+  KeptContacts out;
+  out.numbers = numbers;
+  if (numbers != 0) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
+  return out;
+}
+
+KeptContacts deal_out(const Ranks& ranks, const std::vector<KeptContacts>& to) {
+  std::vector<std::vector<std::int64_t>> counts, keys;
+  std::vector<std::vector<Real>> values;
+  KeptContacts arriving;
+  for (const KeptContacts& part : to) {
+    arriving.numbers = part.numbers;
+    counts.push_back(part.counts()), keys.push_back(part.keys), values.push_back(part.values);
+  }
+  arriving.set_counts(ranks.deal_out(counts));
+  arriving.keys = ranks.deal_out(keys), arriving.values = ranks.deal_out(values);
+  return arriving;
+}
+
+KeptContacts in_order(const IdOrder& order, KeptContacts contacts) {
+  if (contacts.numbers == 0) return contacts;
+  const std::vector<std::int64_t> counts = contacts.counts();
+  std::vector<std::int64_t> of_values = counts;
+  for (std::int64_t& count : of_values) count *= contacts.width();
+  contacts.keys = order.apply(std::move(contacts.keys), counts);
+  contacts.values = order.apply(std::move(contacts.values), std::move(of_values));
+  contacts.set_counts(order.apply(counts));
+  return contacts;
+}
+
+}  // namespace scree

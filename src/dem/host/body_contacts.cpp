@@ -1,0 +1,395 @@
+#include "dem/host/body_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "base/countable.hpp"
+#include "dem/surface_contact/wall_items.hpp"
+#include "model/derived/point_bins.hpp"
+#include "partition/halo_plan.hpp"
+
+namespace scree {
+namespace {
+
+// Cells over the places of the surfaces, so that two that can touch are in neighbouring ones.
+SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
+  Vec3 min = placed.empty() ? Vec3{} : placed[0].point, max = min;
+  Real radius = 0;
+  std::vector<StartItem> points;
+  for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
+    const PlacedSurface& s = placed[i];
+    if (s.kind != SurfaceKind::sphere) continue;
+    min = {std::min(min.x, s.point.x), std::min(min.y, s.point.y), std::min(min.z, s.point.z)};
+    max = {std::max(max.x, s.point.x), std::max(max.y, s.point.y), std::max(max.z, s.point.z)};
+    radius = std::max(radius, s.radius);
+    points.push_back({s.point, s.radius, i});
+  }
+  return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
+}
+
+// As the damping of Hertz's law sees them, per placed surface [kg].
+std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfaces) {
+  std::vector<Real> masses;
+  for (Index s = 0; s < surfaces.placed(); ++s)
+    masses.push_back(surfaces.is_on_body(s)
+                         ? model.bodies[static_cast<std::size_t>(surfaces.at(s).carrier)].mass
+                         : kInfinity);
+  return masses;
+}
+
+}  // namespace
+
+Contact without_attraction(Contact contact) {
+  for (KelvinVoigt& law : contact.laws)
+    if (law.attracts()) law = law.without_attraction(), law.tension = true;
+  return contact;
+}
+
+ContactSum make_wall_contact(const Real* sums) {
+  const auto vector = [&](int first) { return Vec3{sums[first], sums[first + 1], sums[first + 2]}; };
+  return {vector(kWallForce), vector(kWallTorque), std::llround(sums[kWallContacts])};
+}
+
+BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain)
+    : model_(model),
+      surfaces_(surfaces),
+      rule_(model),
+      corners_(model, surfaces),
+      period_(subdomain.period()),
+      snap_(subdomain.snap_constant()),
+      kernels_(make_contact_kernels(corners_.with_own_materials(without_attraction(model.contact)))),
+      planes_(wall_planes(model)),
+      entries_(model, subdomain, *kernels_, 0, masses_of_carriers(model, surfaces)),
+      held_(kept_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
+      found_(held_) {}
+
+// Per surface, in order.
+std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
+    std::span<const PlacedSurface> placed, Real skin) const {
+  std::vector<std::vector<Item>> partners(placed.size());
+  if (!rule_.bodies_may_touch()) return partners;
+  const SortedBins bins = bins_of(placed, skin);
+  for_each_shift(period_, [&](Vec3 shift, std::int8_t image) {
+    for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
+      if (placed[i].kind != SurfaceKind::sphere) continue;
+      bins.for_near(placed[i].point - shift, [&](const StartItem& other) {
+        const auto j = static_cast<Index>(other.number);
+        const Vec3 d = placed[i].point - other.position - shift;
+        const Real reach = placed[i].radius + other.radius + skin;
+        const Surface &one = surfaces_.at(i), &two = surfaces_.at(j);
+        if (dot(d, d) < reach * reach && rule_.may_touch(one.carrier, two.carrier) &&
+            model_.contact.law(one.material, two.material).acts())
+          partners[i].push_back({j, image});
+      });
+    }
+  });
+  for (std::vector<Item>& row : partners) std::sort(row.begin(), row.end());
+  return partners;
+}
+
+std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& places, Real skin) const {
+  std::vector<Index> shapes;
+  for (Index s = 0; s < static_cast<Index>(places.placed.size()); ++s)
+    if (places.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
+  corners_.add_near_planes(places, planes_, kMeshSkins * skin, shapes);
+  return shapes;
+}
+
+// Rows of these shapes, in this order, with all that is no shape. Corners go as far as their meshes, and the
+// search for planes near them reaches as far as that for particles near meshes.
+void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
+                                 SurfaceRows& rows) const {
+  std::vector<Vec4> position;
+  Vec3 min, max;
+  Real largest = 0;
+  for (const Index s : shapes) {
+    const bool is_corner = corners_.has(s);
+    const PlacedSurface& shape = places.placed[static_cast<std::size_t>(corners_.surface_of(s))];
+    const Vec3 p =
+        is_corner ? shape.point + places.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
+    const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
+    if (position.empty()) min = max = p;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+    largest = std::max(largest, radius);
+    position.push_back(vec4(p, radius));
+  }
+  const auto n = static_cast<Index>(position.size());
+  const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + skin, 4 * n + 64);
+  std::vector<Index> start(static_cast<std::size_t>(grid.count()) + 1), items(position.size());
+  for (const Vec4& p : position) ++start[static_cast<std::size_t>(grid.nearest(xyz(p))) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (Index i = 0; i < n; ++i) items[next[grid.nearest(xyz(position[i]))]++] = i;
+  const auto may_touch = [&](Index i, Index s) {
+    if (corners_.has(shapes[i])) return surfaces_.at(s).kind == SurfaceKind::plane;
+    return surfaces_.at(s).kind != SurfaceKind::sphere &&
+           rule_.may_touch(carrier_of(shapes[i]), surfaces_.at(s).carrier);
+  };
+  const auto remembered = [&](Index i, Index surface) { return kept_.contacts_with(shapes[i], surface); };
+  build_rows({grid, start, items, position, n, largest}, n,
+             {surfaces_, planes_, places, period_, skin, remembered, may_touch}, rows);
+}
+
+// These shapes, then the copies of partners that they have across periodic sides.
+void BodyContacts::list_items(const std::vector<Index>& shapes,
+                              const std::vector<std::vector<Item>>& partners) {
+  std::map<Item, Index> item_of;
+  items_.clear(), list_.neighbors.clear(), list_.offsets = {0};
+  for (const Index s : shapes) {
+    item_of.emplace(Item{s, kNoShift}, static_cast<Index>(items_.size()));
+    items_.push_back({s, kNoShift});
+  }
+  const std::vector<Item> none;  // of corners
+  for (const Index s : shapes) {
+    for (const Item& partner : corners_.has(s) ? none : partners[s]) {
+      const auto [found, is_new] = item_of.emplace(partner, static_cast<Index>(items_.size()));
+      if (is_new) items_.push_back(partner);
+      list_.neighbors.push_back(found->second);
+    }
+    list_.offsets.push_back(countable(list_.neighbors.size(), "stage neighbors: more neighbours of bodies"));
+  }
+  store_.owned = store_.active = static_cast<Index>(shapes.size());
+  store_.material.clear(), store_.row_key.clear();
+  std::vector<Real> law_radius;
+  for (const Item& item : items_) {
+    const Surface& surface = surfaces_.at(corners_.surface_of(item.surface));
+    const bool is_corner = corners_.has(item.surface), resist = !model_.contact.rolling.empty();
+    store_.material.push_back(surface.material + (is_corner && resist ? model_.contact.materials() : 0));
+    law_radius.push_back(is_corner ? corners_.mesh_of(item.surface).hull->radius : surface.radius);
+    store_.row_key.push_back(row_key(item.surface, item.image));
+  }
+  entries_.set_law_radii(corners_.empty() ? std::vector<Real>{} : std::move(law_radius));
+}
+
+void BodyContacts::build(const SurfacePlaces& places, Real skin) {
+  const std::vector<std::vector<Item>> partners = find_partners(places.placed, skin);
+  const std::vector<Index> all = find_shapes(places, skin);
+  std::vector<Index> near;
+  find_surfaces(places, skin, all, list_.surfaces);
+  const std::vector<Index>& offsets = list_.surfaces.offsets;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (offsets[k + 1] > offsets[k] || (!corners_.has(all[k]) && !partners[all[k]].empty()))
+      near.push_back(all[k]);
+  if (near.size() < all.size()) find_surfaces(places, skin, near, list_.surfaces);
+  list_items(near, partners);
+  place(places, Instant::now, 0);
+  if (held_.exists()) take_contacts(places);
+  has_list_ = true;
+}
+
+// Of the shapes that the list has: what the others remember is of contacts that have ended.
+void BodyContacts::take_contacts(const SurfacePlaces& places) {
+  KeptContacts rows;
+  rows.numbers = kept_.numbers;
+  std::size_t k = 0;
+  for (Index i = 0; i < store_.owned; ++i) {
+    for (; k < kept_.shapes.size() && kept_.shapes[k] <= items_[i].surface; ++k)
+      if (kept_.shapes[k] == items_[i].surface) rows.add(kept_.keys[k], kept_.values_of(k));
+    rows.end_row();
+  }
+  held_.load(rows, store_.owned);
+  held_.take_slots(listed(places));
+}
+
+void BodyContacts::leave_list(const SurfacePlaces& places) {
+  if (!has_list_ || !held_.exists()) return;
+  kept_ = contacts(places);
+  has_list_ = false;
+}
+
+void BodyContacts::load(const ShapeContacts& contacts) {
+  kept_ = contacts.numbers == held_.numbers() ? contacts : ShapeContacts{};
+  kept_.numbers = held_.numbers();
+  has_list_ = false;
+}
+
+ShapeContacts BodyContacts::contacts(const SurfacePlaces& places) {
+  if (!has_list_) return kept_;
+  ShapeContacts out;
+  out.numbers = held_.numbers();
+  if (!held_.exists()) return out;
+  place(places, Instant::now, 0);
+  const KeptContacts rows = held_.contacts(listed(places));
+  for (Index i = 0; i < store_.owned; ++i)
+    out.shapes.insert(out.shapes.end(), static_cast<std::size_t>(rows.contacts(i)), items_[i].surface);
+  out.keys = rows.keys, out.values = rows.values;
+  return out;
+}
+
+void BodyContacts::accept() {
+  if (!has_step_) return;
+  std::swap(held_, found_);
+  has_step_ = false;
+}
+
+void BodyContacts::reopen() { std::swap(held_, found_); }
+
+void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
+  const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
+  store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
+  for (const Item& item : items_) {
+    const PlacedSurface& s = (at_start ? places.start : places.placed)[corners_.surface_of(item.surface)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(carrier_of(item.surface))];
+    const bool is_corner = corners_.has(item.surface);
+    const PlacedCorner at = is_corner ? placed_corner(s, places.frames[s.frame],
+                                                      corners_.position_of(item.surface), at_start, snap_)
+                                      : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
+    store_.position.push_back(vec4(at.point + image_shift(item.image, period_), s.radius));
+    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.travel : at.velocity, body.mass));
+    store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
+    arm_.push_back(at.arm);
+  }
+}
+
+// Leaves the items at its start.
+void BodyContacts::place_start(const SurfacePlaces& places, Real h) {
+  place(places, Instant::now, h);
+  mean_spin_ = store_.angular_velocity;
+  place(places, Instant::start, 0);
+  start_position_ = store_.position, start_velocity_ = store_.velocity;
+  start_spin_ = store_.angular_velocity;
+}
+
+StepStart BodyContacts::step_start(Real h) const {
+  return {start_position_.data(), start_velocity_.data(), h, model_.integrator.resolve_events};
+}
+
+ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const {
+  ContactViews<PackedRows> views =
+      entries_.views(store_, store_.position, store_.velocity, {list_.offsets.data(), list_.neighbors.data()},
+                     list_.surfaces);
+  views.history = history, views.spin = store_.angular_velocity.data();
+  return views;
+}
+
+void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
+  const bool in_step = h > 0 && held_.exists();
+  if (!in_step) h = 0;
+  if (in_step) found_ = held_, has_step_ = true;
+  const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
+  place(places, Instant::now, h);
+  entries_.find_loads(
+      places, store_, list_.surfaces,
+      {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
+  loads_.resize(static_cast<std::size_t>(store_.owned));
+  kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
+  for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = corners_.surface_of(items_[i].surface);
+  if (in_step) found_.accepted();
+}
+
+void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
+  place_start(places, h);
+  place(places, Instant::now, 0);
+  steps_.resize(static_cast<std::size_t>(store_.owned));
+  with_shapes_.resize(list_.neighbors.size());
+  const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
+  const StepStart start = step_start(h);
+  if (held_.exists()) found_ = held_, has_step_ = true;
+  if (model_.rotates()) {
+    RubbingStart rubbing{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
+    entries_.find_rubs(places, store_, list_.surfaces, rubbing, found_.views());
+    rubbing.on_bodies = entries_.rubs();
+    kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data(), to);
+  } else {
+    entries_.find_steps(places, store_, list_.surfaces, start, found_.views());
+    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
+  }
+  if (held_.exists()) found_.accepted();
+  for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
+  find_pairs();
+}
+
+// Two shapes see their contact both; that of the lower number counts. Shapes touch meshes of bodies, too.
+void BodyContacts::find_pairs() {
+  pairs_.clear();
+  const auto touched = [&](Index item, Vec3 towards) -> TouchedBody {
+    return {carrier_of(items_[item].surface), arm_[item] + store_.position[item].w * towards};
+  };
+  for (Index i = 0; i < store_.owned; ++i)
+    for (Index k = 0; k < steps_[i].partners; ++k) {
+      const ShapeContact& contact = with_shapes_[list_.offsets[i] + k];
+      if (items_[contact.other].surface < items_[i].surface) continue;
+      const Vec3 towards = -contact.slopes.normal;
+      pairs_.add(touched(i, towards), touched(contact.other, -towards), contact.slopes);
+    }
+  entries_.for_each_slope(list_.surfaces, [&](Index item, Index surface, Vec3 place, const auto& slopes) {
+    if (surfaces_.is_on_body(surface))
+      pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).carrier, place}, slopes);
+  });
+}
+
+void BodyContacts::add_sums(std::vector<InstantSums>& to) const {
+  for (const BodyLoad& load : loads_)
+    if (load.sums.contacts > 0) to.push_back(load.sums);
+  const std::vector<InstantSums> of_surfaces = entries_.load_sums(list_.surfaces);
+  to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
+}
+
+void BodyContacts::add_sums(std::vector<StepSums>& to) const {
+  for (const BodyStep& step : steps_)
+    if (step.sums.contacts > 0) to.push_back(step.sums);
+  const std::vector<StepSums> of_surfaces =
+      model_.rotates() ? entries_.rub_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
+  to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
+}
+
+BodyContactTotals BodyContacts::totals() const {
+  BodyContactTotals sum;
+  for (const BodyLoad& load : loads_) {
+    sum.loss_power += load.loss, sum.elastic_energy += load.energy, sum.pairs += load.pairs;
+    sum.springs.add(load.springs, 1), sum.losses.add(load.losses);
+  }
+  return sum;
+}
+
+BodyStep BodyContacts::step_totals() const {
+  BodyStep sum;
+  for (const BodyStep& step : steps_) sum.books.add(step.books, 1), sum.friction += step.friction;
+  return sum;
+}
+
+void BodyContacts::book_loads(const SurfacePlaces& places, Real h) {
+  entries_.book_loads(places, store_, list_.surfaces, h);
+}
+
+void BodyContacts::book_steps(const SurfacePlaces& places) {
+  if (model_.rotates())
+    entries_.book_rubs(places, store_, list_.surfaces);
+  else
+    entries_.book_steps(places, store_, list_.surfaces);
+}
+
+std::vector<TriangleSums> BodyContacts::triangle_sums() const {
+  return entries_.triangle_sums(list_.surfaces);
+}
+
+ContactSum BodyContacts::on_wall(int wall) {
+  Real sums[kWallTerms];
+  kernels_->wall_sums(views(held_.views().only_read()), store_.owned, {wall, model_.space.min, period_},
+                      Ranks(), sums);
+  return make_wall_contact(sums);
+}
+
+std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& places) {
+  const HistoryViews history = held_.views().only_read();
+  const std::vector<ShownContact> of_surfaces = entries_.shown(places, store_, list_.surfaces, history);
+  std::vector<Index> counts(static_cast<std::size_t>(store_.owned));
+  std::vector<ContactLine> lines =
+      contact_lines(*kernels_, views(history),
+                    {store_.row_key.data(), of_surfaces.data(), model_.space.min, period_}, counts);
+  // Items are called by their numbers among the placed surfaces.
+  const auto id_of_shape = [&](GlobalId item) {
+    return surface_id(surfaces_.number_of(corners_.surface_of(static_cast<Index>(item))));
+  };
+  for (ContactLine& line : lines) {
+    line.first = id_of_shape(line.first);
+    if (line.second < kFirstSurfaceId) line.second = id_of_shape(line.second);
+  }
+  return lines;
+}
+
+}  // namespace scree

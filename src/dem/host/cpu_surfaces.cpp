@@ -1,0 +1,200 @@
+#include "dem/host/cpu_surfaces.hpp"
+
+#include <utility>
+
+#include "base/for_each.hpp"
+#include "dem/surface_contact/mesh_step_touches.hpp"
+
+namespace scree {
+namespace {
+
+// Per surface that something touches.
+template <class Sums, class Contact>
+std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRows& rows,
+                          const SurfaceNumbers& numbers) {
+  std::vector<Sums> sums;
+  for (const Index entry : rows.by_surface) {
+    if (!contacts[entry].touches) continue;
+    const Index surface = numbers.placed(rows.surfaces[entry]);
+    if (sums.empty() || sums.back().surface != surface) sums.emplace_back().surface = surface;
+    sums.back().add_contact(contacts[entry]);
+  }
+  return sums;
+}
+
+// The planes that particles stand on may be anywhere in memory: each is asked for some groups before it is
+// looked at.
+template <bool kReaches, bool kSheets>
+void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
+  constexpr Index kAhead = 8;
+  const SurfaceViews& in = item.in;
+  for (Index g = 0; g < groups; ++g) {
+    if (const Index ahead = g + kAhead; ahead < groups && item.standings[ahead].part >= 0) {
+      const PlacedSurface& surface = in.placed[in.surface_of(in.meshes.groups[ahead].entry)];
+      __builtin_prefetch(&in.meshes.meshes[in.frames[surface.frame].mesh].parts[item.standings[ahead].part]);
+    }
+    item(g);
+  }
+}
+
+}  // namespace
+
+CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels,
+                         Real reach, std::vector<Real> masses)
+    : kernels_(kernels),
+      masses_(std::move(masses)),
+      planes_(wall_planes(model)),
+      reach_(reach),
+      sheets_(has_sheets(model)),
+      box_{model.space.min, subdomain.period()},
+      works_(model),
+      work_sums_(works_.sums({})),
+      moves_(model.rotates()) {}
+
+SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& places, const ParticleStore& store,
+                                      const SurfaceRows& rows, const SurfaceLook& look) const {
+  return {look.position,
+          look.velocity,
+          store.material.data(),
+          rows.entries(),
+          places.placed.data(),
+          places.frames.data(),
+          numbers(),
+          {rows.groups.data(), rows.triangles.data(), places.meshes.data()},
+          touches_.data(),
+          touches_before_.data(),
+          box_,
+          look.history,
+          records_of(kernels_.history()),
+          look.spin,
+          look.h,
+          reach_,
+          masses_.empty() ? nullptr : masses_.data(),
+          law_radii()};
+}
+
+void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
+                             const SurfaceLook& look) {
+  loads_.resize(rows.surfaces.size());
+  if (!rows.groups.empty()) {
+    touches_.resize(rows.surfaces.size());
+    const SurfaceViews views = entry_views(places, store, rows, look);
+    const auto groups = static_cast<Index>(rows.groups.size());
+    if (reach_ > 0 && sheets_)
+      touch_ahead(MeshTouchItem<true, true>{views, touches_.data(), rows.standings.data()}, groups);
+    else if (reach_ > 0)
+      touch_ahead(MeshTouchItem<true, false>{views, touches_.data(), rows.standings.data()}, groups);
+    else if (sheets_)
+      touch_ahead(MeshTouchItem<false, true>{views, touches_.data(), rows.standings.data()}, groups);
+    else
+      touch_ahead(MeshTouchItem<false, false>{views, touches_.data(), rows.standings.data()}, groups);
+  }
+  kernels_.surface_loads(entry_views(places, store, rows, look), static_cast<Index>(rows.by_surface.size()),
+                         loads_.data());
+}
+
+void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
+                                  const PlacedSurface* start_placed) {
+  const auto groups = static_cast<Index>(rows.groups.size());
+  if (sheets_)
+    for_each(Serial{}, groups,
+             MeshStepTouchItem<true>{views, start.position, start_placed, touches_.data(),
+                                     touches_before_.data()});
+  else
+    for_each(Serial{}, groups,
+             MeshStepTouchItem<false>{views, start.position, start_placed, touches_.data(),
+                                      touches_before_.data()});
+}
+
+void CpuSurfaces::make_room(const SurfaceRows& rows) {
+  if (!rows.groups.empty())
+    touches_.resize(rows.surfaces.size()), touches_before_.resize(rows.surfaces.size());
+}
+
+void CpuSurfaces::find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             const StepStart& start, const HistoryViews& history) {
+  steps_.resize(rows.surfaces.size()), make_room(rows);
+  const SurfaceViews views =
+      entry_views(places, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
+  touch_over_step(views, rows, start, places.start.data());
+  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
+                         steps_.data());
+}
+
+void CpuSurfaces::find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                            const RubbingStart& start, const HistoryViews& history) {
+  rubs_.resize(rows.surfaces.size()), make_room(rows);
+  const SurfaceViews views =
+      entry_views(places, store, rows,
+                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  touch_over_step(views, rows, start.step, places.start.data());
+  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
+                        rubs_.data());
+}
+
+std::vector<InstantSums> CpuSurfaces::load_sums(const SurfaceRows& rows) const {
+  return sums_of<InstantSums>(loads_, rows, numbers());
+}
+std::vector<StepSums> CpuSurfaces::step_sums(const SurfaceRows& rows) const {
+  return sums_of<StepSums>(steps_, rows, numbers());
+}
+std::vector<StepSums> CpuSurfaces::rub_sums(const SurfaceRows& rows) const {
+  return sums_of<StepSums>(rubs_, rows, numbers());
+}
+
+std::vector<ShownContact> CpuSurfaces::shown(const SurfacePlaces& places, const ParticleStore& store,
+                                             const SurfaceRows& rows, const HistoryViews& history) const {
+  std::vector<ShownContact> shown(rows.surfaces.size());
+  const SurfaceViews views =
+      entry_views(places, store, rows,
+                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  kernels_.shown_surfaces(views, static_cast<Index>(rows.by_surface.size()), loads_.data(), shown.data());
+  return shown;
+}
+
+std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) const {
+  return scree::triangle_sums({rows.groups, rows.surfaces, touches_, loads_}, numbers());
+}
+
+template <class Works>
+void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                       const Works& works) {
+  if (!works_.exist()) return;
+  struct Add {
+    static void add(std::int64_t& word, std::int64_t piece) { word += piece; }
+  };
+  const TriangleWorkTable table{works_.first().data(), works_.wear().empty() ? nullptr : works_.wear().data(),
+                                works_.materials()};
+  if (!terms_.take(static_cast<std::int64_t>(rows.surfaces.size())))
+    for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
+  for_each(
+      Serial{}, static_cast<Index>(rows.groups.size()),
+      TriangleBookItem<Works, Add>{entry_views(places, store, rows, {}), table, works, work_sums_.data()});
+}
+
+void CpuSurfaces::book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             Real h) {
+  book(places, store, rows, ExplicitWorks{loads_.data(), h, moves_});
+}
+
+void CpuSurfaces::book_steps(const SurfacePlaces& places, const ParticleStore& store,
+                             const SurfaceRows& rows) {
+  book(places, store, rows, ImplicitWorks{steps_.data()});
+}
+
+void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& store,
+                            const SurfaceRows& rows) {
+  book(places, store, rows, ImplicitRubbingWorks{rubs_.data()});
+}
+
+ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
+                                            const std::vector<Vec4>& velocity, const PackedRows& neighbors,
+                                            const SurfaceRows& rows) const {
+  ContactViews<PackedRows> views{position.data(), velocity.data(),     store.material.data(),
+                                 neighbors,       rows.offsets.data(), rows.surfaces.data(),
+                                 numbers(),       loads_.data(),       steps_.data()};
+  views.law_radius = law_radii();
+  return views;
+}
+
+}  // namespace scree

@@ -1,0 +1,106 @@
+// Contacts with placed surfaces on the host: of the serial backend's particles, and of the shapes of bodies.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "dem/laws/contact_kernels.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "dem/reports/triangle_works.hpp"
+#include "dem/search/surface_rows.hpp"
+#include "dem/surfaces/triangle_sums.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+class CpuSurfaces {
+ public:
+  // reach, masses: SurfaceViews; no masses: null.
+  CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels, Real reach,
+              std::vector<Real> masses = {});
+  // Radii of the items that laws see in place of the items' own; none: their own [m].
+  void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
+  SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
+
+  // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
+  // views().
+  void find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
+                  const SurfaceLook& look);
+  // The same over an implicit step, with the particles of the store; history: with what contacts will
+  // remember if the step is accepted.
+  void find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                  const StepStart& start, const HistoryViews& history);
+  // And where contacts rub.
+  void find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                 const RubbingStart& start, const HistoryViews& history);
+  // What these sum to, per surface that something touches.
+  std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
+  std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
+  std::vector<StepSums> rub_sums(const SurfaceRows& rows) const;
+  // Calls visit(particle, placed surface, place where they touch from the centre of what carries it, slopes)
+  // for the contacts over a step that were found last.
+  template <class Visit>
+  void for_each_slope(const SurfaceRows& rows, const Visit& visit) const {
+    for (const Index entry : rows.by_surface) {
+      const auto show = [&](const auto& contact, Vec3 place) {
+        if (contact.touches)
+          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place,
+                slopes_of(contact.contact));
+      };
+      if (moves_)
+        show(rubs_[entry], rubs_[entry].arm + rubs_[entry].radius * rubs_[entry].contact.normal.normal);
+      else
+        show(steps_[entry], steps_[entry].arm);
+    }
+  }
+  // Of the last find_loads(), which looked at the store's particles at an instant; per entry.
+  std::vector<ShownContact> shown(const SurfacePlaces& places, const ParticleStore& store,
+                                  const SurfaceRows& rows, const HistoryViews& history) const;
+  // Of the last find_loads().
+  std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
+  // Books at the triangles what the contacts found last have lost over a step that is closed: the explicit
+  // one of length h, or the implicit one.
+  void book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, Real h);
+  void book_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
+  void book_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
+  std::vector<std::int64_t> works() const {
+    return works_.exist() ? works_.words(work_sums_) : std::vector<std::int64_t>{};
+  }
+  void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
+  const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
+
+  // What items see of particles at these places, with the contacts found last.
+  ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,
+                                 const std::vector<Vec4>& velocity, const PackedRows& neighbors,
+                                 const SurfaceRows& rows) const;
+
+ private:
+  const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
+  SurfaceViews entry_views(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                           const SurfaceLook& look) const;
+  template <class Works>
+  void book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+            const Works& works);
+  void make_room(const SurfaceRows& rows);  // for the contacts with meshes
+  // These, at both ends of a step that began with the surfaces there.
+  void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
+                       const PlacedSurface* start_placed);
+
+  const ContactKernels& kernels_;
+  std::vector<Real> masses_, law_radii_;
+  std::vector<WallPlane> planes_;
+  Real reach_;  // [m]
+  bool sheets_;
+  PeriodicBox box_;
+  std::vector<MeshTouch> touches_;  // per entry; empty without meshes
+  std::vector<MeshTouchBefore> touches_before_;
+  std::vector<SurfaceLoad> loads_;  // per entry
+  std::vector<SurfaceStep> steps_;
+  std::vector<SurfaceRub> rubs_;
+  TriangleWorks works_;
+  std::vector<TriangleWork> work_sums_;
+  TermCount terms_;
+  bool moves_;  // whether particles rotate
+};
+
+}  // namespace scree

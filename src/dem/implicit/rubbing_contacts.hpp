@@ -1,0 +1,231 @@
+// Contacts that rub, over an implicit step: what a walk sees of them, what the step solves with, and what
+// they add to the books. One text for the CPU and CUDA.
+#pragma once
+
+#include <cstdint>
+
+#include "dem/contact/contact_walk.hpp"
+#include "dem/contact/system_items.hpp"
+#include "dem/implicit/step_items.hpp"
+#include "physics/step_friction.hpp"
+
+namespace scree {
+
+// Limits of the mean force over the step that stay what they are while it is solved, at the list's slots and
+// at the entries of the surfaces [N]; negative: there was no contact. Null: limits follow from the normal
+// forces.
+struct FrozenLimits {
+  Real *neighbors = nullptr, *surfaces = nullptr;
+};
+
+struct SurfaceRub;
+
+// Where a step started, and how the particles turn within it; all items.
+struct RubbingStart {
+  StepStart step;
+  const Vec4* spin;       // at the start
+  const Vec4* mean_spin;  // over the step
+  FrozenLimits frozen;
+  const SurfaceRub* on_bodies;  // per entry of the surfaces: what those on bodies do, once it was found
+};
+
+// A contact over an implicit step with all that a law with friction sees of it.
+struct RubbingPath : ContactPath {
+  static constexpr Index kWall = -1;
+  ContactMotion motion;
+  Real leverage0;
+  Real curvature = 0;         // how far the normal turns by the way of i's centre across it [1/m]
+  Vec3 velocity0, velocity1;  // of i relative to j [m/s]
+  Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
+  Vec3 slide;                 // velocity of j's surface at the end where that runs along itself [m/s]
+  Index i, j;                 // items; j: kWall
+  std::int64_t slot;          // of the list, or of the surfaces
+  Real frozen_limit = -1;
+};
+
+// The look over an implicit step of laws that move; the pair is a RubbingPath.
+struct OverRubbingStep {
+  RubbingStart start;
+
+  struct Self : OverStep::Self {
+    Vec4 mean_spin;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {OverStep{start.step}.self(in, i), start.mean_spin[i]};
+  }
+  // With frozen limits what has parted since then still rubs.
+  template <class Rows>
+  SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
+    return [&in, &self, this](Index j) {
+      return start.frozen.neighbors != nullptr || touch(self.p, in.position[j]) ||
+             touch(self.p0, start.step.position[j]);
+    };
+  }
+  template <class Rows>
+  SCREE_HD RubbingPath pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    RubbingPath out{};
+    static_cast<ContactPath&>(out) = OverStep{start.step}.pair(in, self, j);
+    const Vec4 q = in.position[j];
+    const ContactGeometry end = sphere_pair(xyz(self.p) - xyz(q), self.p.w + q.w);
+    const TurningPartner one = partner(self.p, self.mean_spin), other = partner(q, start.mean_spin[j]);
+    out.motion = sphere_motion(end, out.travel, one, other, start.step.h);
+    out.leverage0 = out.motion.leverage * end.distance / (self.p.w + q.w - out.step.overlap0);
+    out.curvature = end.scale;
+    return finish(in, out, one, other, self.i, j);
+  }
+  template <class Rows>
+  SCREE_HD RubbingPath wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    RubbingPath out{};
+    static_cast<ContactPath&>(out) = OverStep{start.step}.wall(in, self, plane);
+    const TurningPartner one = partner(self.p, self.mean_spin);
+    out.motion = face_motion(wall_pair(self.p, plane), plane.normal, out.travel, one, {}, start.step.h);
+    out.leverage0 = 1;
+    return finish(in, out, one, {}, self.i, RubbingPath::kWall);
+  }
+  SCREE_HD void at_slot(RubbingPath& path, std::int64_t slot) const {
+    path.slot = slot;
+    if (start.frozen.neighbors != nullptr) path.frozen_limit = start.frozen.neighbors[slot];
+  }
+  SCREE_HD void at_entry(RubbingPath& path, Index entry) const {
+    path.slot = entry;
+    if (start.frozen.surfaces != nullptr) path.frozen_limit = start.frozen.surfaces[entry];
+  }
+  SCREE_HD static bool closed(const RubbingPath& path) {
+    return OverStep::closed(path) || path.frozen_limit > 0;
+  }
+
+ private:
+  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
+  template <class Rows>
+  SCREE_HD RubbingPath finish(const ContactViews<Rows>& in, RubbingPath out, const TurningPartner& one,
+                              const TurningPartner& other, Index i, Index j) const {
+    out.turning = start.step.h * (one.arm * one.spin + other.arm * other.spin);
+    out.i = i, out.j = j;
+    out.velocity0 = xyz(start.step.velocity[i]), out.velocity1 = xyz(in.velocity[i]);
+    if (j == RubbingPath::kWall) return out;
+    out.velocity0 -= xyz(start.step.velocity[j]), out.velocity1 -= xyz(in.velocity[j]);
+    return out;
+  }
+};
+
+// What the step solves with, of one contact.
+struct RubbingContact {
+  StepContact normal;
+  StepRub rub;
+  Vec3 normal0;
+  Real leverage0, leverage;
+  Real curvature;  // RubbingPath
+  std::int64_t slot;
+  bool acts;   // else nothing above has a meaning
+  bool lasts;  // at the end of the step: the history is that of a contact
+  ContactHistory history;
+};
+
+// How fast both partners turn at one end of a step, each spin times its arm; even [m/s]. Asked where a law
+// has a dashpot: turning(start), turning(end).
+template <class Law, class Turning>
+SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, const ContactHistory& old,
+                                        bool resolve_events, const Turning& turning) {
+  RubbingContact out{};
+  out.slot = c.slot;
+  out.acts = OverRubbingStep::closed(c), out.lasts = c.step.acts_at_end();
+  if (!out.acts) return out;
+  const auto normal = law.normal.of_pair(c.size);
+  out.normal = StepContactOf{resolve_events}.of(normal, c);
+  out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
+  out.curvature = c.curvature;
+  RubbingStep step{c.step,
+                   c.motion,
+                   c.leverage0,
+                   {},
+                   {},
+                   c.size,
+                   start_force(normal, c.step),
+                   out.normal.end_force,
+                   out.normal.step.force,
+                   c.frozen_limit};
+  if (law.tangential.damping_ratio > 0) {
+    const auto rate = [](Real leverage, Vec3 velocity, Vec3 both, Vec3 across_normal) {
+      return across(leverage * velocity - cross(both, across_normal), across_normal);
+    };
+    step.slip_rate0 = rate(c.leverage0, c.velocity0, turning(false), c.normal0);
+    step.slip_rate1 = rate(c.motion.leverage, c.velocity1, turning(true), c.normal1);
+  }
+  out.rub = step_rub(law, step, old.spring);
+  out.history.spring = out.rub.spring;
+  return out;
+}
+
+struct RubbingContactOf {
+  RubbingStart start;
+  const Vec4* spin;  // at the end
+
+  template <class Law>
+  SCREE_HD RubbingContact operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
+    return rubbing_contact(law, c, old, start.step.resolve_events, [&](bool at_end) {
+      const Vec4* spins = at_end ? spin : start.spin;
+      Vec3 turning = c.motion.arm_i * xyz(spins[c.i]);
+      if (c.j != RubbingPath::kWall) turning = turning + c.motion.arm_j * xyz(spins[c.j]);
+      return turning;
+    });
+  }
+  template <class Views>
+  SCREE_HD const RubbingContact* stored(const Views&, Index entry) const;
+};
+
+// What it adds to the energy ledger, and the history.
+struct RubbingBooks : ContactBooks {
+  Real friction;  // of what is dissipated [J]
+  bool acts, lasts;
+  ContactHistory history;
+};
+template <class Law>
+SCREE_HD RubbingBooks rubbing_books(const Law& law, const RubbingPath& c, const RubbingContact& at,
+                                    bool resolve_events) {
+  if (!at.acts) return {{}, 0, false, false, {}};
+  RubbingBooks out{StepBooksOf{{resolve_events}}(law, c), 0, true, at.lasts, at.history};
+  const StepRub& rub = at.rub;
+  const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
+  const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
+  const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel - c.step.h * c.slide));
+  const Real lost = rub.losses.sum();
+  out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
+  out.friction = lost;
+  return out;
+}
+
+struct RubbingBooksOf {
+  RubbingContactOf contact;
+
+  template <class Law>
+  SCREE_HD RubbingBooks operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
+    return rubbing_books(law, c, contact(law, c, old), contact.start.step.resolve_events);
+  }
+  template <class Views>
+  SCREE_HD const RubbingBooks* stored(const Views&, Index entry) const;
+};
+
+// One contact of a particle with a surface on a body over the step; evaluated once, for both.
+struct SurfaceRub {
+  bool touches;  // else nothing below has a meaning
+  RubbingContact contact;
+  RubbingBooks books;
+  Vec3 arm;          // from the body's centre to the surface's, or to where they touch, at the end [m]
+  Real radius;       // of the surface; 0 of all but spheres [m]
+  Vec3 contact_arm;  // from the surface's point to where they touch, at the end; of a sphere zero [m]
+  Vec3 slide;        // RubbingPath
+};
+
+template <class Views>
+SCREE_HD const RubbingContact* RubbingContactOf::stored(const Views&, Index entry) const {
+  const SurfaceRub& at = start.on_bodies[entry];
+  return at.touches ? &at.contact : nullptr;
+}
+template <class Views>
+SCREE_HD const RubbingBooks* RubbingBooksOf::stored(const Views&, Index entry) const {
+  const SurfaceRub& at = contact.start.on_bodies[entry];
+  return at.touches ? &at.books : nullptr;
+}
+
+}  // namespace scree

@@ -1,0 +1,226 @@
+// What happens for one particle over an implicit step in which contacts rub: forces and torques, Newton
+// matrix, energy books. One text for the CPU and CUDA.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "dem/implicit/rubbing_matrix.hpp"
+
+namespace scree {
+
+template <class Laws, class Rows>
+using RubbingWalk = ContactWalk<Laws, Rows, OverRubbingStep>;
+
+// Of the particles' rotation; forces: see StepForces.
+struct StepTorques {
+  Vec3 *start, *step, *end;  // about the centre [N m]
+};
+
+// What contacts add to the forces on one of their particles; moments over its radius.
+struct RubbingSums {
+  Vec3 step_force, end_force;            // [N]
+  Vec3 start_turn, step_turn, end_turn;  // [N]
+  Real magnitude = 0;                    // [N]
+
+  SCREE_HD static RubbingSums of(const RubbingContact& c) {
+    const Vec3 n = c.normal.normal;
+    return {c.normal.step.force * n - c.leverage * c.rub.step,
+            c.normal.end_force * n - c.leverage * c.rub.end,
+            cross(c.normal0, c.rub.start),
+            cross(n, c.rub.step),
+            cross(n, c.rub.end),
+            std::abs(c.normal.step.force) + norm(c.rub.step)};
+  }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static RubbingSums nothing() {
+    constexpr Real z = -0.0;
+    constexpr Vec3 zero{z, z, z};
+    return {zero, zero, zero, zero, zero, z};
+  }
+  SCREE_HD RubbingSums& operator+=(const RubbingSums& part) {
+    step_force += part.step_force, end_force += part.end_force;
+    start_turn += part.start_turn, step_turn += part.step_turn, end_turn += part.end_turn;
+    magnitude += part.magnitude;
+    return *this;
+  }
+};
+
+// Force, torque and Newton matrix row of particle i.
+template <class Laws, class Rows>
+struct RubbingSystemItem {
+  RubbingWalk<Laws, Rows> walk;
+  Vec3 gravity;
+  NewtonWeights weights;
+  StepForces out;
+  StepTorques torques;
+  RubbingMatrix matrix;
+  // Largest 2 K h^2 / m of the contacts that item i has evaluated, with shared rows those of other particles:
+  // what counts is the largest of all.
+  Real* sharpness;
+
+  using Self = typename RubbingWalk<Laws, Rows>::Self;
+  struct Total {
+    RubbingSums sums;
+    Real sharpest = 0;
+    Index entries = 0;  // in the row of the matrix
+  };
+
+  SCREE_HD void operator()(Index i) const {
+    const Self self = walk.self(i);
+    Total total = weight(self);
+    add_neighbors(self, total);
+    finish(self, total);
+  }
+
+  // Its parts, in this order.
+  SCREE_HD Total weight(const Self& self) const {
+    const Vec3 force = walk.in.velocity[self.i].w * gravity;
+    return {{force, force, {}, {}, {}, norm(force)}};
+  }
+  SCREE_HD_CALLER
+  SCREE_HD void add_neighbors(const Self& self, Total& total) const {
+    if constexpr (kShared<Rows>) {
+      total.entries = walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self),
+                                                SharedContact{*this, total.sharpest}, total.sums);
+    } else {
+      walk.neighbors(self, contact_of(), [&](const RubbingContact& c, Index j) {
+        total.sums += take(c, self.i, j, total.entries++, total.sharpest);
+      });
+    }
+  }
+  SCREE_HD void finish(const Self& self, Total& total) const {
+    const Index i = self.i;
+    RubbingSums& sums = total.sums;
+    Index surfaces = 0;
+    walk.surfaces(self, contact_of(), [&](const RubbingContact& c, Index surface) {
+      sums += RubbingSums::of(c), sharpen(c, i, total.sharpest);
+      const Index placed = walk.in.numbers.at_rest(surface) ? RubbingPath::kWall : static_cast<Index>(c.slot);
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = RubbingEntry::of(c, weights, placed);
+    });
+    const Real radius = walk.in.position[i].w;
+    matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;
+    out.step_force[i] = sums.step_force, out.end_force[i] = sums.end_force;
+    out.magnitude[i] = sums.magnitude;
+    torques.start[i] = radius * sums.start_turn, torques.step[i] = radius * sums.step_turn;
+    torques.end[i] = radius * sums.end_turn;
+    sharpness[i] = total.sharpest;
+  }
+
+ private:
+  // Evaluates contacts of any row; k: counts those of the row.
+  struct SharedContact {
+    const RubbingSystemItem& item;
+    Real& sharpest;
+
+    SCREE_HD RubbingSums operator()(Index i, Index j, std::int64_t slot, Index k) const {
+      return item.take(item.walk.contact_at(item.contact_of(), i, j, slot), i, j, k, sharpest);
+    }
+    SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
+  };
+
+  SCREE_HD RubbingContactOf contact_of() const { return {walk.look.start, walk.in.spin}; }
+  // The k-th contact found in row i becomes an entry of the matrix. Returns what it adds.
+  SCREE_HD RubbingSums take(const RubbingContact& c, Index i, Index j, Index k, Real& sharpest) const {
+    const std::int64_t slot = walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride();
+    if (!c.acts) {
+      matrix.entries.put_none(slot);
+      return RubbingSums::nothing();
+    }
+    matrix.entries.put(slot, RubbingEntry::of(c, weights, j)), sharpen(c, i, sharpest);
+    return RubbingSums::of(c);
+  }
+  SCREE_HD void sharpen(const RubbingContact& c, Index i, Real& sharpest) const {
+    const Real h = walk.look.start.step.h;
+    const Real sharp = 2 * c.normal.step.stiffness * h * h / walk.in.velocity[i].w;
+    sharpest = sharp > sharpest ? sharp : sharpest;
+  }
+};
+
+// Where the books of an implicit step in which contacts rub go; friction: of contact [J].
+struct RubbingBooksTo {
+  Real *contact, *integrator, *friction;
+};
+
+// What contacts add to them, for a particle's share of each.
+struct RubbingBookSums {
+  Real dissipated = 0, integrator = 0, friction = 0;  // [J]
+
+  SCREE_HD static RubbingBookSums of(const RubbingBooks& one, Real share) {
+    return {share * one.dissipated, share * one.integrator, share * one.friction};
+  }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static RubbingBookSums nothing() { return {-0.0, -0.0, -0.0}; }
+  SCREE_HD RubbingBookSums& operator+=(const RubbingBookSums& part) {
+    dissipated += part.dissipated, integrator += part.integrator, friction += part.friction;
+    return *this;
+  }
+};
+
+// Books particle i's share of its contacts over an accepted step, and stores what they remember.
+template <class Laws, class Rows>
+struct RubbingBooksItem {
+  RubbingWalk<Laws, Rows> walk;
+  RubbingBooksTo to;
+
+  using Self = typename RubbingWalk<Laws, Rows>::Self;
+
+  SCREE_HD void operator()(Index i) const {
+    const Self self = walk.self(i);
+    RubbingBookSums sum;
+    add_neighbors(self, sum);
+    finish(self, sum);
+  }
+
+  // Its parts, in this order.
+  SCREE_HD_CALLER
+  SCREE_HD void add_neighbors(const Self& self, RubbingBookSums& sum) const {
+    if constexpr (kShared<Rows>) {
+      walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self), SharedBooks{*this}, sum);
+    } else {
+      walk.template neighbors<true>(self, books_of(), [&](const RubbingBooks& one, Index) {
+        if (one.acts) sum += RubbingBookSums::of(one, kPairShare);
+      });
+    }
+  }
+  SCREE_HD void finish(const Self& self, RubbingBookSums& sum) const {
+    walk.template surfaces<true>(self, books_of(),
+                                 [&](const RubbingBooks& one, Index) { sum += RubbingBookSums::of(one, 1); });
+    to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
+    to.friction[self.i] += sum.friction;
+  }
+
+ private:
+  // Books contacts of any row.
+  struct SharedBooks {
+    const RubbingBooksItem& item;
+
+    SCREE_HD RubbingBookSums operator()(Index i, Index j, std::int64_t slot) const {
+      const RubbingBooks one = item.walk.contact_at(item.books_of(), i, j, slot);
+      const auto& history = item.walk.in.history;
+      if (one.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, one.history);
+      return one.acts ? RubbingBookSums::of(one, kPairShare) : RubbingBookSums::nothing();
+    }
+    SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
+  };
+
+  SCREE_HD RubbingBooksOf books_of() const { return {{walk.look.start, walk.in.spin}}; }
+};
+
+// Keeps the limits of particle i's contacts at the iterate, those that are frozen already included.
+template <class Laws, class Rows>
+struct FreezeItem {
+  RubbingWalk<Laws, Rows> walk;
+  FrozenLimits to;
+
+  SCREE_HD void operator()(Index i) const {
+    const auto self = walk.self(i);
+    const RubbingContactOf of{walk.look.start, walk.in.spin};
+    walk.neighbors(self, of, [&](const RubbingContact& c, Index) {
+      if (c.acts) to.neighbors[c.slot] = c.rub.limit;
+    });
+    walk.surfaces(self, of, [&](const RubbingContact& c, Index) { to.surfaces[c.slot] = c.rub.limit; });
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,209 @@
+// What happens for one particle in an implicit step in which particles turn, in the stages that look at no
+// contacts: rotation, residual, linear solve. Beside step_items.hpp, whose items do the same for the motion
+// alone.
+#pragma once
+
+#include "dem/implicit/rubbing_items.hpp"
+#include "dem/implicit/step_items.hpp"
+#include "physics/orientation.hpp"
+
+namespace scree {
+
+// Unknowns of the rotation, beside StepViews.
+struct TurningViews {
+  Vec4 *spin, *mean_spin;  // iterate at t_{n+1} and over the step; moment of inertia
+  Vec3* acceleration;      // iterate [rad/s^2]
+  const Vec4* start_spin;
+  const Vec3* start_acceleration;
+};
+
+// Spin at the end and over the step from the current acceleration: as NewmarkItem, with the turn over the
+// step in place of the displacement.
+struct TurnItem {
+  StepViews step;
+  TurningViews turning;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 w = turning.start_spin[i];
+    const Vec3 a0 = turning.start_acceleration[i], a1 = turning.acceleration[i];
+    turning.spin[i] = vec4(newmark_velocity(step.hht, step.h, xyz(w), a0, a1), w.w);
+    const Vec3 turn = newmark_displacement(step.hht, step.h, xyz(w), a0, a1);
+    turning.mean_spin[i] = vec4((1 / step.h) * turn, w.w);
+  }
+};
+
+// Minus the residuals of Eq. 16 for motion and rotation, the latter over the radius; masses of the Newton
+// matrix and the inverse of its block.
+struct RubbingResidualItem {
+  StepViews step;
+  TurningViews turning;
+  StepForces forces;
+  StepTorques torques;
+  Twist* residual;  // [N]
+  ScaledMass* mass;
+  BlockSlices inverse_block;
+  Real* stiffening;  // bound of the contacts' part of the block over the mass part
+
+  template <class Rows>
+  SCREE_HD void operator()(Index i, const RubbingMatrix& matrix, const Rows& rows,
+                           Index first_surface) const {
+    const Real weight = hht_inertia_weight(step.hht), radius = step.position[i].w;
+    const Real m = step.velocity[i].w, inertia = turning.start_spin[i].w;
+    const Vec3 force =
+        -hht_residual(step.hht, m, step.acceleration[i], forces.step_force[i], step.start_force[i]);
+    const Vec3 torque =
+        -hht_residual(step.hht, inertia, turning.acceleration[i], torques.step[i], torques.start[i]);
+    residual[i] = {force, (1 / radius) * torque};
+    const ScaledMass masses{weight * m, weight * inertia / (radius * radius)};
+    mass[i] = masses;
+    Block6 block;
+    matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) { entry.add_to(block); });
+    for (Index k = 0; k < matrix.surface_count[i]; ++k)
+      matrix.surface_entries[first_surface + k].add_to(block);
+    stiffening[i] = largest_row(block, masses.move, masses.turn);
+    block.move += Sym3{masses.move, 0, 0, masses.move, 0, masses.move};
+    block.turn += Sym3{masses.turn, 0, 0, masses.turn, 0, masses.turn};
+    inverse_block.put(i, Block6f::inverse_of(block));
+  }
+};
+
+struct RubbingNorms : StepNorms {
+  Real sharpness;  // RubbingSystemItem::sharpness
+};
+
+struct RubbingNormsItem {
+  StepViews step;
+  const Twist* residual;
+  const ScaledMass* mass;
+  const Real *magnitude, *stiffening, *sharpness;
+
+  SCREE_HD RubbingNorms operator()(Index i) const {
+    const Real move = norm(residual[i].move), turn = norm(residual[i].turn);
+    const Real by_move = move / mass[i].move, by_turn = turn / mass[i].turn;
+    const Real gain = newmark_position_gain(step.hht, step.h) / step.position[i].w;
+    const Real at_start = norm(step.start_force[i]) + step.velocity[i].w * norm(step.start_acceleration[i]);
+    RubbingNorms out;
+    out.residual = move > turn ? move : turn;
+    out.correction_bound = gain * (by_move > by_turn ? by_move : by_turn);
+    out.force = magnitude[i] + at_start;
+    out.stiffening = stiffening[i], out.sharpness = sharpness[i];
+    return out;
+  }
+};
+
+struct TwistSizeItem {
+  const Twist* twist;
+
+  SCREE_HD Real operator()(Index i) const { return largest_part(twist[i]); }
+};
+
+// Applies a share of a correction of both accelerations, that of the rotation times the radius. Returns the
+// size of the whole correction of position or turn over the radius.
+struct RubbingCorrectItem {
+  Vec3 *acceleration, *angular_acceleration;
+  const Twistf* correction;
+  Real unit;             // of the correction, direction_unit [N]
+  const Vec4* position;  // radius in w
+  Real share;
+  Real weight;  // newmark_position_gain [s^2]
+
+  SCREE_HD Real operator()(Index i) const {
+    const Real radius = position[i].w;
+    const Twist by = unit * in_double(correction[i]);
+    acceleration[i] += share * by.move;
+    angular_acceleration[i] += (share / radius) * by.turn;
+    return weight * largest_part(by) / radius;
+  }
+};
+
+// residual_i -= (A d)_i for the Newton matrix A = masses + contacts. Directions and what contacts make of
+// them are in single precision: they are most of what a product reads beside the entries.
+template <class Rows>
+struct SubtractRubbingItem {
+  RubbingMatrix matrix;
+  Rows rows;
+  const Index* surface_offsets;
+  const ScaledMass* mass;
+  bool consistent;  // RubbingEntry::pull
+  const Twistf* d;  // of all items
+  Real unit;        // of d, direction_unit [N]
+  Twist* residual;
+
+  SCREE_HD void operator()(Index i) const {
+    const Twistf own = d[i];
+    Twistf pulls{};
+    matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) {
+      const Twistf other = d[entry.normal.neighbor];
+      pulls += entry.pull(own.move - other.move, own.turn + other.turn, consistent);
+    });
+    for (Index k = 0; k < matrix.surface_count[i]; ++k)
+      pulls += matrix.surface_entries[surface_offsets[i] + k].pull(own.move, own.turn, consistent);
+    const Twist of_mass{mass[i].move * in_double(own.move), mass[i].turn * in_double(own.turn)};
+    residual[i] -= unit * (of_mass + in_double(pulls));
+  }
+};
+
+// Whether the Newton matrix takes in how friction grows with the overlap, from the largest 2 K h^2 / m:
+// Newton's method then needs hardly more iterations than without friction. But the matrix is not symmetric,
+// and where contacts are much shorter than the step the linear iteration would not converge.
+SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(2.5) * Real(2.5); }
+
+struct TwistDirectionItem {
+  BlockSlices inverse_block;
+  const Twist* residual;
+  Real from_last, from_residual;  // ChebyshevWeights, the latter over the unit of d
+
+  SCREE_HD Twistf next(Index i, Twistf d) const {
+    return static_cast<float>(from_last) * d + inverse_block[i] * in_single(from_residual * residual[i]);
+  }
+};
+
+// Local error of position or turn of an implicit step over the radius.
+struct TurningErrorItem {
+  StepViews step;
+  TurningViews turning;
+
+  SCREE_HD Real operator()(Index i) const {
+    const Real move = StepErrorItem{step}(i);
+    const Real turn =
+        hht_position_error(step.hht, step.h, turning.start_acceleration[i], turning.acceleration[i], 1);
+    return move > turn ? move : turn;
+  }
+};
+
+// The accelerations at the end of a step that balance its forces in full: the next step, which starts from
+// them, does not leave over again what the iteration has left over. Else a residual too small to be corrected
+// would act on and on, and a pile that nothing keeps from rolling would creep.
+struct BalanceItem {
+  StepViews step;
+  TurningViews turning;
+  StepForces forces;
+  StepTorques torques;
+
+  SCREE_HD void operator()(Index i) const {
+    step.acceleration[i] =
+        hht_acceleration(step.hht, step.velocity[i].w, forces.step_force[i], step.start_force[i]);
+    turning.acceleration[i] =
+        hht_acceleration(step.hht, turning.spin[i].w, torques.step[i], torques.start[i]);
+  }
+};
+
+// Closes the rotation of an implicit step, as AcceptItem the motion.
+struct AcceptTurnItem {
+  StepViews step;
+  TurningViews turning;
+  StepTorques torques;
+  Quaternion* orientation;
+  Real* integrator_loss;  // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 w0 = turning.start_spin[i];
+    const Vec3 mean = xyz(turning.mean_spin[i]);
+    integrator_loss[i] += ::scree::integrator_loss(w0.w, step.h * mean, xyz(w0), xyz(turning.spin[i]),
+                                                   torques.start[i], torques.step[i]);
+    turning.acceleration[i] += hht_event_acceleration(step.hht, w0.w, torques.step[i], torques.end[i]);
+    orientation[i] = turned_by(orientation[i], mean, step.h);
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,184 @@
+// The contact stages of one law; included where they are compiled.
+#pragma once
+
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "base/for_each.hpp"
+#include "base/reproducible_sum.hpp"
+#include "dem/explicit/paired_rows.hpp"
+#include "dem/laws/contact_kernels.hpp"
+
+namespace scree {
+
+template <class Laws>
+class CpuContactKernels : public ContactKernels {
+ public:
+  explicit CpuContactKernels(Laws laws) : laws_(laws) {}
+
+  int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
+  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
+              Vec3* angular_acceleration) const override {
+    for_each(
+        Serial{}, n,
+        ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
+  }
+  Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
+                     const VerletViews& state, Vec3* force) override {
+    return max_over(
+        Serial{}, n,
+        VerletFinishItem<Laws, StepRows>{{explicit_walk(over_step(in, pairs), laws_, state.h), gravity, force,
+                                          state.loss_power, state.angular_acceleration},
+                                         state});
+  }
+  // One function, so that what is summed stays in registers.
+  [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity,
+                                       Index n, const VerletViews& state) override {
+    return max_over(Serial{}, n,
+                    VerletAdvanceItem<Laws, StepRows>{{explicit_walk(over_step(in, pairs), laws_, state.h),
+                                                       gravity, nullptr, nullptr, nullptr},
+                                                      state});
+  }
+  void leave_records(PairList& pairs, const HistoryViews& history) const override {
+    if constexpr (kPaired) ::scree::leave_records<LawOf<Laws>>(pairs, history);
+  }
+  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
+              const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
+    for_each(Serial{}, n,
+             ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
+  }
+  [[gnu::flatten]] void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
+    for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
+  }
+  void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
+                     const PlacedSurface* start_placed, SurfaceStep* steps) const override {
+    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
+  }
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
+                  BodyLoad* out) const override {
+    if constexpr (LawOf<Laws>::kMoves)
+      if (look.h > 0) {
+        using Item = BodyLoadItem<Laws, PackedRows, OverMotion>;
+        return for_each(Serial{}, n, Item{{in, laws_, {look.h}}, look.arm, out});
+      }
+    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, look.arm, out});
+  }
+  void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
+                  BodyStep* out, const ShapeContactsTo& to) const override {
+    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
+  }
+  void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start, const Vec3* arm,
+                 BodyStep* out, const ShapeContactsTo& to) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, BodyRubItem<Laws, PackedRows>{walk, arm, out, to});
+    });
+  }
+  void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
+                 Real (&sums)[kWallTerms]) const override {
+    reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
+  }
+  void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
+    for_each(Serial{}, n, ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out});
+  }
+  void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
+    with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
+                        [&](const auto& item) { for_each(Serial{}, request.n, item); });
+  }
+  void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
+                      ShownContact* shown) const override {
+    for_each(Serial{}, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
+  }
+  void contact_lines(const ContactViews<PackedRows>& in, Index n, const LineRequest& request) const override {
+    for_each(Serial{}, n, ContactLineItem<Laws, PackedRows>{{in, laws_}, request});
+  }
+  void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
+             Real* integrator_loss) const override {
+    for_each(Serial{}, n,
+             ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+  }
+  void surface_rubs(const SurfaceViews& in, Index n, const RubbingStart& start,
+                    const PlacedSurface* start_placed, SurfaceRub* rubs) const override {
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
+      for_each(Serial{}, n, SurfaceRubItem<Laws>{in, start, start_placed, laws_, rubs});
+    else
+      refuse_rubbing();
+  }
+  void rubbing_system(const ContactViews<PackedRows>& in, Index n, const RubbingRequest& r) const override {
+    over_rubbing_step(in, r.start, [&](const auto& walk) {
+      for_each(Serial{}, n,
+               RubbingSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
+                                                   r.sharpness});
+    });
+  }
+  void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+                     const RubbingBooksTo& to) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, RubbingBooksItem<Laws, PackedRows>{walk, to});
+    });
+  }
+  void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+              const FrozenLimits& to) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, FreezeItem<Laws, PackedRows>{walk, to});
+    });
+  }
+  void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
+               Leaver* leavers) const override {
+    for_each(Serial{}, n, LeaverEnergyItem<Laws, PackedRows>{{in, laws_}, box, leavers});
+  }
+  void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
+                  const StartViews& start) const override {
+    for_each(Serial{}, n, DepartureItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
+  }
+
+ private:
+  // use(walk): compiled for laws that have steps in which they rub.
+  template <class Use>
+  void over_rubbing_step(const ContactViews<PackedRows>& in, const RubbingStart& start,
+                         const Use& use) const {
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
+      use(RubbingWalk<Laws, PackedRows>{in, laws_, {start}});
+    else
+      refuse_rubbing();
+  }
+  [[noreturn]] static void refuse_rubbing() {
+    throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
+  }
+
+  // A contact that is a function of the instant takes less than to keep what it does.
+  static constexpr bool kPaired = LawOf<Laws>::kMoves;
+  using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;
+  // Of an explicit step.
+  ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, PairList& pairs) {
+    if constexpr (kPaired) {
+      sweep_.begin(pairs);
+      return paired_views(in, sweep_);
+    } else {
+      return in;
+    }
+  }
+
+  Laws laws_;
+  std::conditional_t<kPaired, PairSweep<Laws>, std::monostate> sweep_;
+};
+
+// With the table that the kernels of several laws refer to.
+template <class Law>
+class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
+ public:
+  CpuTableKernels(std::vector<Law> table, int materials)
+      : CpuContactKernels<LawTable<Law>>({table.data(), materials}), table_(std::move(table)) {}
+
+ private:
+  std::vector<Law> table_;
+};
+
+template <class Law>
+std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<Law>& laws, int materials) {
+  if (laws.size() == 1) return std::make_unique<CpuContactKernels<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
+  return std::make_unique<CpuTableKernels<Law>>(laws, materials);
+}
+
+}  // namespace scree

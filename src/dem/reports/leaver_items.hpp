@@ -1,0 +1,115 @@
+// What happens when particles leave the space: what they take along, and what they leave behind. One text for
+// the CPU and CUDA.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact/contact_items.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// A particle outside the space.
+struct Leaver {
+  GlobalId global_id;
+  Index local_index;                   // on its rank
+  Vec3 position;                       // [m]
+  bool lost;                           // beyond a side that is a wall, which no particle can leave through
+  Real energy;                         // kinetic and gravitational [J]
+  Real contact_loss, integrator_loss;  // booked on it so far [J]
+  RubbingLosses losses;                // of contact_loss
+  Real elastic = 0;                    // of its contacts, which end with it [J]
+  int rank = 0;                        // that owns it
+};
+
+// Which items leave, where all particles in the rows are in the search: those outside. The ranks agree,
+// because ghosts are where their particles are.
+template <class Rows>
+struct Leaves {
+  const ContactViews<Rows>& in;
+  const OpenBox& box;
+  SCREE_HD bool operator()(Index j) const { return !box.inside(xyz(in.position[j])); }
+};
+
+// The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
+// well.
+template <class Laws, class Rows>
+struct LeaverEnergyItem {
+  ContactWalk<Laws, Rows> walk;
+  OpenBox box;
+  Leaver* leavers;
+
+  SCREE_HD void operator()(Index k) const {
+    const Leaves<Rows> leaves{walk.in, box};
+    const auto share = [&](Index j) { return leaves(j) ? kPairShare : Real(1); };
+    leavers[k].elastic = touch_sums(walk, leavers[k].local_index, share).energy;
+  }
+};
+
+// What the next step starts from.
+struct StartViews {
+  Vec3 *force, *acceleration;  // [N], [m/s^2]
+  Real* loss_power;            // [W]; null for HHT
+  Real* integrator_loss;       // [J]
+  const std::uint8_t* drifting;
+  HhtCoefficients hht;                   // hht_alpha = 0 for velocity-Verlet
+  Real verlet_step;                      // of velocity-Verlet [s]
+  Vec3* angular_acceleration = nullptr;  // null where particles do not rotate [rad/s^2]
+};
+
+// Takes the contacts that end out of what the next step starts from: out of the start of a particle that
+// stays those with particles that leave, out of one that leaves all. Else the step would do half a step's
+// work with a force that has no elastic energy any more. in: as the forces were computed, with the velocities
+// that the law saw.
+template <class Laws, class Rows>
+struct DepartureItem {
+  ContactWalk<Laws, Rows> walk;
+  Vec3 gravity;
+  OpenBox box;
+  StartViews start;
+
+  SCREE_HD void operator()(Index i) const {
+    if (start.drifting[i]) return;
+    const Leaves<Rows> leaves{walk.in, box};
+    const auto self = walk.self(i);
+    const Real mass = self.u.w;
+    if (leaves(i)) {
+      begin_from(i, mass, mass * gravity);
+      if constexpr (LawOf<Laws>::kMoves) turn_from(i, self.spin.w, {});
+      if (start.loss_power != nullptr) start.loss_power[i] = 0;
+      return;
+    }
+    Vec3 ended_force, ended_torque;
+    Real ended_loss = 0;
+    Index ended = 0;
+    walk.neighbors_if(self, leaves, LoadOf{}, [&](const auto& load, Index) {
+      ended_force += load.force, ended_torque += load.torque_i, ended_loss += load.loss, ++ended;
+    });
+    if (ended == 0) return;
+    begin_from(i, mass, start.force[i] - ended_force);
+    if constexpr (LawOf<Laws>::kMoves)
+      turn_from(i, self.spin.w, start.angular_acceleration[i] - (1 / self.spin.w) * ended_torque);
+    if (start.loss_power != nullptr) start.loss_power[i] -= kPairShare * ended_loss;
+  }
+
+  SCREE_HD void turn_from(Index i, Real inertia, Vec3 after) const {
+    const Vec3 before = start.angular_acceleration[i];
+    start.angular_acceleration[i] = after;
+    start.integrator_loss[i] += verlet_energy_shift(start.verlet_step, inertia, after) -
+                                verlet_energy_shift(start.verlet_step, inertia, before);
+  }
+
+  SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {
+    const Vec3 a0 = start.acceleration[i];
+    const Vec3 a1 = a0 + hht_event_acceleration(start.hht, mass, start.force[i], force);
+    start.force[i] = force, start.acceleration[i] = a1;
+    if (start.loss_power == nullptr) return;
+    // The energy of the motion is counted with this function of the acceleration: it has not changed.
+    start.integrator_loss[i] +=
+        verlet_energy_shift(start.verlet_step, mass, a1) - verlet_energy_shift(start.verlet_step, mass, a0);
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,220 @@
+// What a snapshot may hold of a particle (output.fields): fields of the table in particle_fields.hpp, and
+// what is derived from them or from contacts. Each is declared once; one text for the CPU and CUDA.
+#pragma once
+
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "base/hd.hpp"
+#include "base/vec3.hpp"
+#include "deck/deck.hpp"
+#include "dem/contact/contact_items.hpp"
+#include "dem/particles/particle_fields.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/particle_mass.hpp"
+
+namespace scree {
+
+// What an output field is computed from.
+struct OutputSource {
+  ParticleViews particles;
+  int dimension;         // 2 or 3
+  Vec3 gravity;          // [m/s^2]
+  Vec3 box_min, period;  // of the space [m]
+
+  // With its position inside the periodic box.
+  SCREE_HD Particle particle(Index i) const {
+    Particle p = particle_at(particles, i);
+    p.position = wrap(box_min, period, p.position, p.image);
+    return p;
+  }
+};
+
+inline OutputSource output_source(const ParticleViews& particles, const Model& model, Vec3 period) {
+  return {particles, model.space.dimension, model.gravity, model.space.min, period};
+}
+
+struct OutputHead {
+  const char *name, *unit, *description;
+};
+
+// An output field is a type with a Value and one of
+//   operator()(source, i)         of particle i
+//   operator()(source, walk, i)   of particle i and its contacts, by any ContactWalk at an instant
+// Those that are not of the table have a head, too, and are named in DerivedOutputs.
+
+template <auto kMember>
+struct TableOutput {
+  using Value = std::remove_cvref_t<decltype(std::declval<Particle>().*kMember)>;
+  SCREE_HD Value operator()(const OutputSource& in, Index i) const { return in.particle(i).*kMember; }
+};
+using PositionOutput = TableOutput<&Particle::position>;  // where the snapshot's point is
+
+struct ForceOutput {
+  static constexpr OutputHead head{"force", "N", "total contact force on the particle"};
+  using Value = Vec3;
+  SCREE_HD Value operator()(const OutputSource& in, Index i) const {
+    return in.particles.force[i] - in.particles.velocity[i].w * in.gravity;
+  }
+};
+
+struct ContactsOutput {
+  static constexpr OutputHead head{"contacts", "1", "touching neighbours and walls"};
+  using Value = int;
+  template <class Walk>
+  SCREE_HD Value operator()(const OutputSource&, const Walk& walk, Index i) const {
+    return touch_sums(walk, i, [](Index) { return kPairShare; }).contacts;
+  }
+};
+
+// Row by row.
+struct Tensor {
+  Vec3 x, y, z;
+};
+
+// (1/V) sum over the contacts of F x^T: F the force on the particle, x from its centre to where it acts, V
+// the particle's volume, of discs the area (J. Weber, Bull. Liaison Ponts Chauss. 20, 1966; Christoffersen,
+// Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 1981). Its mean over a volume of particles at rest, times their
+// share of it, is the stress of the granular material.
+struct StressOutput {
+  static constexpr OutputHead head{
+      "stress", "Pa (2D: N/m)",
+      "mean stress of the particle from its contacts, row by row; tension is positive"};
+  using Value = Tensor;
+
+  struct Acting {
+    template <class Law>
+    SCREE_HD SurfaceLoad operator()(const Law& law, const PairState& pair) const {
+      return {true, law.load(pair), {}, {}, contact_arm(pair)};
+    }
+    template <class Law, class Pair, class History>
+    SCREE_HD SurfaceLoad operator()(const Law& law, const Pair& pair, const History& old) const {
+      return {true, law.load(pair, old).load, {}, {}, contact_arm(pair)};
+    }
+    template <class Views>
+    SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+      return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+    }
+  };
+
+  template <class Walk>
+  SCREE_HD Value operator()(const OutputSource& in, const Walk& walk, Index i) const {
+    const auto self = walk.self(i);
+    const Real radius = self.p.w;
+    const Real volume = in.dimension == 2 ? disc_mass(radius, 1, 1) : sphere_mass(radius, 1);
+    Tensor sum;
+    const auto add = [&](const SurfaceLoad& contact, Index) {
+      const Vec3 f = (1 / volume) * contact.load.force;
+      sum.x += f.x * contact.particle_arm, sum.y += f.y * contact.particle_arm;
+      sum.z += f.z * contact.particle_arm;
+    };
+    walk.neighbors(self, Acting{}, add);
+    walk.surfaces(self, Acting{}, add);
+    return sum;
+  }
+};
+
+// Follows from the global id and the deck: added where snapshots are written, no backend knows it.
+inline constexpr OutputHead kGroupOutput{
+    "group", "1", "group of particles that it belongs to, counted from 0 in the deck's order"};
+
+using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput, StressOutput>;
+
+// Calls visit(head, of) for each output field.
+template <class Visit>
+void for_each_output_field(const Visit& visit) {
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if constexpr (((parts)&kOutput) != 0)                \
+    visit(OutputHead{#name, unit, sentence}, TableOutput<&Particle::name>{});
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  SCREE_FIELD(name, Vec3, unit, sentence, parts)               \
+  SCREE_FIELD(scalar, Real, __VA_ARGS__)
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  std::apply([&](auto... of) { (visit(of.head, of), ...); }, DerivedOutputs{});
+}
+
+template <class Of>
+inline constexpr bool kReadsContacts = !std::is_invocable_v<const Of&, const OutputSource&, Index>;
+
+// The k-th value is that of particle order[k]; without an order, of particle k.
+template <class Of>
+struct OwnOutputItem {
+  OutputSource in;
+  const Index* order;
+  typename Of::Value* out;
+  SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, order != nullptr ? order[k] : k); }
+};
+
+template <class Of, class Walk>
+struct ContactOutputItem {
+  Walk walk;
+  OutputSource in;
+  const Index* order;
+  typename Of::Value* out;
+  SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, walk, order != nullptr ? order[k] : k); }
+};
+
+// The values of n particles; out: room for n of the field's type.
+struct OutputRequest {
+  OutputSource in;
+  const Index* order;
+  Index n;
+  std::string_view field;
+  void* out;
+};
+
+// Calls run(item) with the item of the request's field, if that field reads no contacts; with a walk, if it
+// does.
+template <class Run>
+void with_own_output(const OutputRequest& r, const Run& run) {
+  for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
+    if constexpr (!kReadsContacts<Of>)
+      if (r.field == head.name)
+        run(OwnOutputItem<Of>{r.in, r.order, static_cast<typename Of::Value*>(r.out)});
+  });
+}
+template <class Walk, class Run>
+void with_contact_output(const OutputRequest& r, const Walk& walk, const Run& run) {
+  for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
+    if constexpr (kReadsContacts<Of>)
+      if (r.field == head.name)
+        run(ContactOutputItem<Of, Walk>{walk, r.in, r.order, static_cast<typename Of::Value*>(r.out)});
+  });
+}
+
+// The values of one field, one entry per particle.
+using OutputValues = std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<Tensor>,
+                                  std::vector<Quaternion>, std::vector<int>, std::vector<ImageCount>>;
+
+// What a value consists of, one number after the other.
+template <class Value>
+using OutputNumber =
+    std::conditional_t<std::is_same_v<Value, int> || std::is_same_v<Value, ImageCount>, int, Real>;
+
+// An output field for the host.
+struct OutputField {
+  OutputHead head;
+  std::size_t bytes;  // of a value
+  bool reads_contacts;
+  bool of_id;                             // kGroupOutput
+  bool is_constant;                       // of a particle it never changes
+  OutputValues (*values)(std::size_t n);  // n zeros
+};
+
+const std::vector<OutputField>& output_fields();
+// Those that the deck wants (Output::fields), in its order. Throws std::logic_error for an unknown name.
+std::vector<OutputField> wanted_fields(const Output& output);
+// Those of them that a backend computes.
+std::vector<OutputField> computed_fields(const Output& output);
+// Throws InputError where the deck's output.fields names one that there is not, or one twice.
+void check_output_fields(const Deck& deck);
+// A line per field, as `scree keys` prints them; the same as a part of its page in Markdown.
+std::string output_fields_text();
+std::string output_fields_markdown();
+
+}  // namespace scree

@@ -1,0 +1,105 @@
+// Full neighbour list with a skin, rows ordered by the neighbours' global ids.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "dem/search/surface_rows.hpp"
+#include "model/data/model.hpp"
+#include "partition/cell_grid.hpp"
+#include "partition/decomposition.hpp"
+#include "partition/halo.hpp"
+
+namespace scree {
+
+// Row i holds every item that can touch particle i before the list expires; rows of particles outside the
+// search are empty. Beside it the surfaces that it is near.
+struct NeighborList {
+  std::vector<Index> offsets, neighbors;  // [owned + 1], [entries]
+  SurfaceRows surfaces;
+  Real skin = 0;  // what this list covers past contacts [m]
+};
+
+// Where items stand in the store: owned particles, of which the first `active` are in the search, then
+// ghosts.
+struct ItemLayout {
+  Index owned = 0, active = 0, items = 0;
+};
+
+// Cells that items are sorted into.
+struct SearchCells {
+  CellGrid space;  // the items in one of its cells are searched, on any number of ranks the same
+  CellGrid own;    // over the box of this rank; with one rank the same
+  bool same = true;
+  DomainBox box{};  // of this rank, unless same
+  Real reach = 0;   // of the list past the box [m]
+
+  // In `own`; x is -1 for items that are not searched.
+  SCREE_HD CellPlace place(Vec3 p) const {
+    const CellPlace c = space.place(p);
+    return c.x < 0 || same ? c : own.nearest_place(p);
+  }
+  Index cell(Vec3 p) const {
+    const CellPlace c = place(p);
+    return c.x < 0 ? -1 : own.index(c.x, c.y, c.z);
+  }
+};
+
+// The surfaces that a list is to see.
+struct ListedSurfaces {
+  SurfacePlaces places;
+  RememberedCount remembered{};
+};
+
+class NeighborBuilder {
+ public:
+  explicit NeighborBuilder(const Model& model);
+
+  // The grid whose cells are at least a cutoff wide.
+  CellGrid grid(Real skin, Index items) const;
+  // particles, items: of all ranks and of this one, for the number of cells.
+  SearchCells cells(Real skin, std::int64_t particles) const;
+  SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
+  // Largest distance of centres that the list must see: largest diameter, what contacts reach beyond touch,
+  // and skin [m].
+  Real cutoff(Real skin) const { return 2 * largest_radius_ + past_touch(skin); }
+  // How far past touching the list must see [m].
+  Real past_touch(Real skin) const { return skin + model_.contact.reach; }
+  // Largest radius of a particle [m].
+  Real largest_radius() const { return largest_radius_; }
+  // Fills the list from the positions of all items, and of the placed surfaces.
+  void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+             const ListedSurfaces& surfaces, Real skin, NeighborList& list);
+  // The rows of surfaces alone.
+  void build_surfaces(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+                      const ListedSurfaces& surfaces, Real skin, SurfaceRows& rows);
+
+ private:
+  // Items in the order of their cells.
+  struct SortedItems {
+    CellGrid grid;
+    std::vector<Index> start, items;  // [cells + 1], [searched]
+    std::vector<Index> cell_of;       // [all items]; -1 for those that are not searched
+
+    // cell(item): where it belongs, or -1.
+    template <class Cell>
+    void sort(const CellGrid& cells, Index count, const Cell& cell);
+  };
+  void sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
+  void find_surfaces(const ParticleStore& store, const ItemLayout& layout, const ListedSurfaces& surfaces,
+                     Real skin, SurfaceRows& rows) const;
+  // Adds the neighbours of item i.
+  void collect_row(const ParticleStore& store, Index i, NeighborList& list) const;
+
+  const Model& model_;
+  Vec3 period_;  // of the space [m]
+  SurfaceSet surfaces_;
+  std::vector<WallPlane> planes_;
+  Real largest_radius_ = 0;
+  SortedItems near_;
+};
+
+}  // namespace scree

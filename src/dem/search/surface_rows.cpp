@@ -1,0 +1,208 @@
+#include "dem/search/surface_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/countable.hpp"
+#include "mesh/mesh_contacts.hpp"
+#include "partition/halo_plan.hpp"
+
+namespace scree {
+namespace {
+
+struct Entry {
+  Index particle, surface;
+  std::int8_t image;
+};
+
+template <class Visit>
+void for_each_in(const SortedParticles& sorted, const CellRange& range, const Visit& visit) {
+  const CellGrid& grid = sorted.grid;
+  for (Index z = range.lower.z; z <= range.upper.z; ++z)
+    for (Index y = range.lower.y; y <= range.upper.y; ++y)
+      for (Index k = sorted.start[grid.index(range.lower.x, y, z)];
+           k < sorted.start[grid.index(range.upper.x, y, z) + 1]; ++k)
+        if (const Index i = sorted.items[k]; i < sorted.active) visit(i);
+}
+
+// The entries with placed surfaces of one rank, surface by surface.
+class EntryFinder {
+ public:
+  EntryFinder(const SortedParticles& sorted, const SurfaceSearch& search)
+      : sorted_(sorted), search_(search) {}
+
+  std::vector<Entry> find() {
+    for (Index s = 0; s < static_cast<Index>(search_.places.placed.size()); ++s)
+      for_each_shift(images_of(s), [&](Vec3 shift, std::int8_t image) {
+        const Entry entry{0, search_.surfaces.number_of(s), image};
+        switch (search_.places.placed[static_cast<std::size_t>(s)].kind) {
+          case SurfaceKind::sphere:
+            return add_near_sphere(s, shift, entry);
+          case SurfaceKind::plane:
+            return add_near_plane(s, shift, entry);
+          case SurfaceKind::mesh:
+            return add_near_mesh(s, shift, entry);
+        }
+      });
+    return std::move(entries_);
+  }
+
+ private:
+  // Along which it has images [m].
+  Vec3 images_of(Index s) const {
+    if (placed(s).kind == SurfaceKind::sphere) return search_.period;
+    return search_.period - search_.places.frames[static_cast<std::size_t>(placed(s).frame)].spanned;
+  }
+  void add_near_sphere(Index s, Vec3 shift, Entry entry) {
+    const PlacedSurface& surface = placed(s);
+    const Real reach = surface.radius + sorted_.largest_radius + search_.skin;
+    for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, reach), [&](Index i) {
+      const SurfacePair pair = surface_pair(surface, shift, position(i));
+      if (pair.geometry.overlap > -search_.skin && may_touch(i, s)) add(entry, i, 1);
+    });
+  }
+  // A plane has no images: it cannot be periodic along its normal.
+  void add_near_plane(Index s, Vec3 shift, Entry entry) {
+    if (entry.image != kNoShift) return;
+    for (Index i = 0; i < sorted_.active; ++i)
+      if (surface_pair(placed(s), shift, position(i)).geometry.overlap > -search_.skin && may_touch(i, s))
+        add(entry, i, 1);
+  }
+  void add_near_mesh(Index s, Vec3 shift, Entry entry) {
+    const Real skin = search_.surfaces.skin_of(s, search_.skin);
+    const Box box = box_near(search_.places, s, shift, sorted_.largest_radius, skin);
+    for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
+      if (!may_touch(i, s)) return;
+      triangles_.clear();
+      const MeshSight sight = sight_of(search_.places, s, position(i), shift, skin);
+      sight.for_each_triangle([&](Index t) { triangles_.push_back(t); });
+      const auto count = static_cast<Index>(triangles_.size());
+      if (count == 0) return;
+      const Index remembered = search_.remembered ? search_.remembered(i, entry.surface) : 0;
+      const RowKind kind = kind_of_row(sight.mesh, triangles_.data(), count);
+      add(entry, i, sight.entries(kind, triangles_.data(), count, remembered));
+    });
+  }
+  void add(Entry entry, Index particle, Index times) {
+    entry.particle = particle;
+    entries_.insert(entries_.end(), static_cast<std::size_t>(times), entry);
+  }
+  bool may_touch(Index particle, Index s) const {
+    return !search_.may_touch || search_.may_touch(particle, s);
+  }
+  const PlacedSurface& placed(Index s) const { return search_.places.placed[static_cast<std::size_t>(s)]; }
+  Vec4 position(Index i) const { return sorted_.position[static_cast<std::size_t>(i)]; }
+
+  const SortedParticles& sorted_;
+  const SurfaceSearch& search_;
+  std::vector<Entry> entries_;
+  std::vector<Index> triangles_;
+};
+
+// Orders the entries of a row by surface and image; those that are alike are neighbours already.
+void order_row(SurfaceRows& rows, Index first, Index end) {
+  for (Index k = first + 1; k < end; ++k)
+    for (Index at = k; at > first && std::pair(rows.surfaces[at - 1], rows.images[at - 1]) >
+                                         std::pair(rows.surfaces[at], rows.images[at]);
+         --at) {
+      std::swap(rows.surfaces[at - 1], rows.surfaces[at]);
+      std::swap(rows.images[at - 1], rows.images[at]);
+    }
+}
+
+void group_by_surface(const SurfaceNumbers& numbers, Index placed, SurfaceRows& rows) {
+  std::vector<Index> next(static_cast<std::size_t>(placed) + 1);
+  for (const Index number : rows.surfaces)
+    if (!numbers.at_rest(number)) ++next[numbers.placed(number) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  rows.by_surface.resize(static_cast<std::size_t>(next.back()));
+  for (Index entry = 0; entry < static_cast<Index>(rows.surfaces.size()); ++entry)
+    if (!numbers.at_rest(rows.surfaces[entry]))
+      rows.by_surface[next[numbers.placed(rows.surfaces[entry])]++] = entry;
+}
+
+// The triangles of every particle and mesh near each other.
+void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, const SurfaceNumbers& numbers,
+                 SurfaceRows& rows) {
+  rows.groups.clear(), rows.triangles.clear();
+  const auto entries = static_cast<Index>(rows.surfaces.size());
+  for (Index entry = 0, end; entry < entries; entry = end) {
+    end = entry + 1;
+    const Index number = rows.surfaces[entry], s = numbers.at_rest(number) ? -1 : numbers.placed(number);
+    if (s < 0 || search.places.placed[static_cast<std::size_t>(s)].kind != SurfaceKind::mesh) continue;
+    const Index i = rows.particles[entry];
+    while (end < entries && rows.particles[end] == i && rows.surfaces[end] == number &&
+           rows.images[end] == rows.images[entry])
+      ++end;
+    const auto first = static_cast<Index>(rows.triangles.size());
+    const MeshSight sight =
+        sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
+                 image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
+    sight.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
+    const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
+    const RowKind kind = kind_of_row(sight.mesh, rows.triangles.data() + first, last - first);
+    rows.groups.push_back({entry, end - entry, first, last - first, kind});
+  }
+  rows.standings.assign(rows.groups.size(), kNoStanding);
+}
+
+Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
+
+}  // namespace
+
+Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin) {
+  constexpr Real kRoundOff = 1e-9;  // of turning the box, with plenty to spare
+  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+  const MeshBox& of_mesh = mesh.boxes[mesh.level_start[mesh.levels - 1]];
+  const Vec3 half = Real(0.5) * (of_mesh.max - of_mesh.min);
+  const Vec3 middle = surface.point + shift + frame.axes * (of_mesh.min + half);
+  const Vec3 turned{dot(magnitudes(frame.axes.x), half), dot(magnitudes(frame.axes.y), half),
+                    dot(magnitudes(frame.axes.z), half)};
+  const Real reach = radius + mesh_skin(radius, skin) + kRoundOff * (norm(half) + norm(middle));
+  const auto along = [&](Real size, Real period) { return period != 0 ? kInfinity : size + reach; };
+  const Vec3 to_sides{along(turned.x, frame.spanned.x), along(turned.y, frame.spanned.y),
+                      along(turned.z, frame.spanned.z)};
+  return {middle - to_sides, middle + to_sides};
+}
+
+MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin) {
+  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+  return {surface, frame, mesh, p, shift, mesh_skin(p.w, skin)};
+}
+
+void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows) {
+  const SurfaceNumbers numbers{search.planes.data(), search.surfaces.ground()};
+  const std::vector<Entry> placed = EntryFinder(sorted, search).find();
+  std::vector<Index> counts(static_cast<std::size_t>(owned));
+  for (const Entry& entry : placed) ++counts[entry.particle];
+  rows.offsets.assign(1, 0), rows.surfaces.clear();
+  std::vector<Index> next;  // of the placed ones
+  for (Index i = 0; i < owned; ++i) {
+    for (Index w = 0; i < sorted.active && w < numbers.ground; ++w)
+      if (numbers.at_rest(w) &&
+          wall_pair(sorted.position[i], search.planes[w]).distance < sorted.position[i].w + search.skin)
+        rows.surfaces.push_back(w);
+    next.push_back(static_cast<Index>(rows.surfaces.size()));
+    rows.surfaces.resize(rows.surfaces.size() + static_cast<std::size_t>(counts[i]));
+    rows.offsets.push_back(countable(rows.surfaces.size(), "stage neighbors: more surfaces near particles"));
+  }
+  rows.images.assign(rows.surfaces.size(), kNoShift), rows.particles.assign(rows.surfaces.size(), 0);
+  for (const Entry& entry : placed) {
+    const Index slot = next[entry.particle]++;
+    rows.surfaces[slot] = entry.surface, rows.images[slot] = entry.image;
+  }
+  for (Index i = 0; i < owned; ++i) {
+    const Index first = rows.offsets[i], end = rows.offsets[i + 1];
+    std::fill(rows.particles.begin() + first, rows.particles.begin() + end, i);
+    order_row(rows, first, end);
+  }
+  group_by_surface(numbers, search.surfaces.placed(), rows);
+  find_groups(sorted, search, numbers, rows);
+}
+
+}  // namespace scree

@@ -1,0 +1,224 @@
+// What the shape of a body gets from those of other bodies and from surfaces: the small pass of rank 0, in
+// which shapes are what particles are elsewhere.
+#pragma once
+
+#include <type_traits>
+
+#include "dem/contact/contact_items.hpp"
+#include "dem/contact/system_items.hpp"
+#include "dem/surface_contact/rubbing_surfaces.hpp"
+#include "dem/surfaces/surface_sums.hpp"
+
+namespace scree {
+
+// Contacts of one shape at an instant, or over the explicit step that ends there, and its share of what is
+// booked of them: half with another body's shape.
+struct BodyLoad {
+  InstantSums sums;
+  Real loss = 0;           // dissipation [W]
+  Real energy = 0;         // elastic [J]
+  Real pairs = 0;          // number
+  SpringEnergies springs;  // of the energy, where contacts rub
+  RubbingLosses losses{};  // of the dissipation, over the step [J]
+};
+
+// Over an implicit step.
+struct BodyStep {
+  StepSums sums;
+  ContactBooks books;
+  Real friction = 0;   // of what they dissipate [J]
+  Index partners = 0;  // shapes of other bodies that it touches
+};
+
+// How the force of a contact changes with the motion of its partners, over an implicit step.
+struct ContactSlopes {
+  Vec3 normal, direction;   // unit; direction: in which they slide, else zero
+  Real stiffness, damping;  // along the normal [N/m], [N s/m]
+  Real shear;               // across it, but along `direction` [N/m]
+};
+
+// Of a shape with that of another body, an item.
+struct ShapeContact {
+  Index other;
+  ContactSlopes slopes;
+};
+
+// Where the walk of the shapes writes their contacts with each other: the partners of i from the place on
+// where i's row begins.
+struct ShapeContactsTo {
+  const Index* offsets;
+  ShapeContact* contacts;
+
+  SCREE_HD void put(Index i, BodyStep& sum, const ShapeContact& contact) const {
+    contacts[offsets[i] + sum.partners] = contact;
+    ++sum.partners;
+  }
+};
+
+SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
+  return {c.normal, {}, c.step.stiffness, c.step.damping, 0};
+}
+
+// The shapes as they are looked at.
+struct BodyLook {
+  const Vec3* arm;  // of their centres from those of their bodies [m]
+  Real h;           // of the explicit step that ends now, for laws that move [s]; 0: an instant
+};
+
+// From the side of the body: the other one is where the particle is in SurfaceLoad.
+struct BodyLoadOf {
+  struct Found {
+    SurfaceLoad contact;
+    Vec3 normal;
+  };
+  template <class Law>
+  SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
+    return {{true, law.normal_load(pair).exchanged(), EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
+  }
+  template <class Law, class Pair, class History>
+  requires Law::kMoves SCREE_HD LoadWithHistory<Found, History>
+  operator()(const Law& law, const Pair& pair, const History& old) const {
+    const auto outcome = law.load(pair, old);
+    const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
+    return {{{true, outcome.load.exchanged(), EnergyOf{}(law, pair, now), {}, {}, outcome.losses()},
+             pair.geometry.normal()},
+            outcome.history};
+  }
+  // Of a surface that was evaluated before, as it lies to the shape.
+  template <class Views>
+  SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  }
+};
+
+// Accepts the step, if it is one.
+template <class Laws, class Rows, class Look>
+struct BodyLoadItem {
+  ContactWalk<Laws, Rows, Look> walk;
+  const Vec3* arm;
+  BodyLoad* out;
+
+  static constexpr bool kAccepts = std::is_same_v<Look, OverMotion>;
+
+  SCREE_HD void operator()(Index i) const {
+    BodyLoad sum;
+    const auto self = walk.self(i);
+    walk.template neighbors<kAccepts>(self, BodyLoadOf{}, [&](const BodyLoadOf::Found& found, Index) {
+      add(found.contact, place_of(i, self.p.w, found.normal), kPairShare, sum);
+    });
+    walk.template surfaces<kAccepts>(self, BodyLoadOf{}, [&](const auto& found, Index) {
+      if constexpr (std::is_same_v<decltype(found), const SurfaceLoad&>)
+        add(turned(found), arm[i], 1, sum);
+      else
+        add(found.contact, place_of(i, self.p.w, found.normal), 1, sum);
+    });
+    out[i] = sum;
+  }
+
+ private:
+  // Where the force acts, from the body's centre: that of a law that moves comes with a couple.
+  SCREE_HD Vec3 place_of(Index i, Real radius, Vec3 normal) const {
+    return LawOf<Laws>::kMoves ? arm[i] : arm[i] - radius * normal;
+  }
+  SCREE_HD static SurfaceLoad turned(SurfaceLoad contact) {
+    contact.load = contact.load.exchanged(), contact.slide_power = 0;
+    return contact;
+  }
+  SCREE_HD static void add(SurfaceLoad contact, Vec3 place, Real share, BodyLoad& sum) {
+    contact.arm = place;
+    sum.sums.add_contact(contact);
+    sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
+    if constexpr (!LawOf<Laws>::kMoves) return;
+    sum.springs.add(contact.energy.springs, share);
+    contact.losses.scale(share), sum.losses.add(contact.losses);
+  }
+};
+
+template <class Laws, class Rows>
+struct BodyStepItem {
+  StepWalk<Laws, Rows> walk;
+  const Vec3* arm;  // at the end of the step
+  BodyStep* out;
+  ShapeContactsTo to;
+
+  SCREE_HD void operator()(Index i) const {
+    BodyStep sum;
+    const auto self = walk.self(i);
+    const auto add = [&](StepContact contact, Index) {
+      contact.normal = -contact.normal;
+      sum.sums.add_contact(SurfaceStep{true, contact, {}, arm[i] + self.p.w * contact.normal});
+    };
+    const StepContactOf of{walk.look.start.resolve_events};
+    walk.neighbors(self, of, [&](const StepContact& contact, Index j) {
+      add(contact, j);
+      to.put(i, sum, {j, slopes_of(contact)});
+    });
+    walk.surfaces(self, of, add);
+    sum.books = books_of(walk, i, kPairShare);
+    out[i] = sum;
+  }
+};
+
+SCREE_HD ContactSlopes slopes_of(const RubbingContact& c) {
+  ContactSlopes slopes = slopes_of(c.normal);
+  slopes.direction = c.rub.direction, slopes.shear = c.rub.stiffness;
+  return slopes;
+}
+
+// A contact over an implicit step in which it rubs.
+struct BodyRubOf {
+  RubbingContactOf contact;
+
+  struct Found {
+    RubbingContact contact;
+    RubbingBooks books;
+    bool lasts;
+    ContactHistory history;
+  };
+  template <class Law>
+  SCREE_HD Found operator()(const Law& law, const RubbingPath& path, const ContactHistory& old) const {
+    const RubbingContact found = contact(law, path, old);
+    return {found, rubbing_books(law, path, found, contact.start.step.resolve_events), found.lasts,
+            found.history};
+  }
+  template <class Views>
+  SCREE_HD const SurfaceRub* stored(const Views&, Index entry) const {
+    const SurfaceRub& at = contact.start.on_bodies[entry];
+    return at.touches ? &at : nullptr;
+  }
+};
+
+template <class Laws, class Rows>
+struct BodyRubItem {
+  RubbingWalk<Laws, Rows> walk;
+  const Vec3* arm;  // at the end of the step
+  BodyStep* out;
+  ShapeContactsTo to;
+
+  SCREE_HD void operator()(Index i) const {
+    BodyStep sum;
+    const auto self = walk.self(i);
+    const BodyRubOf of{{walk.look.start, walk.in.spin}};
+    const auto add = [&](const auto& found, Real share) {
+      if (!found.books.acts) return;
+      sum.sums.add_contact(SurfaceRub{true, turned(found.contact), {}, arm[i], self.p.w, {}, {}});
+      sum.books.add(found.books, share), sum.friction += share * found.books.friction;
+    };
+    walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
+      add(found, kPairShare);
+      if (found.books.acts) to.put(i, sum, {j, slopes_of(found.contact)});
+    });
+    walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
+    out[i] = sum;
+  }
+
+ private:
+  // As the surface sees it: what is odd under exchange of the partners.
+  SCREE_HD static RubbingContact turned(RubbingContact c) {
+    c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
+    c.rub.start = -c.rub.start, c.rub.step = -c.rub.step, c.rub.end = -c.rub.end;
+    return c;
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,31 @@
+#include "dem/surface_contact/body_pairs.hpp"
+
+#include "dem/surface_contact/rubbing_surfaces.hpp"
+
+namespace scree {
+
+// What both give way to at the contact is the difference of their motions there: the blocks are those of
+// sum_term(SurfaceRub), with the other one's motion and its sign.
+void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const ContactSlopes& slopes) {
+  if (other.body < one.body) return add(other, one, slopes);  // both are even in the normal
+  PairStiffness& sum = blocks_[{one.body, other.body}];
+  sum.first = one.body, sum.second = other.body;
+  const Vec3 n = slopes.normal, t = slopes.direction;
+  for (int row = 0; row < kBlockRows; ++row)
+    for (int column = 0; column < kBlockRows; ++column) {
+      const Vec3 a = moved_by_unit(one.place, row), b = moved_by_unit(other.place, column);
+      const Real along = dot(n, a) * dot(n, b);
+      const auto at = static_cast<std::size_t>(kBlockRows * row + column);
+      sum.stiffness[at] -=
+          slopes.stiffness * along + slopes.shear * (dot(a, b) - along - dot(t, a) * dot(t, b));
+      sum.damping[at] -= slopes.damping * along;
+    }
+}
+
+std::vector<PairStiffness> BodyPairs::blocks() const {
+  std::vector<PairStiffness> blocks;
+  for (const auto& [bodies, block] : blocks_) blocks.push_back(block);
+  return blocks;
+}
+
+}  // namespace scree

@@ -1,0 +1,144 @@
+// Where particles touch meshes over an implicit step. One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/surface_contact/mesh_touches.hpp"
+
+namespace scree {
+
+// For the g-th group: the contacts at either end of the step, those at both matched.
+template <bool kSheets>
+struct MeshStepTouchItem {
+  SurfaceViews in;
+  const Vec4* start_position;
+  const PlacedSurface* start_placed;
+  MeshTouch* touches;       // per entry; `touches`: at either end
+  MeshTouchBefore* before;  // likewise
+
+  SCREE_HD void operator()(Index g) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Index i = in.entries.particles[group.entry], s = in.surface_of(group.entry);
+    const PlacedSurface &surface = in.placed[s], &surface0 = start_placed[s];
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const MeshView& mesh = in.meshes.meshes[frame.mesh];
+    const Vec4 p = in.position[i];
+    const Vec3 place = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
+               place0 = place - (xyz(p) - xyz(start_position[i]));
+    const Sight end{frame.axes, transposed_times(frame.axes, place - surface.point), p.w},
+        start{frame.before, transposed_times(frame.before, place0 - surface0.point), p.w};
+    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    MeshContact now[kMeshSlots];
+    RememberedTouches old;
+    int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
+    old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
+    if (is_sheet<kSheets>(mesh)) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
+    for (int k = 0; k < old.count; ++k)
+      old.entry[k] = remembering(group, remembered_feature<kSheets>(mesh, old.contact[k]));
+    // Those that are there at the end come first, whether they were at the start or not.
+    bool matched[kMeshSlots] = {};
+    for (const Kinship kin : {Kinship::same, Kinship::same_patch})
+      for (int k = 0; k < count && k < group.entries; ++k) {
+        if (matched[k]) continue;
+        const int at = find_kin(mesh, now[k], old, kin, 0);
+        if (at < 0) continue;
+        put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
+        matched[k] = true, old.take_out(at);
+      }
+    Overlaps gone{}, come{};  // of the nearest contacts that only one end has
+    for (int k = 0; k < count && k < group.entries; ++k) {
+      if (matched[k]) continue;
+      const MeshContact was = mesh_feature_at(mesh, now[k].feature, start.c, now[k].normal);
+      put(group.entry + k, mesh, now[k], was, {end, start}, -1);
+      if (k == 0) come = overlaps_at(group.entry);
+      open(before[group.entry + k].geometry);
+    }
+    Index next = count;
+    for (int k = 0; k < old.count && next < group.entries; ++k, ++next) {
+      const MeshContact& was = old.contact[k];
+      put(group.entry + next, mesh, mesh_feature_at(mesh, was.feature, end.c, was.normal), was, {end, start},
+          old.entry[k]);
+      if (k == 0) gone = overlaps_at(group.entry + next);
+      open(touches[group.entry + next].geometry);
+    }
+    if (!mesh.sheet && (come.at_end > p.w || gone.at_start > p.w))
+      change_over(group.entry + count, gone, group.entry, come);
+    for (; next < group.entries; ++next) touches[group.entry + next].set_none();
+    if (is_sheet<kSheets>(mesh))
+      for (Index k = 0; k < group.entries; ++k)
+        memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
+  }
+
+ private:
+  // How a sphere lies in the frame of a mesh.
+  struct Sight {
+    const Mat3& axes;
+    Vec3 c;
+    Real radius;
+  };
+  struct Sights {
+    const Sight &end, &start;
+  };
+  // The centre in the frame of a sheet, at both ends.
+  struct Passage {
+    const MeshView& mesh;
+    Vec3 c, c0;
+  };
+  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  // Of the contacts at the start, then of those at the end, which go on from them.
+  SCREE_HD int keep_sides(const MeshGroup& group, const Passage& of, MeshContact* now, int count,
+                          RememberedTouches& old) const {
+    old.count = SideKeeper(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
+    RememberedSides sides;
+    for (int k = 0; k < old.count; ++k) sides.add(sided_feature(of.mesh, old.contact[k]));
+    return SideKeeper(of.mesh, of.c, sides).keep(now, count);
+  }
+  SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
+                    const Sights& sights, Index from) const {
+    const Sight &end = sights.end, &start = sights.start;
+    const FeaturePair pair = feature_pair<kSheets>(mesh, now, end.axes, end.c, end.radius),
+                      pair0 = feature_pair<kSheets>(mesh, was, start.axes, start.c, start.radius);
+    touches[entry] = {true,
+                      acts_as_face<kSheets>(mesh, now),
+                      pair.geometry,
+                      pair.contact,
+                      pair0.geometry.normal(),
+                      remembered_feature<kSheets>(mesh, now),
+                      now.triangle >= 0 ? now.triangle : was.triangle,
+                      from};
+    before[entry] = {pair0.geometry, pair0.contact};
+  }
+  // Overlaps of a contact at both ends of the step, from how its feature lies to the centre; zero: no
+  // contact.
+  struct Overlaps {
+    Real at_start, at_end;
+  };
+  SCREE_HD Overlaps overlaps_at(Index entry) const {
+    return {before[entry].geometry.overlap, touches[entry].geometry.overlap};
+  }
+  // A centre inside a closed mesh, that is an overlap above the radius, touches the nearest face alone. Where
+  // that becomes another one within the step the contact has neither ended nor begun from touch: it changes
+  // over where both are equally near, on the straight lines between their overlaps.
+  SCREE_HD void change_over(Index ends, const Overlaps& gone, Index begins, const Overlaps& come) const {
+    const Real nearer0 = come.at_start - gone.at_start, nearer1 = gone.at_end - come.at_end;
+    if (!(nearer0 > 0 && nearer1 > 0 && gone.at_start > 0 && come.at_end > 0)) return;
+    const Real share = nearer0 / (nearer0 + nearer1);
+    const Real overlap = gone.at_start + share * (gone.at_end - gone.at_start);
+    touches[ends].geometry.overlap = gone.at_end, before[begins].geometry.overlap = come.at_start;
+    before[ends].change = {Changeover::Kind::ends, overlap, share};
+    before[begins].change = {Changeover::Kind::begins, overlap, 1 - share};
+  }
+  // Of a contact that is only at the other end of the step.
+  SCREE_HD static void open(ContactGeometry& geometry) {
+    if (geometry.overlap > 0) geometry.overlap = 0;
+  }
+  // The entry that remembers the contact with a feature.
+  SCREE_HD Index remembering(const MeshGroup& group, Index feature) const {
+    if (in.history.bodies != nullptr)
+      for (Index e = group.entry; e < group.entry + group.entries; ++e)
+        if (in.history.bodies[std::int64_t{e} * in.records].w == in.history.step &&
+            in.history.features[e] == feature)
+          return e;
+    return -1;
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,324 @@
+// Where particles touch meshes: found once for each particle and mesh near each other, before a law is asked.
+// One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/surface_contact/surface_items.hpp"
+#include "dem/surfaces/mesh_rows.hpp"
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/sheet_sides.hpp"
+#include "mesh/standing.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// A sphere as it lies to a feature that it touches.
+struct FeaturePair {
+  ContactGeometry geometry;  // its direction in the global frame
+  Vec3 contact;              // as in MeshTouch
+};
+
+SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
+// Whether a mesh has two sides. kSheets: whether any of the model's has, so that others take nothing for it.
+template <bool kSheets>
+SCREE_HD bool is_sheet(const MeshView& mesh) {
+  return kSheets && mesh.sheet;
+}
+// An edge or a vertex of a sheet that the centre is past acts as the plane across the normal there.
+template <bool kSheets>
+SCREE_HD bool acts_as_face(const MeshView& mesh, const MeshContact& found) {
+  return is_face(mesh, found.feature) || (is_sheet<kSheets>(mesh) && found.distance < 0);
+}
+template <bool kSheets>
+SCREE_HD Index remembered_feature(const MeshView& mesh, const MeshContact& contact) {
+  return is_sheet<kSheets>(mesh) ? sided_feature(mesh, contact) : contact.feature;
+}
+
+// c: the sphere's centre in the mesh's frame. A face acts through the same function as an analytic plane, at
+// the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
+template <bool kSheets>
+SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
+                                  Real radius) {
+  const Vec3 normal = axes * found.normal;
+  if (acts_as_face<kSheets>(mesh, found)) {
+    ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
+    g.direction = normal;
+    return {g, axes * (c - radius * found.normal)};
+  }
+  return {{radius - found.distance, found.distance, normal, 1}, axes * found.point};
+}
+
+// The sides of the contacts of a group with a sheet, as they are remembered and, by a step that may be
+// accepted, kept. Laws that remember do both with their own records.
+struct SideMemory {
+  const HistoryViews& history;
+  int records;
+
+  SCREE_HD bool is_alone() const { return history.bodies == nullptr && history.features != nullptr; }
+  SCREE_HD bool remembers(Index entry) const {
+    if (history.bodies != nullptr) return history.bodies[std::int64_t{entry} * records].w == history.step;
+    return history.features != nullptr && history.features[entry] != kNoFeature;
+  }
+  SCREE_HD RememberedSides of(const MeshGroup& group) const {
+    RememberedSides sides;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e)
+      if (remembers(e)) sides.add(history.features[e]);
+    return sides;
+  }
+  SCREE_HD void keep(Index entry, Index sided) const {
+    if (is_alone()) history.features_ahead[entry] = sided;
+  }
+};
+
+// Contacts of the particle now that were remembered, each with the entry that did.
+struct RememberedTouches {
+  Index entry[kMeshSlots];
+  MeshContact contact[kMeshSlots];  // as the particle lay when the step began
+  int count = 0;
+
+  SCREE_HD void take_out(int k) {
+    --count;
+    for (; k < count; ++k) entry[k] = entry[k + 1], contact[k] = contact[k + 1];
+  }
+};
+
+// Which of them a contact goes on from, -1: none. First the same feature; then, of those on the same smooth
+// patch in about the same direction, the one of the lowest number; then, over a sharp edge, one on a
+// neighbouring patch that acted close by. No order of entries matters.
+enum class Kinship { same, same_patch, neighbour };
+SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old, Kinship kin,
+                      Real contact_radius) {
+  int best = -1;
+  for (int k = 0; k < old.count; ++k) {
+    const MeshContact& c = old.contact[k];
+    if (best >= 0 && !(c.feature < old.contact[best].feature)) continue;
+    const Vec3 apart = now.normal - c.normal;
+    const bool related = kin == Kinship::same ? c.feature == now.feature
+                         : kin == Kinship::same_patch
+                             ? same_cluster(mesh, now, c)
+                             : on_neighbouring_patches(mesh, now.feature, c.feature) &&
+                                   dot(apart, apart) < contact_radius * contact_radius;
+    if (related) best = k;
+  }
+  return best;
+}
+
+// For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
+// the explicit step that ends there. kReaches: also what lies within in.reach of touch, of which the law says
+// whether it is a contact. What the particle touches is the same by either, unless its centre is deeper than
+// its radius inside a closed mesh.
+template <bool kReaches, bool kSheets>
+struct MeshTouchItem {
+  SurfaceViews in;
+  MeshTouch* touches;   // per entry
+  Standing* standings;  // per group; since the list was built
+
+  SCREE_HD void operator()(Index g) const {
+    if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g, Alone{});
+  }
+
+  // Where the particle has not moved so far that its triangles must be looked at: writes its contact to
+  // `first`, for the first of the group's entries. Unclear: it must.
+  SCREE_HD Nearest stay(Index g, MeshTouch& first) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Sphere sphere = sphere_of(group);
+    const Standing standing = standings[g];
+    if (!standing.holds(sphere.c)) return Nearest::unclear;
+    MeshContact contact;
+    const Nearest found =
+        standing.triangle >= 0 && is_over_within(sphere, standing, contact) ? Nearest::one : Nearest::none;
+    return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
+  }
+
+  // Of any group, at its triangles.
+  SCREE_HD_CALLER template <class Team>
+  SCREE_HD void look(Index g, const Team& team) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Sphere sphere = sphere_of(group);
+    const MeshView& mesh = sphere.mesh;
+    const Real reach = searched(sphere.radius);
+    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    Seen seen{Nearest::unclear, {}};
+    if (group.kind != RowKind::any)
+      seen.found = NearestContact(mesh, sphere.c, reach)
+                       .find(triangles, group.triangles, touches[group.entry].triangle, team, seen.contact);
+    if (team.leads()) {
+      if (seen.found != Nearest::unclear &&
+          !write(group, sphere, seen.found, seen.contact, touches[group.entry]))
+        seen.found = Nearest::unclear;
+      if (seen.found == Nearest::unclear) seen.found = look_in_full(group, sphere, seen.contact);
+    }
+    seen = team.of_leader(seen);
+    const StandingRow<Team> row{mesh, group.kind, triangles, group.triangles, sphere.c, reach, team};
+    const bool on_face = seen.found == Nearest::one && is_face(mesh, seen.contact.feature);
+    const Standing standing = seen.found == Nearest::none ? row.clear()
+                              : on_face                   ? row.over(seen.contact.triangle)
+                                                          : kNoStanding;
+    if (team.leads()) standings[g] = standing;
+  }
+
+ private:
+  // What a look has found; the contact has a meaning where it is one.
+  struct Seen {
+    Nearest found;
+    MeshContact contact;
+  };
+  // How it lies in the frame of the mesh, now and where the step began.
+  struct Sphere {
+    const MeshView& mesh;
+    const Mat3 &axes, &axes0;
+    Vec3 c, c0;
+    Real radius;
+
+    // Of a contact with this feature where the step began; side: as in mesh_feature_at().
+    SCREE_HD Vec3 normal0_of(Index feature, Vec3 side) const {
+      return normal0_of(mesh_feature_at(mesh, feature, c0, side));
+    }
+    SCREE_HD Vec3 normal0_of(const MeshContact& contact) const {
+      return feature_pair<kSheets>(mesh, contact, axes0, c0, radius).geometry.normal();
+    }
+  };
+  SCREE_HD Sphere sphere_of(const MeshGroup& group) const {
+    const Index i = in.entries.particles[group.entry];
+    const PlacedSurface& surface = in.placed[in.surface_of(group.entry)];
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec4 p = in.position[i];
+    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
+    const Vec3 c = transposed_times(frame.axes, from_point);
+    const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
+    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
+    return {in.meshes.meshes[frame.mesh], frame.axes, in.h > 0 ? frame.before : frame.axes, c, c0, p.w};
+  }
+  SCREE_HD void put(MeshTouch& to, const Sphere& of, const MeshContact& found) const {
+    const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
+    // One by one: what is stored piecemeal and loaded whole at once waits for the stores.
+    to.touches = pair.geometry.overlap > (kReaches ? -in.reach : 0);
+    to.is_face = acts_as_face<kSheets>(of.mesh, found);
+    to.geometry = pair.geometry, to.contact = pair.contact;
+    to.normal0 = pair.geometry.normal();
+    to.feature = remembered_feature<kSheets>(of.mesh, found), to.triangle = found.triangle;
+    to.from = -1;
+  }
+  // For several contacts. Where there is one alone: that.
+  SCREE_HD Nearest look_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
+    const MeshView& mesh = sphere.mesh;
+    MeshContact found[kMeshSlots];
+    int count = min_of(find_mesh_contacts(mesh, sphere.c, searched(sphere.radius),
+                                          in.meshes.triangles + group.first_triangle, group.triangles, found,
+                                          touches[group.entry].triangle),
+                       static_cast<int>(group.entries));
+    if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, sphere.c, memory().of(group)).keep(found, count);
+    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].set_none();
+    for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
+    if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
+    if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
+    if (count == 1) only_one = found[0];
+    return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
+  }
+  // The contact with the plane of the triangle that c is over, if that is within reach.
+  SCREE_HD bool is_over_within(const Sphere& sphere, const Standing& on, MeshContact& face) const {
+    const MeshPart& part = sphere.mesh.parts[on.part];
+    const Real height = dot(sphere.c - part.point, part.normal);
+    face = {on.part, on.triangle, std::abs(height), part.point,
+            height >= 0 ? part.normal : opposite(part.normal)};
+    return face.distance < searched(sphere.radius);
+  }
+  // That this contact, or none, is all of a group. False: it goes on from others than itself, and nothing was
+  // written.
+  SCREE_HD bool write(const MeshGroup& group, const Sphere& sphere, Nearest found, MeshContact contact,
+                      MeshTouch& first) const {
+    const MeshView& mesh = sphere.mesh;
+    const Before before = before_of(group);
+    const bool is_one = found == Nearest::one;
+    if (before.entries > 1 || (is_one && !continues(mesh, before, contact))) return false;
+    for (Index k = is_one ? 1 : 0; k < group.entries; ++k) touches[group.entry + k].set_none();
+    if (is_one) {
+      put(first, sphere, contact);
+      if (in.history.bodies != nullptr) go_on_alone(first, sphere, before, contact);
+    }
+    if (is_sheet<kSheets>(mesh) && in.h > 0)
+      for (Index k = 0; k < group.entries; ++k)
+        memory().keep(group.entry + k, is_one && k == 0 ? first.feature : kNoFeature);
+    return true;
+  }
+  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  SCREE_HD void keep_sides(const MeshGroup& group, int count) const {
+    for (Index k = 0; k < group.entries; ++k)
+      memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
+  }
+  // How far from its centre a sphere of this radius may have contacts [m].
+  SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
+  SCREE_HD bool remembers(Index entry) const {
+    return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
+  }
+  // What the contacts of a group remember: in how many entries, and what in the last of these.
+  struct Before {
+    Index entries = 0, entry = -1, feature = kNoFeature;
+  };
+  SCREE_HD Before before_of(const MeshGroup& group) const {
+    Before before;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e)
+      if (memory().remembers(e)) ++before.entries, before.entry = e, before.feature = in.history.features[e];
+    return before;
+  }
+  // False: another feature is remembered. Gives a contact with a sheet the side on which it began.
+  SCREE_HD static bool continues(const MeshView& mesh, const Before& before, MeshContact& contact) {
+    if (before.entries == 0) return true;
+    if (!is_sheet<kSheets>(mesh)) return before.feature == contact.feature;
+    if (without_side(before.feature) != contact.feature) return false;
+    if (before.feature != sided_feature(mesh, contact)) turn_over(contact);
+    return true;
+  }
+  SCREE_HD static void go_on_alone(MeshTouch& touch, const Sphere& sphere, const Before& before,
+                                   const MeshContact& contact) {
+    touch.from = before.entry;
+    const bool has_side = is_sheet<kSheets>(sphere.mesh) && before.entries > 0;
+    touch.normal0 = sphere.normal0_of(
+        contact.feature, has_side ? side_direction(sphere.mesh, before.feature) : contact.normal);
+  }
+  struct Found {
+    const MeshContact* contacts;
+    int count;
+  };
+  // Finds what the contacts go on from; of those that do, and of the others, the normals where the step
+  // began.
+  SCREE_HD void go_on(const MeshGroup& group, const Sphere& sphere, const Found& found) const {
+    const MeshView& mesh = sphere.mesh;
+    RememberedTouches old;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e) {
+      if (!remembers(e)) continue;
+      const Index remembered = in.history.features[e],
+                  feature = is_sheet<kSheets>(mesh) ? without_side(remembered) : remembered;
+      const bool has_side = is_sheet<kSheets>(mesh) && !is_open(mesh, feature);
+      const Vec3 side = has_side ? side_direction(mesh, remembered) : side_of(found, mesh, feature);
+      old.entry[old.count] = e;
+      old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side);
+    }
+    for (const Kinship kin : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
+      for (int k = 0; k < found.count && old.count > 0; ++k) {
+        MeshTouch& out = touches[group.entry + k];
+        if (out.from >= 0) continue;
+        const Real overlap = out.geometry.overlap;
+        const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / sphere.radius);
+        const int before = find_kin(mesh, found.contacts[k], old, kin, close);
+        if (before < 0) continue;
+        out.from = old.entry[before];
+        out.normal0 = sphere.normal0_of(old.contact[before]);
+        old.take_out(before);
+      }
+    for (int k = 0; k < found.count; ++k) {
+      MeshTouch& out = touches[group.entry + k];
+      if (out.from < 0) out.normal0 = sphere.normal0_of(found.contacts[k].feature, found.contacts[k].normal);
+    }
+  }
+  // What a remembered feature of a sheet is seen along where that has no sides.
+  SCREE_HD static Vec3 side_of(const Found& found, const MeshView& mesh, Index feature) {
+    for (int k = 0; k < found.count; ++k)
+      if (found.contacts[k].feature == feature) return found.contacts[k].normal;
+    return found.count > 0          ? found.contacts[0].normal
+           : is_face(mesh, feature) ? mesh.parts[feature].normal
+                                    : Vec3{};
+  }
+  SCREE_HD static int min_of(int a, int b) { return a < b ? a : b; }
+};
+
+}  // namespace scree

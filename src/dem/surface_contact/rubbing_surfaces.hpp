@@ -1,0 +1,166 @@
+// What happens for one particle and one surface on a body over an implicit step in which contacts rub; beside
+// surface_items.hpp. One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/implicit/rubbing_items.hpp"
+#include "dem/surface_contact/surface_items.hpp"
+
+namespace scree {
+
+// How the place on the body at `place` from its centre moves where the body takes a unit step along its k-th
+// coordinate (x, y, z, rx, ry, rz).
+SCREE_HD Vec3 moved_by_unit(Vec3 place, int k) {
+  const Vec3 axis{k % 3 == 0 ? Real(1) : Real(0), k % 3 == 1 ? Real(1) : Real(0),
+                  k % 3 == 2 ? Real(1) : Real(0)};
+  return k < 3 ? axis : cross(axis, place);
+}
+
+// On a sphere the force of friction acts at its centre with a couple about that, as between two spheres, on
+// other surfaces where they touch. Its part of the blocks is that of the Newton matrix of the particles
+// (RubbingEntry): the slip is minus the motion of the place of contact across the normal, one direction of
+// which is left in a slide.
+SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
+  const StepContact& normal = c.contact.normal;
+  const Vec3 n = normal.normal;
+  if (k < 2 * kWrenchTerms) {
+    const bool at_end = k < kWrenchTerms;
+    const Vec3 rub = at_end ? c.contact.rub.end : c.contact.rub.step;
+    if (k % kWrenchTerms == kBlockRows) return c.contact.leverage * dot(rub, c.slide);
+    const Vec3 force = c.contact.leverage * rub - (at_end ? normal.end_force : normal.step.force) * n;
+    return component(force, cross(c.arm, force) + c.radius * cross(n, rub), k % kWrenchTerms);
+  }
+  const BlockPlace at = block_place(k);
+  const Vec3 place = c.arm + c.radius * n;
+  const Vec3 a = moved_by_unit(place, at.row), b = moved_by_unit(place, at.column);
+  const Real along = dot(n, a) * dot(n, b);
+  if (!at.is_stiffness) return normal.step.damping * along;
+  const Vec3 t = c.contact.rub.direction;
+  return normal.step.stiffness * along +
+         c.contact.rub.stiffness * (dot(a, b) - along - dot(t, a) * dot(t, b));
+}
+
+// Contacts over the step, for the k-th of the entries by_surface. in.spin: at the end.
+template <class Laws>
+struct SurfaceRubItem {
+  SurfaceViews in;
+  RubbingStart start;
+  const PlacedSurface* start_placed;
+  Laws laws;
+  SurfaceRub* rubs;  // per entry
+
+  using Law = LawOf<Laws>;
+
+  SCREE_HD void operator()(Index k) const {
+    const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
+    const PlacedSurface &surface = in.placed[in.surface_of(entry)],
+                        &before = start_placed[in.surface_of(entry)];
+    SurfaceRub& out = rubs[entry];
+    const SurfacePath way = surface_path(in, surface, before, entry, in.position[i], start.step.position[i]);
+    if (surface.kind == SurfaceKind::mesh && !(way.now.touches || way.start.touches)) {
+      out.touches = false;
+      return in.template remember_none<Law>(entry);
+    }
+    const RubbingPath path = path_of(way, surface, before, entry, i);
+    out.touches = OverRubbingStep::closed(path);
+    if (!out.touches) return in.template remember_none<Law>(entry);
+    const Law& law = laws.get(in.material[i], surface.material);
+    const bool resolve_events = start.step.resolve_events;
+    const ContactHistory old =
+        in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
+    out.contact = rubbing_contact(law, path, old, resolve_events, [&](bool at_end) {
+      return path.motion.arm_i * xyz((at_end ? in.spin : start.spin)[i]) +
+             path.motion.arm_j * (at_end ? surface : before).spin;
+    });
+    out.books = rubbing_books(law, path, out.contact, resolve_events);
+    if (out.contact.acts && surface.turns())
+      out.books.integrator += carrier_work(law, path, out.contact, carrier_excess(way, surface, before)) +
+                              slide_work(surface, path, out.contact);
+    out.arm = way.now.is_sphere ? surface.arm : surface.arm + way.now.pair.contact;
+    out.radius = way.now.is_sphere ? surface.radius : 0;
+    out.contact_arm = way.now.is_sphere ? Vec3{} : way.now.pair.contact;
+    out.slide = path.slide;
+    if (!out.contact.lasts) return in.template remember_none<Law>(entry);
+    in.template remember<Law>(surface, entry, out.contact.history);
+  }
+
+ private:
+  // What the surface's own motion adds to what friction sees.
+  SCREE_HD static void run_along(const SurfaceFrame& frame, RubbingPath& path) {
+    add_slide(path.motion, frame.middle_slide());
+    const Vec3 slide = frame.axes * frame.slide;
+    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= slide;
+    path.slide = across(slide, path.normal1);
+  }
+  // CarrierExcess::work() of all forces.
+  SCREE_HD static Real carrier_work(const Law& law, const RubbingPath& path, const RubbingContact& contact,
+                                    const CarrierExcess& excess) {
+    const Real force0 = start_force(law.normal.of_pair(path.size), path.step);
+    return excess.work(force0 * path.normal0 - contact.leverage0 * contact.rub.start,
+                       contact.normal.step.force * path.normal1 - contact.leverage * contact.rub.step);
+  }
+  // Excess work of a surface that runs along itself [J]: its accounting takes at the start the velocity
+  // there.
+  SCREE_HD Real slide_work(const PlacedSurface& surface, const RubbingPath& path,
+                           const RubbingContact& contact) const {
+    if (path.slide == Vec3{}) return 0;
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec3 slide0 = across(frame.before * frame.slide, path.normal0);
+    return path.step.h / 2 * contact.leverage0 * dot(contact.rub.start, path.slide - slide0);
+  }
+  SCREE_HD RubbingPath path_of(const SurfacePath& way, const PlacedSurface& surface,
+                               const PlacedSurface& before, Index entry, Index i) const {
+    const Vec4 p = in.position[i], w = start.mean_spin[i];
+    const ContactGeometry &end = way.now.pair.geometry, &begin = way.start.pair.geometry;
+    const bool is_sphere = way.now.is_sphere;
+    const Vec3 place = is_sphere ? Vec3{} : way.now.pair.contact,
+               place0 = is_sphere ? Vec3{} : way.start.pair.contact;
+    const Real h = start.step.h, arm = is_sphere ? surface.radius : 0;
+    const TurningPartner one{xyz(w), p.w, w.w}, other{reciprocal(h) * surface.turn, arm};
+    RubbingPath out{};
+    out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at(place0);
+    out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(place);
+    static_cast<ContactPath&>(out) = OverStep{start.step}.path(
+        end, out.velocity1, begin, out.velocity0, way.travel, surface_size(in, entry, p, in.velocity[i]));
+    out.step.change = way.change;
+    if (is_sphere)
+      out.motion = sphere_motion(end, way.travel, one, other, h);
+    else
+      out.motion = motion_over(surface, way.now, out.normal0, way.travel, one, other, h);
+    if (!is_sphere && in.frames[surface.frame].runs()) run_along(in.frames[surface.frame], out);
+    const Real reach = p.w + arm;
+    out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);
+    out.curvature = way.now.is_face ? 0 : out.motion.leverage / reach;
+    out.turning = h * (one.arm * one.spin + other.arm * other.spin);
+    out.i = i, out.j = RubbingPath::kWall;
+    OverRubbingStep{start}.at_entry(out, entry);
+    return out;
+  }
+};
+
+// As SurfaceShiftItem. rubs, surfaces, numbers: of the entries.
+struct RubbingShiftItem {
+  RubbingMatrix matrix;
+  const Index *surface_offsets, *surfaces;
+  SurfaceNumbers numbers;
+  const SurfaceRub* rubs;
+  NewtonWeights weights;
+  bool consistent;
+  SurfaceMoves moves;
+  Twist* residual;  // [N]
+
+  SCREE_HD void operator()(Index i) const {
+    const Real scale = 1 / weights.stiffness;
+    for (Index k = 0; k < matrix.surface_count[i]; ++k) {
+      const RubbingEntry& of = matrix.surface_entries[surface_offsets[i] + k];
+      if (of.normal.neighbor == RubbingPath::kWall) continue;
+      const SurfaceRub& rub = rubs[of.normal.neighbor];
+      const Index surface = numbers.placed(surfaces[of.normal.neighbor]);
+      const Vec3 move = moves.move[surface], turn = moves.turn[surface];
+      residual[i] -= rub.radius > 0
+                         ? of.pull(-scale * move, scale * turn, consistent)
+                         : of.pull(-scale * (move + cross(turn, rub.contact_arm)), Vec3{}, consistent);
+    }
+  }
+};
+
+}  // namespace scree

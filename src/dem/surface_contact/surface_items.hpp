@@ -1,0 +1,366 @@
+// What happens for one particle and one surface on a body: the contact is evaluated once, for the particle's
+// force and for the body's wrench. One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/contact/contact_items.hpp"
+#include "dem/contact/system_items.hpp"
+#include "dem/surfaces/mesh_rows.hpp"
+#include "dem/surfaces/surface_sums.hpp"
+#include "dem/surfaces/surfaces.hpp"
+#include "partition/halo_plan.hpp"
+
+namespace scree {
+
+// Particles as contacts with bodies are looked at.
+struct SurfaceLook {
+  const Vec4 *position, *velocity, *spin;  // spin: null where particles do not rotate
+  HistoryViews history;
+  Real h = 0;  // of the explicit step that ends there [s]; 0: an instant
+};
+
+// The particles, the placed surfaces and the list of those that are near each other.
+struct SurfaceViews {
+  const Vec4 *position, *velocity;  // x, y, z, radius; x, y, z, mass
+  const int* material;
+  SurfaceEntries entries;
+  const PlacedSurface* placed;
+  const SurfaceFrame* frames;
+  SurfaceNumbers numbers;
+  MeshRows meshes;
+  const MeshTouch* touches;  // per entry with a mesh, as they are now
+  const MeshTouchBefore* before;
+  PeriodicBox box;
+  HistoryViews history{};
+  int records = 0;             // per contact that is remembered
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
+  Real h = 0;                  // SurfaceLook
+  Real reach = 0;              // Contact::reach [m]
+  // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
+  // [kg]
+  const Real* masses = nullptr;
+  // Radii [m] that laws take instead of the particles' own; null: the particles' own.
+  const Real* law_radius = nullptr;
+
+  SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
+  SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
+  SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
+    return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
+  }
+  // What the contact remembers if the step is accepted.
+  template <class Law, class History>
+  SCREE_HD void remember(const PlacedSurface& surface, Index entry, const History& of_contact) const {
+    if (history.ahead == nullptr) return;
+    history.template write<Law>(history.ahead, entry, of_contact);
+    if (surface.kind == SurfaceKind::mesh) history.features_ahead[entry] = touches[entry].feature;
+  }
+  template <class Law>
+  SCREE_HD void remember_none(Index entry) const {
+    if (Law::kHistory > 0 && history.ahead != nullptr) history.template write_none<Law>(history.ahead, entry);
+  }
+};
+
+// How a particle lies to a placed surface.
+struct SurfaceTouch {
+  SurfacePair pair;
+  bool is_sphere;  // contacts act at its centre; else at pair.contact
+  bool is_face;
+  bool touches;
+};
+
+// reach: how far beyond touch the two may have a contact, in.reach or 0 [m].
+SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry, Vec4 p,
+                                    Real reach) {
+  if (surface.kind == SurfaceKind::mesh) {
+    const MeshTouch& touch = in.touches[entry];
+    if (!touch.touches) return {};
+    return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
+  }
+  const bool is_sphere = surface.kind == SurfaceKind::sphere;
+  // A plane has no images: where it is touched must not depend on when the particle was last wrapped.
+  const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
+  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
+}
+// Walls, edges and corners have no curvature that Hertz's law knows. p, u: of the entry's particle.
+SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4 u) {
+  const Index surface = in.surface_of(entry);
+  const PlacedSurface& placed = in.placed[surface];
+  return {in.law_radius != nullptr ? in.law_radius[in.entries.particles[entry]] : p.w,
+          placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
+          in.masses != nullptr ? in.masses[surface] : kInfinity};
+}
+
+// Position of a contact with a plane or a mesh when the step began, from the surface's point then [m].
+// normal0: the contact's normal then; apart: displacement of the sphere's centre relative to the surface's
+// point since. On a face and an edge the contact is below the centre; at a vertex it is the vertex.
+SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
+                            Vec3 apart) {
+  const Vec3 place = touch.pair.contact, normal1 = touch.pair.geometry.normal();
+  if (touch.is_face) return place - apart + radius * (normal1 - normal0);
+  const Vec3 centre = place - apart + touch.pair.geometry.distance * normal1;
+  const Vec3 material = frame.before * transposed_times(frame.axes, place);
+  return material + across(centre - material, normal0);
+}
+// A velocity of the middle of a step, changed along the contact's normal at the end of the step: its rate
+// there becomes the rate along the normal of the middle, where the surface had turned by half.
+SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 velocity) {
+  const Vec3 normal = touch.pair.geometry.normal();
+  return velocity - Real(0.5) * dot(cross(surface.turn, normal), velocity) * normal;
+}
+// Motion of a sphere i over a plane or a mesh j in a step; travel: relative to the material of j halfway
+// along the path of the contact [m]. face_motion() takes the part across the normal at the end for slip.
+// Where a face has turned, the part along the normal of the middle of the step must not count as slip: else a
+// contact that opens or closes slips.
+SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 normal0,
+                                   Vec3 travel, const TurningPartner& i, const TurningPartner& j, Real h) {
+  const ContactGeometry& geometry = touch.pair.geometry;
+  if (!touch.is_face) return edge_motion(geometry, normal0, travel, i, j, h);
+  const Vec3 normal = geometry.normal();
+  if (surface.turns()) travel += (dot(travel, normal) / 2) * cross(surface.turn, normal);
+  return face_motion(geometry, normal0, travel, i, j, h);
+}
+
+// Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
+// entries by_surface.
+template <class Laws>
+struct SurfaceLoadItem {
+  SurfaceViews in;
+  Laws laws;
+  SurfaceLoad* loads;  // per entry
+
+  using Law = LawOf<Laws>;
+
+  SCREE_HD void operator()(Index k) const {
+    const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
+    const PlacedSurface& surface = in.placed[in.surface_of(entry)];
+    const Vec4 p = in.position[i], u = in.velocity[i];
+    SurfaceLoad& out = loads[entry];
+    const SurfaceTouch touch = surface_touch(in, surface, entry, p, kReaches<Law> ? in.reach : 0);
+    out.touches = touch.touches;
+    if (!out.touches) return in.template remember_none<Law>(entry);
+    const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
+                          surface_size(in, entry, p, u)};
+    const Law& law = laws.get(in.material[i], surface.material);
+    if constexpr (Law::kMoves)
+      find_moving(law, state, touch, surface, entry);
+    else
+      find_load(law, state, surface, entry);
+    if constexpr (kReaches<Law>)
+      if (!out.touches) return;
+    out.arm = Law::kMoves && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
+    out.slide_power = Law::kMoves ? slide_power(touch, surface, out.load.force) : 0;
+    out.particle_arm = contact_arm(state);
+  }
+
+ private:
+  SCREE_HD void find_load(const Law& law, const PairState& state, const PlacedSurface& surface,
+                          Index entry) const {
+    SurfaceLoad& out = loads[entry];
+    if constexpr (Law::kHistory == 0) {
+      if constexpr (kReaches<Law>) {
+        out.touches = law.closed(state, {});
+        if (!out.touches) return;
+      }
+      out.load = law.load(state);
+    } else {
+      const auto load = LoadOf{}(law, state, old(surface, entry));
+      out.load = load;
+      in.template remember<Law>(surface, entry, load.history);
+    }
+    out.energy = EnergyOf{}(law, state);
+  }
+  SCREE_HD auto old(const PlacedSurface& surface, Index entry) const {
+    return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
+  }
+
+  // Of those in reach of each other the law says which have a contact.
+  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
+    if constexpr (kReaches<Law>)
+      return law.closed(state, before);
+    else
+      return true;
+  }
+  SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
+                            const PlacedSurface& surface, Index entry) const {
+    const ContactHistory before = old(surface, entry);
+    const bool closed = is_closed(law, state, before);
+    if (!closed) {
+      in.template remember_none<Law>(entry);
+      loads[entry].touches = in.h > 0 && Law::breaks(before);  // for what the step that parts the two loses
+      if (!loads[entry].touches) return;
+    }
+    MovingPair pair = moving_pair(state, touch, surface, entry);
+    if (in.h > 0) {
+      if (!touch.is_sphere && in.frames[surface.frame].runs())
+        add_slide(pair.motion, in.frames[surface.frame].middle_slide());
+      const ContactOutcome outcome = law.load(pair, before);
+      take(outcome, entry);
+      loads[entry].energy = closed ? EnergyOf{}(law, pair, outcome.history) : ContactEnergy{};
+      if (closed) in.template remember<Law>(surface, entry, outcome.history);
+    } else {
+      InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
+      if (!touch.is_sphere && in.frames[surface.frame].runs())
+        at.slip_rate -= pair.motion.leverage * slide_at(touch, surface);
+      take(law.load(at, before), entry);
+      loads[entry].energy = EnergyOf{}(law, at, before);
+    }
+  }
+  // A sphere of a body moves as another particle does: its force acts at its centre, with a couple about
+  // that. A face acts at the particle's radius below its centre, so that the two turn together without slip;
+  // an edge or a corner where it is.
+  SCREE_HD MovingPair moving_pair(PairState state, const SurfaceTouch& touch, const PlacedSurface& surface,
+                                  Index entry) const {
+    const Index i = in.entries.particles[entry];
+    const TurningPartner one{xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
+    const bool at_rest = !(in.h > 0);
+    const Vec3 turning = at_rest ? surface.spin : reciprocal(in.h) * surface.turn;
+    if (touch.is_sphere) {
+      const Vec3 travel = at_rest ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.travel;
+      state.velocity = at_rest ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * travel;
+      return {state, sphere_motion(state.geometry, travel, one, {turning, surface.radius}, in.h)};
+    }
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec3 normal0 = surface.kind == SurfaceKind::mesh ? in.touches[entry].normal0
+                         : at_rest                         ? surface.normal
+                                                           : frame.before * frame.normal;
+    if (!at_rest) {
+      const Vec3 apart = in.h * xyz(in.velocity[i]) - surface.travel,
+                 from = start_contact(touch, frame, one.arm, normal0, apart);
+      state.velocity = xyz(in.velocity[i]) -
+                       reciprocal(in.h) * (surface.travel + frame.travel_under(touch.pair.contact, from));
+    }
+    const ContactMotion motion =
+        motion_over(surface, touch, normal0, in.h * state.velocity, one, {turning}, in.h);
+    // A dashpot along the normal acts on the rate of the overlap.
+    if (!at_rest && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
+    return {state, motion};
+  }
+  // Velocity of a surface that runs along itself, where they touch [m/s].
+  SCREE_HD Vec3 slide_at(const SurfaceTouch& touch, const PlacedSurface& surface) const {
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    return across(frame.axes * frame.slide, touch.pair.geometry.normal());
+  }
+  SCREE_HD Real slide_power(const SurfaceTouch& touch, const PlacedSurface& surface, Vec3 force) const {
+    if (touch.is_sphere || !in.frames[surface.frame].runs()) return 0;
+    return -dot(force, slide_at(touch, surface));
+  }
+  SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
+    loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
+  }
+};
+
+// How a particle lies to a placed surface at both ends of an implicit step.
+struct SurfacePath {
+  SurfaceTouch now, start;
+  // Displacements [m]: travel of the particle's centre relative to the surface's material halfway along the
+  // contact's path, turned of that material about the surface's point.
+  Vec3 travel, turned;
+  Changeover change{};
+};
+
+SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
+                                  const PlacedSurface& before, Index entry, Vec4 p, Vec4 p0) {
+  SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}, {}};
+  if (surface.kind == SurfaceKind::mesh) {
+    out.start = out.now;
+    if (!out.now.touches) return out;  // at neither end
+    const MeshTouchBefore& at = in.before[entry];
+    out.start.pair = {at.geometry, at.contact}, out.change = at.change;
+    out.start.touches = at.geometry.overlap > 0, out.now.touches = out.now.pair.geometry.overlap > 0;
+  } else {
+    out.start = surface_touch(in, before, entry, p0, 0);
+  }
+  out.travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
+  if (out.now.is_sphere) return out;
+  const SurfaceFrame& frame = in.frames[surface.frame];
+  const Vec3 normal0 = out.start.pair.geometry.normal();
+  out.turned =
+      frame.travel_under(out.now.pair.contact, start_contact(out.now, frame, p.w, normal0, out.travel));
+  out.travel -= out.turned;
+  return out;
+}
+
+// The energy ledger of a carrier takes the work of a force at `arm` from its centre along the carrier's
+// displacement and turn, d + turn x arm. By how much the travel of a SurfacePath is more than the particle's
+// displacement less that, for the forces at the start and the end of an implicit step [m].
+struct CarrierExcess {
+  Vec3 start, end;
+
+  // The work that the energy accounting of the contact must leave out [J]; forces: on the particle.
+  SCREE_HD Real work(Vec3 start_force, Vec3 end_force) const {
+    return Real(0.5) * (dot(start_force, start) + dot(end_force, end));
+  }
+};
+SCREE_HD CarrierExcess carrier_excess(const SurfacePath& path, const PlacedSurface& surface,
+                                      const PlacedSurface& before) {
+  const Vec3 of_material = path.turned + (surface.arm - before.arm);
+  const auto excess = [&](const PlacedSurface& at, const SurfaceTouch& touch) {
+    return cross(surface.turn, at.arm + touch.pair.contact) - of_material;
+  };
+  return {excess(before, path.start), excess(surface, path.now)};
+}
+template <class Laws>
+struct SurfaceStepItem {
+  SurfaceViews in;
+  StepStart start;
+  const PlacedSurface* start_placed;
+  Laws laws;
+  SurfaceStep* steps;  // per entry
+
+  SCREE_HD void operator()(Index k) const {
+    const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
+    const PlacedSurface &surface = in.placed[in.surface_of(entry)],
+                        &before = start_placed[in.surface_of(entry)];
+    const Vec4 p = in.position[i], u = in.velocity[i];
+    const SurfacePath path = surface_path(in, surface, before, entry, p, start.position[i]);
+    const SurfacePair &pair = path.now.pair, &pair0 = path.start.pair;
+    SurfaceStep& out = steps[entry];
+    out.touches = path.now.touches || path.start.touches;
+    if (!out.touches) return;
+    ContactPath over =
+        OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
+                             xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
+                             surface_size(in, entry, p, u));
+    over.step.change = path.change;
+    const auto& law = laws.get(in.material[i], surface.material);
+    const StepContactOf of{start.resolve_events};
+    out.contact = of(law, over);
+    out.books = StepBooksOf{of}(law, over);
+    if (surface.turns()) {
+      const Real force0 = start_force(law.normal.of_pair(over.size), over.step);
+      out.books.integrator += carrier_excess(path, surface, before)
+                                  .work(force0 * over.normal0, out.contact.step.force * over.normal1);
+    }
+    out.arm = surface.arm + pair.contact;
+    out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;
+  }
+};
+
+// How the placed surfaces have moved by the bodies' last correction: their points [m], and about these, of
+// spheres times the radius [m], of others [rad].
+struct SurfaceMoves {
+  const Vec3 *move, *turn;
+};
+
+// The bodies have taken their correction: as a known part of the solution it moves to the right-hand side of
+// the particles' system.
+template <class Rows>
+struct SurfaceShiftItem {
+  ContactViews<Rows> in;
+  NewtonWeights weights;
+  SurfaceMoves moves;
+  Vec3* residual;  // [N]
+
+  SCREE_HD void operator()(Index i) const {
+    for (Index entry = in.surface_offsets[i]; entry < in.surface_offsets[i + 1]; ++entry) {
+      if (in.numbers.at_rest(in.surfaces[entry]) || !in.steps[entry].touches) continue;
+      const Index surface = in.numbers.placed(in.surfaces[entry]);
+      const SurfaceStep& step = in.steps[entry];
+      const StepContact& c = step.contact;
+      Vec3 moved = moves.move[surface];
+      if (!step.is_sphere) moved += cross(moves.turn[surface], step.contact_arm);
+      residual[i] += (weights.of(c.step) * (dot(c.normal, moved) / weights.stiffness)) * c.normal;
+    }
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,73 @@
+// What one particle does to a wall. One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/contact/contact_items.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// Sums over what touches a wall, at one instant.
+enum WallTerm {
+  kWallForce,                    // three terms, on the wall [N]
+  kWallTorque = kWallForce + 3,  // three terms, about the wall's point [N m]
+  kWallContacts = kWallTorque + 3,
+  kWallTerms
+};
+
+struct WallTerms {
+  Real value[kWallTerms];
+};
+
+// The wall in question, and what brings positions into the periodic box: torques must not depend on when a
+// particle was last wrapped.
+struct WallChoice {
+  Index wall;        // index into Model::walls
+  Vec3 min, period;  // of the space [m]
+};
+
+// What a wall sees of a contact: the force on the item, and from where its centre touches.
+struct WallLoad {
+  Vec3 force;    // [N]
+  Vec3 to_wall;  // from the item's centre to the point of contact [m]
+};
+
+struct WallLoadOf {
+  template <class Law>
+  SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
+    return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
+  }
+  template <class Law, class Pair, class History>
+  SCREE_HD WallLoad operator()(const Law& law, const Pair& pair, const History& old) const {
+    return {law.load(pair, old).load.force, -pair.geometry.distance * pair.geometry.direction};
+  }
+  // Bodies book what they do to walls themselves.
+  template <class Views>
+  SCREE_HD const WallLoad* stored(const Views&, Index) const {
+    return nullptr;
+  }
+};
+
+template <class Laws, class Rows>
+struct WallContactItem {
+  ContactWalk<Laws, Rows> walk;
+  WallChoice choice;
+
+  SCREE_HD WallTerms operator()(Index i) const {
+    const auto self = walk.self(i);
+    WallTerms sum{};
+    walk.surfaces(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
+      if (wall == choice.wall) sum = terms(self.p, load);
+    });
+    return sum;
+  }
+
+  SCREE_HD WallTerms terms(Vec4 p, const WallLoad& load) const {
+    const Vec3 force = -load.force;
+    ImageCount unused;
+    const Vec3 point = wrap(choice.min, choice.period, xyz(p), unused) + load.to_wall;
+    const Vec3 torque = cross(point - walk.in.numbers.planes[choice.wall].point, force);
+    return {{force.x, force.y, force.z, torque.x, torque.y, torque.z, 1}};
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,393 @@
+// Materials and the contact law of every pair of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "model/builder/build_parts.hpp"
+#include "model/builder/mixing.hpp"
+#include "model/checks/limits.hpp"
+#include "model/checks/plausibility.hpp"
+#include "model/derived/mesh_corners.hpp"
+#include "model/derived/touching.hpp"
+#include "physics/cohesion.hpp"
+#include "physics/restitution.hpp"
+
+namespace scree {
+
+namespace {
+
+// Whether a key is given with an effect: where 0 means that there is none, it is as if it were left out.
+bool is_positive(const DeckTable& table, const char* key) { return table.has(key) && table.real(key) > 0; }
+
+// The damping ratio of a restitution, beside a law's K, n and tension.
+void take_restitution(const DeckTable& table, KelvinVoigt& law) {
+  if (!table.has("restitution")) return;
+  if (table.real("damping") > 0) table.fail("restitution", "stands beside a damping; give one of the two");
+  if (!law.acts()) table.fail("restitution", "must be left out where the stiffness is 0");
+  if (law.exponent < 1)
+    table.fail("restitution", "needs an exponent of at least 1: below, its damper would have no bound");
+  law.damping_ratio = damping_ratio_of(table.real("restitution"), law.tension);
+}
+
+// K at which an undamped head-on impact at the speed reaches the overlap: K d^(n+1) / (n+1) = m* v^2 / 2,
+// of the pair's partners with the heaviest reduced mass and the smallest radius [N/m^n].
+Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int (&material)[2]) {
+  if (table.has("stiffness")) table.fail("largest_overlap", "stands beside a stiffness; give one of the two");
+  if (table.real("damping") > 0)
+    table.fail("damping", "must be left out beside largest_overlap; give a restitution instead");
+  if (!table.has("impact_speed"))
+    table.fail("impact_speed", "missing; largest_overlap is that of an impact at this speed");
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const MaterialUse &a = uses[static_cast<std::size_t>(material[0])],
+                    &b = uses[static_cast<std::size_t>(material[1])];
+  if (a.particles + b.particles == 0)
+    table.fail("largest_overlap", "needs particles of one of the two materials; give a stiffness");
+  const bool alike = a.particles > 0 && b.particles > 0 && !a.is_of_surfaces() && !b.is_of_surfaces();
+  const Real mass = model.particles.totals.largest_mass / (alike ? 2 : 1);
+  const PairSize smallest = smallest_partners(a, b);
+  const Real overlap = table.real("largest_overlap") * std::min(smallest.radius_i, smallest.radius_j);
+  const Real speed = table.real("impact_speed"), n = table.real("exponent");
+  return (n + 1) / 2 * mass * speed * speed / std::pow(overlap, n + 1);
+}
+
+// F = K d^n + C d_dot, K given, or following from a largest overlap.
+KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int (&material)[2],
+                          bool has_moduli) {
+  const bool from_overlap = table.has("largest_overlap");
+  KelvinVoigt law{from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
+                  table.real("damping"), table.real("exponent"), table.boolean("tension")};
+  const char* key = from_overlap ? "largest_overlap" : "stiffness";
+  if (law.normal_stiffness != 0) check_normal(table, key, law.normal_stiffness);
+  if (law.normal_stiffness == 0 && law.normal_damping > 0)
+    table.fail("damping", "must be 0 where the stiffness is 0");
+  take_restitution(table, law);
+  if (law.acts() && has_moduli)
+    table.fail(key, fmt::format("both materials have a young_modulus, too; leave out the {} for Hertz's law, "
+                                "or the moduli for this one",
+                                key));
+  return law;
+}
+
+void check_moduli(const DeckTable& material) {
+  const bool has_modulus = material.has("young_modulus"), has_ratio = material.has("poisson_ratio");
+  if (has_modulus != has_ratio)
+    material.fail(has_modulus ? "poisson_ratio" : "young_modulus",
+                  "missing; Hertz's law takes young_modulus and poisson_ratio together");
+}
+
+// Young's modulus over 1 - nu^2 [Pa], or 0 where the material has none.
+Real plane_strain_modulus(const DeckTable& material) {
+  if (!material.has("young_modulus")) return 0;
+  const Real ratio = material.real("poisson_ratio");
+  return material.real("young_modulus") / (1 - ratio * ratio);
+}
+
+// Hertz's law; moduli: of the two materials.
+KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&moduli)[2],
+                      const int (&material)[2]) {
+  for (int side = 0; side < 2; ++side)
+    if (moduli[side] == 0)
+      table.fail("stiffness",
+                 fmt::format("missing; give it or, for Hertz's law, young_modulus and poisson_ratio of both "
+                             "materials: \"{}\" has none",
+                             model.contact.material_names[static_cast<std::size_t>(material[side])]));
+  if (table.real("damping") > 0)
+    table.fail("damping", "must be left out for Hertz's law, whose damping follows from restitution");
+  if (table.real("exponent") != 1)
+    table.fail("exponent", "must be left out for Hertz's law, which has its own");
+  KelvinVoigt law;
+  law.tension = table.boolean("tension");
+  law.effective_modulus = 1 / (1 / moduli[0] + 1 / moduli[1]);
+  take_restitution(table, law);
+  return law;
+}
+
+// Discs along a line: F = pi/4 E* L d, L their thickness (V. L. Popov, Contact Mechanics and Friction, 2010,
+// section 5.2, without the logarithm of the exact law), in place of Hertz's law of spheres.
+KelvinVoigt line_contact(const DeckTable& table, const Model& model, KelvinVoigt law) {
+  const DiscThickness& discs = model.disc_thickness;
+  if (discs.smallest != discs.largest || discs.largest == 0)
+    table.fail("stiffness",
+               fmt::format("missing; from moduli it follows for discs of one thickness, and {}",
+                           discs.largest == 0 ? "here all masses are given" : "here there are several"));
+  law.normal_stiffness = std::numbers::pi_v<Real> / 4 * law.effective_modulus * discs.largest;
+  law.effective_modulus = 0;
+  return law;
+}
+
+KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model& model,
+                      const int (&material)[2]) {
+  const std::vector<DeckTable>& materials = deck.tables("materials");
+  Real moduli[2] = {0, 0};
+  for (std::size_t side = 0; side < 2 && !materials.empty(); ++side)
+    moduli[side] = plane_strain_modulus(materials[static_cast<std::size_t>(material[side])]);
+  if (!table.has("largest_overlap") && table.has("impact_speed"))
+    table.fail("impact_speed", "needs largest_overlap beside it");
+  if (table.has("stiffness") || table.has("largest_overlap"))
+    return stiffness_law(table, model, material, moduli[0] > 0 && moduli[1] > 0);
+  const KelvinVoigt hertz = hertz_law(table, model, moduli, material);
+  return model.space.dimension == 2 ? line_contact(table, model, hertz) : hertz;
+}
+
+// G* of two materials with a Young's modulus [Pa].
+Real shear_modulus(const DeckTable& a, const DeckTable& b) {
+  return effective_shear_modulus(a.real("young_modulus"), a.real("poisson_ratio"), b.real("young_modulus"),
+                                 b.real("poisson_ratio"));
+}
+
+Friction build_friction(const DeckTable& deck, const DeckTable& table, const KelvinVoigt& law,
+                        const int (&material)[2]) {
+  if (!table.has("friction")) {
+    if (table.has("tangential_stiffness"))
+      table.fail("tangential_stiffness", "needs friction beside it: without, contacts do not rub");
+    if (table.real("tangential_damping_ratio") > 0)
+      table.fail("tangential_damping_ratio", "needs friction beside it: without, contacts do not rub");
+    return {};
+  }
+  Friction friction{.friction = table.real("friction"),
+                    .damping_ratio = table.real("tangential_damping_ratio")};
+  if (law.effective_modulus > 0) {
+    if (table.has("tangential_stiffness"))
+      table.fail("tangential_stiffness",
+                 "must be left out for Hertz's law: Mindlin's follows from the moduli");
+    const std::vector<DeckTable>& materials = deck.tables("materials");
+    friction.shear_modulus = shear_modulus(materials[static_cast<std::size_t>(material[0])],
+                                           materials[static_cast<std::size_t>(material[1])]);
+  } else if (table.has("tangential_stiffness")) {
+    friction.stiffness = table.real("tangential_stiffness");
+  } else if (law.exponent == 1) {
+    friction.stiffness = standard_slip_stiffness(law.normal_stiffness);
+  } else {
+    table.fail("tangential_stiffness", "missing; it follows from the stiffness only where exponent = 1");
+  }
+  return friction;
+}
+
+constexpr std::array kRollingKeys{"rolling_friction", "rolling_damping", "twisting_friction"};
+
+// Spring: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the plane, where none is given
+// (ElasticPlasticRolling).
+RollingResistance build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
+  const bool springs = is_positive(table, "rolling_friction"),
+             acts = springs || is_positive(table, "rolling_damping");
+  for (const char* key : kRollingKeys)
+    if (is_positive(table, key) && !table.has("friction"))
+      table.fail(key, "needs friction beside it, 0 where contacts do not rub");
+  if (table.has("rolling_stiffness") && !table.has("rolling_friction"))
+    table.fail("rolling_stiffness", "needs rolling_friction beside it");
+  if (table.real("rolling_damping_ratio") > 0 && !table.has("rolling_friction"))
+    table.fail("rolling_damping_ratio", "needs rolling_friction beside it");
+  if (dimension == 2 && is_positive(table, "twisting_friction"))
+    table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
+  RollingResistance rolling;
+  if (springs) {
+    rolling.friction = table.real("rolling_friction");
+    if (table.has("rolling_stiffness"))
+      rolling.stiffness = table.real("rolling_stiffness");
+    else
+      rolling.stiffness_factor = dimension == 2 ? 3 : Real(2.25);
+    rolling.damping_ratio = table.real("rolling_damping_ratio");
+  }
+  if (table.has("rolling_damping")) rolling.damping = table.real("rolling_damping");
+  if (table.has("twisting_friction"))
+    rolling.twisting_friction = table.real("twisting_friction");
+  else if (acts && dimension == 3)
+    rolling.twisting_friction = friction.friction;
+  return rolling;
+}
+
+// Whether the pair asks for moments against rolling or twisting.
+bool resists_rolling(const DeckTable& table) {
+  return std::ranges::any_of(kRollingKeys, [&](const char* key) { return is_positive(table, key); });
+}
+
+// Turning particles that nothing turns.
+void check_rotation(const DeckTable& deck, const Model& model) {
+  if (model.rotates()) return;
+  const std::string still = "no particle rotates: no pair in contact.pairs has friction";
+  for (const DeckTable& group : deck.tables("particles")) {
+    if (std::ranges::any_of(group.reals("angular_velocity"), [](Real one) { return one != 0; }))
+      group.fail("angular_velocity", still);
+    if (group.has("inertia_factor")) group.fail("inertia_factor", still);
+  }
+}
+
+bool has_neck(const KelvinVoigt& law) { return law.neck && law.adhesion_work > 0; }
+bool pulls(const KelvinVoigt& law) { return law.attracts() && (!has_neck(law) || law.attraction > 0); }
+
+// The pairs that have a law by now, and what some of them have.
+struct GivenPairs {
+  std::vector<bool> slots;  // as Contact::laws
+  bool hertz = false, stiff = false, necks = false, pull = false;
+
+  void add(const KelvinVoigt& law) {
+    hertz = hertz || law.effective_modulus > 0, stiff = stiff || (law.acts() && law.effective_modulus == 0);
+    necks = necks || has_neck(law), pull = pull || pulls(law);
+  }
+};
+
+// A run has one form of law.
+void check_mixing(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
+  const bool hertz = law.effective_modulus > 0;
+  if (!law.acts() || !(hertz ? before.stiff : before.hertz)) return;
+  table.fail("stiffness",
+             fmt::format("{}, while a pair before has {}; a deck follows Hertz's law for all pairs "
+                         "(none with a stiffness but 0) or for none",
+                         hertz ? "missing" : "given", hertz ? "one" : "none"));
+}
+
+// What surfaces that attract each other add to a pair's law.
+void take_attraction(const DeckTable& table, KelvinVoigt& law) {
+  if (table.has("surface_energy") && table.has("work_of_adhesion"))
+    table.fail("surface_energy", "stands beside work_of_adhesion; give one of the two");
+  const char* key = table.has("surface_energy") ? "surface_energy" : "work_of_adhesion";
+  if (is_positive(table, key)) {
+    if (law.effective_modulus == 0)
+      table.fail(key,
+                 "needs Hertz's law: young_modulus and poisson_ratio of both materials, spheres, and no "
+                 "stiffness; other laws may have an attraction");
+    law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
+    law.neck = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
+  } else if (table.has("adhesion") && !table.has(key)) {
+    table.fail("adhesion", "needs work_of_adhesion or surface_energy beside it");
+  }
+  if (is_positive(table, "attraction")) {
+    if (law.effective_modulus == 0 && law.exponent != 1)
+      table.fail("attraction", "needs a pair with exponent = 1, or Hertz's law");
+    if (!law.acts()) table.fail("attraction", "must be left out where the stiffness is 0");
+    law.attraction = table.real("attraction");
+  }
+  if (table.has("attraction_range")) {
+    if (!table.has("attraction")) table.fail("attraction_range", "needs attraction beside it");
+    law.range = law.attraction > 0 ? table.real("attraction_range") : 0;
+  }
+  // What attracts is not cut: its damper acts to the end.
+  if (law.attracts() && table.has("restitution"))
+    law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
+}
+
+// A run has one form of law: necks, or pulls that are added.
+void check_attraction_beside(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
+  if (!law.attracts() || !(has_neck(law) || before.necks) || !(pulls(law) || before.pull)) return;
+  table.fail(table.has("attraction") ? "attraction" : "adhesion",
+             "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
+}
+
+void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
+                GivenPairs& given) {
+  Contact& contact = model.contact;
+  int material[2] = {0, 0};
+  if (table.has("materials")) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      material[i] = find_name(names.materials, table.texts("materials")[i], table, "materials", "material");
+    }
+  } else if (contact.materials() > 1) {
+    table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
+  }
+  KelvinVoigt law = build_law(deck, table, model, material);
+  check_mixing(table, given, law);
+  take_attraction(table, law);
+  check_attraction_beside(table, given, law);
+  const Friction friction = build_friction(deck, table, law, material);
+  const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
+  // A neck turns with its partners: its law is one of contacts that rub.
+  if (table.has("friction") || (law.neck && law.attracts())) contact.friction.resize(contact.laws.size());
+  if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
+  take_wear(table, friction.friction, material, contact);
+  for (int side = 0; side < 2; ++side) {
+    const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
+    if (given.slots[slot] && (side == 0 || material[0] != material[1])) {
+      table.fail("materials", "repeated; every pair of materials must be given once");
+    }
+    contact.laws[slot] = law;
+    if (table.has("friction")) contact.friction[slot] = friction;
+    if (resists_rolling(table)) contact.rolling[slot] = rolling;
+    given.slots[slot] = true;
+  }
+  given.add(law);
+}
+
+// Every pair that can meet needs a law: what is not given is made, where the deck says how. Meshes on planes
+// may do without.
+void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, GivenPairs& given) {
+  const DeckTable& table = deck.table("contact");
+  const LikePairs like = like_pairs(table);
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const int count = model.contact.materials();
+  const auto is_given = [&](int a, int b) { return given.slots[static_cast<std::size_t>(a * count + b)]; };
+  const bool mixes = table.choice<Mixing>("mixing") != Mixing::none;
+  for (int a = 0; a < count; ++a) {
+    for (int b = a; b < count; ++b) {
+      if (is_given(a, b) || !can_meet(model, uses, a, b)) continue;
+      if (!must_have_law(model, uses, a, b) && !(mixes && is_given(a, a) && is_given(b, b))) continue;
+      const std::string &name_a = model.contact.material_names[static_cast<std::size_t>(a)],
+                        &name_b = model.contact.material_names[static_cast<std::size_t>(b)];
+      if (a == b || !mixes)
+        table.fail(
+            "pairs",
+            fmt::format("no pair with materials = [\"{}\", \"{}\"], which can meet; every pair that can "
+                        "meet must be given in [[contact.pairs]]{}",
+                        name_a, name_b, a == b ? "" : ", unless contact.mixing says how it follows"));
+      const DeckTable made = combined_pair(table, like, name_a, name_b);
+      build_pair(deck, made, model, names, given);
+      model.contact.combined.push_back({{a, b}, keys_of(made)});
+    }
+  }
+}
+
+// Two items must not meet through both sides of a periodic axis at once.
+void check_periods(const DeckTable& deck, const Model& model, Real largest_radius) {
+  const Space& space = model.space;
+  const Vec3 extent = space.max - space.min;
+  const Real lengths[3] = {extent.x, extent.y, extent.z};
+  const Real reach = 2 * (2 * largest_radius + model.contact.reach + model.contact.skin);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (space.boundary[2 * axis] != Boundary::periodic || lengths[axis] >= reach) continue;
+    deck.table("space").fail(
+        "max", fmt::format("the periodic space must be at least {} m long in {}: twice the largest "
+                           "diameter plus contact.skin and what contacts reach beyond touch",
+                           reach, "xyz"[axis]));
+  }
+}
+
+}  // namespace
+
+void build_materials(const DeckTable& deck, Model& model, ModelNames& names) {
+  for (const DeckTable& table : deck.tables("materials")) {
+    const std::string& name = table.text("name");
+    add_name(names.materials, name, model.contact.materials(), table);
+    check_moduli(table);
+    names.densities.push_back(table.has("density") ? table.real("density") : 0);
+    model.contact.material_names.push_back(name);
+  }
+  if (!model.contact.material_names.empty()) return;
+  names.materials.emplace("default", 0);
+  names.densities.push_back(0);
+  model.contact.material_names.emplace_back("default");
+}
+
+void build_contact(const DeckTable& deck, Model& model, const ModelNames& names) {
+  const DeckTable& table = deck.table("contact");
+  Contact& contact = model.contact;
+  const auto slots =
+      static_cast<std::size_t>(contact.materials()) * static_cast<std::size_t>(contact.materials());
+  contact.laws.assign(slots, {});
+  contact.connected_bodies_touch = table.boolean("connected_bodies_touch");
+  GivenPairs given{std::vector<bool>(slots, false)};
+  for (const DeckTable& pair : table.tables("pairs")) build_pair(deck, pair, model, names, given);
+  complete_pairs(deck, model, names, given);
+  const auto [of_spheres, largest] = radius_range(model);
+  const Real smallest = of_spheres > 0 ? of_spheres : largest_corner_radius(model);
+  // With nothing to search for, any positive length serves.
+  const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
+  contact.skin = table.has("skin") ? table.real("skin") : standard;
+  for (const KelvinVoigt& law : contact.laws)
+    contact.reach = std::max(contact.reach, searched_reach(law, largest));
+  check_periods(deck, model, largest);
+  check_rotation(deck, model);
+}
+
+}  // namespace scree

@@ -1,0 +1,204 @@
+// The integrator and the steps: what the deck names, and what is chosen where it leaves that out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/builder/build_parts.hpp"
+#include "model/checks/explicit_step.hpp"
+#include "model/checks/impact_speed.hpp"
+#include "model/checks/impact_trials.hpp"
+#include "model/checks/limits.hpp"
+#include "model/checks/memory.hpp"
+
+namespace scree {
+
+namespace {
+
+// More cannot be meant, and counts of them must stay exact.
+constexpr Real kMostSteps = 1e12;
+// From so many particles that may touch on, explicit steps cost less than implicit ones that adapt: something
+// is in contact at all times then, and friction makes an implicit step cost more.
+constexpr std::int64_t kManyParticles = 50, kManyWithFriction = 20;
+
+// Short enough for any contact; from there on the step control goes by the error [s].
+Real first_step(const Model& model) {
+  constexpr Real kShareOfContact = 0.05, kShareOfRun = 1e-3;
+  const std::optional<PairLimit> shortest = shortest_contact(pair_limits(model));
+  const Real longest = kShareOfRun * model.time.end;
+  return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
+}
+
+// Longest of steps that adapt [s].
+Real longest_step(const Model& model) {
+  constexpr Real kShareOfRun = 1e-2;
+  return std::min(kShareOfRun * model.time.end, unnoticed_step(model));
+}
+
+// Particles of materials that interact with something that they can meet.
+std::int64_t touching_particles(const Model& model) {
+  std::vector<bool> touches(static_cast<std::size_t>(model.contact.materials()), false);
+  for (const PairLimit& limit : pair_limits(model))
+    for (const int material : limit.material) touches[static_cast<std::size_t>(material)] = true;
+  const std::vector<MaterialUse> uses = material_uses(model);
+  std::int64_t count = 0;
+  for (std::size_t m = 0; m < uses.size(); ++m) count += touches[m] ? uses[m].particles : 0;
+  return count;
+}
+
+struct IntegratorChoice {
+  ParticleIntegrator integrator = ParticleIntegrator::hht;
+  std::string reason;
+};
+
+// The integrator that follows from given keys which one of the two has alone; nothing without such keys.
+std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Model& model) {
+  const DeckTable &time = deck.table("time"), &method = deck.table("integrator");
+  const auto with = [](ParticleIntegrator integrator, const std::string& key) {
+    return IntegratorChoice{integrator,
+                            fmt::format("the deck has {}, which is of this integrator alone", key)};
+  };
+  for (const char* key : {"tolerance", "max_step"})
+    if (time.gives(key)) return with(ParticleIntegrator::hht, fmt::format("time.{}", key));
+  if (time.gives("control") && model.time.control == StepControl::adaptive)
+    return with(ParticleIntegrator::hht, "time.control = \"adaptive\"");
+  if (method.gives("contact_events")) return with(ParticleIntegrator::hht, "integrator.contact_events");
+  if (model.integrator.substeps > 1) return with(ParticleIntegrator::velocity_verlet, "integrator.substeps");
+  if (model.integrator.precision == Precision::mixed)
+    return with(ParticleIntegrator::velocity_verlet, "integrator.precision = \"mixed\"");
+  return std::nullopt;
+}
+
+IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
+  if (model.particles.totals.count == 0) return {};  // no reason without particles
+  if (const auto named = named_otherwise(deck, model)) return *named;
+  const std::int64_t touching = touching_particles(model);
+  if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
+  if (model.rolls())
+    return {ParticleIntegrator::velocity_verlet, "contacts resist rolling or twisting, which is explicit"};
+  if (model.attracts()) return {ParticleIntegrator::velocity_verlet, "contacts attract, which is explicit"};
+  const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
+  const std::string count =
+      fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
+                  model.rotates() ? "with" : "without");
+  if (touching < many)
+    return {ParticleIntegrator::hht,
+            fmt::format("{}: fewer than {}, from which on explicit steps cost less", count, many)};
+  const DeckTable& time = deck.table("time");
+  if (time.gives("control") && time.gives("step") && !suits_explicit(model, time.real("step")))
+    return {ParticleIntegrator::hht,
+            fmt::format("time.step = {:g} s is named and fixed, and too long for explicit steps",
+                        time.real("step"))};
+  return {ParticleIntegrator::velocity_verlet,
+          fmt::format("{}: from {} on explicit steps cost less", count, many)};
+}
+
+}  // namespace
+
+void build_time(const DeckTable& deck, Model& model) {
+  const DeckTable& table = deck.table("time");
+  TimeControl& time = model.time;
+  time.end = table.real("end");
+  time.control = table.choice<StepControl>("control");
+  if (time.control == StepControl::adaptive) time.tolerance = table.real("tolerance");
+
+  const DeckTable& method = deck.table("integrator");
+  Integrator& integrator = model.integrator;
+  integrator.hht_alpha = method.real("hht_alpha");
+  integrator.corrected_start = method.boolean("corrected_start");
+  integrator.redundant = method.choice<RedundantRows>("redundant");
+  if (!method.is_automatic("particles"))
+    integrator.particles = method.choice<ParticleIntegrator>("particles");
+  integrator.resolve_events = method.choice<ContactEvents>("contact_events") == ContactEvents::resolved;
+  integrator.substeps = static_cast<int>(method.integer("substeps"));
+  integrator.precision = method.choice<Precision>("precision");
+  integrator.residual_tolerance = method.real("residual_tolerance");
+  integrator.correction_tolerance = method.real("correction_tolerance");
+  integrator.max_iterations = static_cast<int>(method.integer("max_iterations"));
+}
+
+void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
+                       std::vector<ChosenValue>& chosen) {
+  if (!deck.table("integrator").is_automatic("particles")) return;
+  IntegratorChoice choice = fitting_integrator(deck, model);
+  // Trials may round otherwise on other hosts.
+  const bool is_explicit = share.max(choice.integrator == ParticleIntegrator::velocity_verlet ? 1 : 0) > 0;
+  if (is_explicit) choice.integrator = ParticleIntegrator::velocity_verlet;
+  model.integrator.particles = choice.integrator;
+  chosen.push_back({"integrator", "particles", word_of(choice.integrator), choice.reason});
+  if (!is_explicit || deck.table("time").gives("control")) return;
+  const TimeControl fixed;
+  model.time.control = StepControl::fixed, model.time.tolerance = fixed.tolerance;
+  chosen.push_back({"time", "control", word_of(StepControl::fixed), ""});
+}
+
+void check_integrator(const DeckTable& deck, const Model& model) {
+  const Integrator& integrator = model.integrator;
+  const DeckTable& method = deck.table("integrator");
+  if (integrator.particles == ParticleIntegrator::velocity_verlet) {
+    if (model.time.control == StepControl::adaptive)
+      method.fail("particles",
+                  "time.control = \"adaptive\" needs \"hht\": the explicit method has no error estimate");
+    return;
+  }
+  if (integrator.substeps > 1)
+    method.fail("substeps", "must be 1, unless integrator.particles = \"velocity-verlet\"");
+  if (integrator.precision == Precision::mixed)
+    method.fail("precision", "must be \"double\", unless integrator.particles = \"velocity-verlet\"");
+  const char* const needs = "needs integrator.particles = \"velocity-verlet\"";
+  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
+    for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
+      if (pair.has(key) && pair.real(key) > 0)
+        pair.fail(key, fmt::format("{}: implicit steps have friction alone", needs));
+    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
+      if (pair.has(key) && pair.real(key) > 0) pair.fail(key, needs);
+  }
+}
+
+namespace {
+
+// [s]
+Real chosen_step(const Model& model, const Share& share, std::vector<ChosenValue>& chosen) {
+  constexpr Real kShareOfRun = 1e-3;
+  ExplicitStep longest = longest_explicit_step(model);
+  if (longest.step == kInfinity)
+    longest = {two_digits_below(kShareOfRun * model.time.end),
+               "a thousandth of the run, as nothing bounds it"};
+  // Trials may round otherwise on other hosts. A run shorter than a step is one step.
+  longest.step = std::min(share.max(longest.step), model.time.end);
+  chosen.push_back({"time", "step", longest.step, longest.reason});
+  return longest.step;
+}
+
+Real step_of(const DeckTable& table, const Model& model, const Share& share,
+             std::vector<ChosenValue>& chosen) {
+  if (table.has("step")) return table.real("step");
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
+    return chosen_step(model, share, chosen);
+  if (model.time.control == StepControl::fixed)
+    table.fail("step",
+               "missing; with control = \"fixed\" and implicit steps it must be a number above 0 [s]");
+  return std::min(first_step(model), model.time.max_step);
+}
+
+}  // namespace
+
+void build_steps(const DeckTable& deck, Model& model, const Share& share, std::vector<ChosenValue>& chosen) {
+  const DeckTable& table = deck.table("time");
+  TimeControl& time = model.time;
+  const bool adaptive = time.control == StepControl::adaptive;
+  time.max_step = table.has("max_step") ? table.real("max_step") : longest_step(model);
+  time.step = step_of(table, model, share, chosen);
+  time.min_step = table.has("min_step") ? table.real("min_step") : time.step / (adaptive ? 1e6 : 1e3);
+  if (!table.has("max_step")) time.max_step = adaptive ? std::max(time.step, time.max_step) : time.step;
+  if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
+  if (time.end / time.step > kMostSteps)
+    table.fail("step",
+               fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
+  if (time.min_step > time.step)
+    table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
+  if (time.max_step < time.step)
+    table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
+}
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+// What snapshots tell of the triangles of meshes, and what wears there.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "deck/suggestion.hpp"
+#include "model/builder/build_parts.hpp"
+#include "physics/wear.hpp"
+
+namespace scree {
+
+void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact) {
+  if (!pair.has("wear_coefficient") || pair.real("wear_coefficient") == 0) return;
+  if (friction == 0)
+    pair.fail("wear_coefficient", "needs friction above 0 beside it: what slides is known from its work");
+  contact.wear.resize(contact.laws.size());
+  for (int side = 0; side < 2; ++side)
+    contact.wear[static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side])] =
+        worn_per_work(pair.real("wear_coefficient"), friction);
+}
+
+void build_surface_fields(const DeckTable& output, Model& model) {
+  const char* const key = "surface_fields";
+  const std::vector<std::string> known = words_of<SurfaceField>();
+  for (const std::string& name : output.texts(key)) {
+    if (std::ranges::find(known, name) == known.end())
+      output.fail(key, fmt::format("there is no field \"{}\" of surfaces{}", name, suggestion(name, known)));
+    const auto field = value_of<SurfaceField>(name);
+    if (model.output.shows(field))
+      output.fail(key, fmt::format("\"{}\" is repeated; every entry must be another one", name));
+    model.output.surface_fields.push_back(field);
+  }
+  const bool any = std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.mesh >= 0; }) ||
+                   std::ranges::any_of(model.bodies, [](const Body& body) { return !body.meshes.empty(); });
+  if (model.output.adds_up_works() && !any)
+    output.fail(key, "only triangles have works and wear, and no wall or body has a mesh");
+  if (model.output.shows(SurfaceField::wear_depth) && model.contact.wear.empty())
+    output.fail(key, "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0");
+}
+
+}  // namespace scree

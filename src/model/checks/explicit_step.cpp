@@ -1,0 +1,124 @@
+#include "model/checks/explicit_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/checks/body_load.hpp"
+#include "model/checks/impact_speed.hpp"
+#include "model/checks/impact_trials.hpp"
+#include "model/checks/limits.hpp"
+#include "model/derived/mesh_corners.hpp"
+
+namespace scree {
+
+namespace {
+
+std::string pair_name(const Model& model, const PairLimit& limit) {
+  const std::vector<std::string>& names = model.contact.material_names;
+  return fmt::format("\"{}\" on \"{}\"", names[static_cast<std::size_t>(limit.material[0])],
+                     names[static_cast<std::size_t>(limit.material[1])]);
+}
+
+// Keeps the shortest.
+void bound(ExplicitStep& step, Real by, const std::string& reason) {
+  if (by < step.step) step = {by, reason};
+}
+
+bool has_neck(const Model& model, const PairLimit& limit) {
+  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+  return law.neck && law.attracts();
+}
+
+// Phase of oscillation by which bodies on the corners of their meshes may advance in a step [rad]: a body
+// that joints hold may never lie on a plane.
+Real corner_phase(bool held) { return held ? kMostBodyPhase : kGoodBodyPhase; }
+
+void bound_by_bodies(const Model& model, ExplicitStep& step) {
+  const Real substeps = model.integrator.substeps;
+  bound(step, body_step_limit(model).good_step(),
+        fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
+  for (const bool held : {false, true}) {
+    const Real phase = corner_phase(held), frequency = fastest_on_corners(model, held).frequency;
+    if (frequency > 0)
+      bound(step, phase / frequency,
+            fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
+  }
+  // A loaded body steps with the particles.
+  if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
+    bound(step, substeps * loaded->step,
+          fmt::format(
+              "{:g} rad of the oscillation of body \"{}\" under {} particles, as many as can touch it",
+              kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name, loaded->contacts));
+}
+
+void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& limit, ExplicitStep& step) {
+  const std::string name = pair_name(model, limit);
+  const Real substeps = model.integrator.substeps;
+  bound(step, substeps * kStableShare * limit.explicit_step,
+        fmt::format("{:.2g} of the stability limit in dense contacts of {}", kStableShare, name));
+  if (has_neck(model, limit))
+    bound(step, substeps * kNeckShare * limit.contact_time,
+          fmt::format("{:g} of the shortest contact of {}, whose necks let go within a small part of it",
+                      kNeckShare, name));
+  // Trials take a while: where the step is short enough they need not say how long it might be.
+  if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kGoodRebound) return;
+  bound(
+      step, substeps * trials.good_step(limit),
+      fmt::format("the longest with which trial rebounds of {} are within {:g} %", name, 100 * kGoodRebound));
+}
+
+}  // namespace
+
+Real two_digits_below(Real x) {
+  if (!std::isnormal(x)) return x;  // of partners whose mass or size is next to nothing
+  constexpr Real kRoundOff = 1e-12;
+  const int exponent = static_cast<int>(std::floor(std::log10(x))) - 1;
+  const Real digits = std::floor(x / std::pow(Real(10), exponent) * (1 + kRoundOff));
+  return std::stod(fmt::format("{:.0f}e{}", digits, exponent));  // what a deck that names it reads
+}
+
+ExplicitStep longest_explicit_step(const Model& model) {
+  ExplicitStep step;
+  const Real substeps = model.integrator.substeps;
+  bound_by_bodies(model, step);
+  bound(step, substeps * unnoticed_step(model),
+        "half of the smallest radius at the fastest speed that is known beforehand");
+  const std::vector<PairLimit> pairs = explicit_pairs(model);
+  ExplicitTrials trials(model);
+  for (const PairLimit& limit : pairs) bound_by_pair(model, trials, limit, step);
+  if (step.step == kInfinity) return step;
+  step.step = two_digits_below(step.step);
+  // Errors mostly fall with the step, not always.
+  constexpr int kMostTries = 10;
+  constexpr Real kShorter = 0.8;
+  const auto errs = [&](const PairLimit& limit) {
+    return trials.error(limit, step.step / substeps) >= kGoodRebound;
+  };
+  for (int k = 0; k < kMostTries && std::ranges::any_of(pairs, errs); ++k)
+    step.step = two_digits_below(kShorter * step.step);
+  return step;
+}
+
+bool suits_explicit(const Model& model, Real step) {
+  if (step > body_step_limit(model).good_step()) return false;
+  for (const bool held : {false, true})
+    if (step * fastest_on_corners(model, held).frequency > corner_phase(held)) return false;
+  const Real h = step / model.integrator.substeps;
+  ExplicitTrials trials(model);
+  for (const PairLimit& limit : explicit_pairs(model))
+    if (h > limit.explicit_step || trials.error(limit, h) > kBadRebound) return false;
+  return true;
+}
+
+std::string left_out_step(const Model& model) {
+  const ExplicitStep longest = longest_explicit_step(model);
+  return longest.step < kInfinity ? fmt::format("; left out, it is {:g} s: {}", longest.step, longest.reason)
+                                  : "";
+}
+
+}  // namespace scree

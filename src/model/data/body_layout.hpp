@@ -1,0 +1,44 @@
+// Where a body's coordinates stand in the vectors of all bodies.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "model/data/bodies.hpp"
+
+namespace scree {
+
+// Bodies in the model's order. Columns are those of the velocities, the forces and the matrix.
+//   planar: 3 positions (x, y, angle), 3 columns
+//   spatial: 7 positions (x, y, z, quaternion), 6 columns (force; torque, in the body's frame)
+class BodyLayout {
+ public:
+  explicit BodyLayout(const std::vector<Body>& bodies) {
+    for (const Body& body : bodies) {
+      places_.push_back({positions_, columns_});
+      const bool spatial = body.kind == BodyKind::spatial;
+      positions_ += spatial ? 7 : 3, columns_ += spatial ? 6 : 3;
+    }
+  }
+
+  int bodies() const { return static_cast<int>(places_.size()); }
+  int positions() const { return positions_; }
+  int columns() const { return columns_; }
+  // The first one of a body.
+  int position(int body) const { return places_[static_cast<std::size_t>(body)].position; }
+  int column(int body) const { return places_[static_cast<std::size_t>(body)].column; }
+  int body_of_column(int column) const {
+    const auto after = std::upper_bound(places_.begin(), places_.end(), column,
+                                        [](int c, const Place& place) { return c < place.column; });
+    return static_cast<int>(after - places_.begin()) - 1;
+  }
+
+ private:
+  struct Place {
+    int position, column;
+  };
+  std::vector<Place> places_;
+  int positions_ = 0, columns_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,71 @@
+#include "model/data/particles.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace scree {
+namespace {
+
+// Extremes of this rank's values; what they are of all ranks is found by maxima of numbers >= 0.
+struct Extremes {
+  Real smallest = kInfinity, largest = 0;
+  void add(Real value) { smallest = std::min(smallest, value), largest = std::max(largest, value); }
+};
+
+// Numbers > 0 order as their bits do.
+Real smallest_of_all(const Share& share, Real value) {
+  const Real smallest = std::bit_cast<Real>(share.min(std::bit_cast<std::int64_t>(value)));
+  return smallest < kInfinity ? smallest : 0;
+}
+
+}  // namespace
+
+std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids) {
+  std::vector<int> numbers;
+  numbers.reserve(ids.size());
+  int group = 0;
+  for (const GlobalId id : ids) {
+    while (group + 1 < std::ssize(groups) && groups[static_cast<std::size_t>(group) + 1].first_id <= id)
+      ++group;
+    numbers.push_back(group);
+  }
+  return numbers;
+}
+
+void count_particles(ParticleSet& particles, int materials, const Share& share) {
+  ParticleTotals totals;
+  const auto slots = static_cast<std::size_t>(materials);
+  Extremes radius, mass, density, radii_per_second;
+  std::vector<std::int64_t> count(slots);
+  std::vector<Extremes> radius_of(slots), mass_of(slots), factor_of(slots);
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const auto material = static_cast<std::size_t>(particles.material[i]);
+    radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
+    density.add(particles.mass[i] / sphere_mass(particles.radius[i], 1));
+    radii_per_second.add(norm(particles.velocity[i]) / particles.radius[i]);
+    const Vec3 p = particles.position[i];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
+    factor_of[material].add(particles.inertia_factor_of(i));
+  }
+  totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
+  totals.smallest_radius = smallest_of_all(share, radius.smallest);
+  totals.largest_radius = share.max(radius.largest);
+  totals.smallest_mass = smallest_of_all(share, mass.smallest);
+  totals.largest_mass = share.max(mass.largest);
+  totals.smallest_density = smallest_of_all(share, density.smallest);
+  totals.largest_density = share.max(density.largest);
+  totals.most_radii_per_second = share.max(radii_per_second.largest);
+  low = {-share.max(-low.x), -share.max(-low.y), -share.max(-low.z)};
+  high = {share.max(high.x), share.max(high.y), share.max(high.z)};
+  if (totals.count > 0) totals.lowest = low, totals.highest = high;
+  for (std::size_t m = 0; m < slots; ++m)
+    totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),
+                                smallest_of_all(share, mass_of[m].smallest),
+                                smallest_of_all(share, factor_of[m].smallest)});
+  particles.totals = std::move(totals);
+}
+
+}  // namespace scree

@@ -1,0 +1,64 @@
+// Start state of the particles.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "model/data/share.hpp"
+#include "physics/particle_mass.hpp"
+
+namespace scree {
+
+// Of all ranks' particles; lengths and masses are 0 where there are none.
+struct ParticleTotals {
+  struct OfMaterial {
+    std::int64_t count = 0;
+    Real smallest_radius = 0, smallest_mass = 0;  // [m], [kg]
+    Real smallest_inertia_factor = 0;             // I / (m R^2)
+  };
+  std::int64_t count = 0;
+  Real smallest_radius = 0, largest_radius = 0;    // [m]
+  Real smallest_mass = 0, largest_mass = 0;        // [kg]
+  Real smallest_density = 0, largest_density = 0;  // of spheres with these radii and masses [kg/m^3]
+  Real most_radii_per_second = 0;                  // speed over the particle's own radius [1/s]
+  Vec3 lowest, highest;                            // corners of the box around all centres at the start [m]
+  std::vector<OfMaterial> materials;               // as many as Contact::material_names
+};
+
+// One of the deck's; its particles' ids go on to where the next one begins.
+struct ParticleGroup {
+  std::string name;       // its number where the deck gives none
+  GlobalId first_id = 0;  // where it has particles
+};
+// Number of the group of each particle. ids: in ascending order.
+std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids);
+
+// Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from
+// 0; these are the particles from first_id on.
+struct ParticleSet {
+  std::vector<Vec3> position;          // [m]
+  std::vector<Vec3> velocity;          // [m/s]
+  std::vector<Vec3> angular_velocity;  // [rad/s]; empty: zero
+  std::vector<Real> radius;            // [m]
+  std::vector<Real> mass;              // [kg]
+  std::vector<Real> inertia_factor;    // I / (m R^2); empty: of solid spheres, or discs
+  std::vector<int> material;           // index into Contact::material_names
+  int dimension = 3;                   // 2: discs
+  GlobalId first_id = 0;
+  ParticleTotals totals;
+  std::vector<ParticleGroup> groups;  // of all ranks' particles, in the deck's order
+
+  std::size_t size() const { return position.size(); }
+  Real inertia_factor_of(std::size_t i) const {
+    return inertia_factor.empty() ? solid_inertia_factor(dimension) : inertia_factor[i];
+  }
+  IdRange ids() const { return {first_id, first_id + static_cast<GlobalId>(size())}; }
+};
+
+// Counts the particles anew, after they were changed. materials: their number. Collective.
+void count_particles(ParticleSet& particles, int materials, const Share& share = Share());
+
+}  // namespace scree

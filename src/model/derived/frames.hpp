@@ -1,0 +1,28 @@
+// Orientations as the deck gives them.
+#pragma once
+
+#include <string>
+
+#include "base/mat3.hpp"
+#include "deck/deck.hpp"
+#include "physics/orientation.hpp"
+
+namespace scree {
+
+// From the orientation_keys() of this prefix; none of them: no rotation. Throws InputError.
+Quaternion read_orientation(const DeckTable& table, const std::string& prefix = "");
+// Of length 1. Throws InputError where the vector is 0.
+Vec3 read_direction(const DeckTable& table, const std::string& key);
+
+// The vector `local` of the frame of the body of this table, in the global frame at t = 0.
+Vec3 turned_at_start(const DeckTable& body, Vec3 local);
+
+// Axes of a frame: rows x, y, z.
+// z = axis, of length 1; x the global axis that is most nearly across.
+Mat3 frame_about(Vec3 axis);
+// The frame turned by the shortest way that turns `from` to `to`, both of length 1 and not opposite.
+Mat3 turned_frame(const Mat3& frame, Vec3 from, Vec3 to);
+// The smaller one between two directions of any length but 0 [rad].
+Real angle_between(Vec3 a, Vec3 b);
+
+}  // namespace scree

@@ -1,0 +1,306 @@
+#include "run/check/check.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/host_memory.hpp"
+#include "base/printable.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/history/kept_contacts.hpp"
+#include "dem/reports/output_fields.hpp"
+#include "model/checks/limits.hpp"
+#include "model/checks/memory.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/derived/choose_law.hpp"
+#include "model/derived/connections.hpp"
+#include "run/check/check_bodies.hpp"
+#include "run/check/check_meshes.hpp"
+#include "run/record/link_lines.hpp"
+#include "run/report/step_trials.hpp"
+#include "run/state/step_clock.hpp"
+
+namespace scree {
+
+namespace {
+
+std::string range(Real smallest, Real largest, const char* unit) {
+  if (smallest == largest) return fmt::format("{:.6g} {}", smallest, unit);
+  return fmt::format("{:.6g} to {:.6g} {}", smallest, largest, unit);
+}
+
+std::string sides_line(const Space& space) {
+  constexpr std::array<const char*, 3> kKinds = {"open", "wall", "periodic"},
+                                       kLeaving = {"error", "remove", "drift"};
+  const auto kind = [&](int side) { return kKinds[static_cast<std::size_t>(space.boundary[side])]; };
+  std::string sides;
+  bool open = false;
+  for (int side = 0; side < 2 * space.dimension; ++side) {
+    sides +=
+        fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[static_cast<std::size_t>(side)], kind(side));
+    open = open || space.boundary[side] == Boundary::open;
+  }
+  return fmt::format("sides          {}{}\n", sides,
+                     open ? fmt::format("; a particle that leaves: \"{}\"",
+                                        kLeaving[static_cast<std::size_t>(space.leaving)])
+                          : "");
+}
+
+std::string gravity_line(Vec3 gravity) {
+  const Real size = norm(gravity);
+  if (size == 0) return "gravity        none\n";
+  const std::array<Real, 3> parts = {gravity.x, gravity.y, gravity.z};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::abs(parts[axis]) == size)
+      return fmt::format("gravity        {} m/s^2 along {}{}\n", size, parts[axis] < 0 ? '-' : '+',
+                         "xyz"[axis]);
+  return fmt::format("gravity        {:.6g} m/s^2 along ({:.4g}, {:.4g}, {:.4g})\n", size, gravity.x / size,
+                     gravity.y / size, gravity.z / size);
+}
+
+// Those of the deck's list, and the sides of the space that are walls.
+std::string walls_text(const Model& model) {
+  const std::int64_t sides =
+      std::count(model.space.boundary.begin(), model.space.boundary.end(), Boundary::wall);
+  const std::int64_t placed = std::ssize(model.walls) - sides;
+  if (sides + placed == 0) return "no walls";
+  std::vector<std::string> texts;
+  if (sides > 0) texts.push_back(counted(sides, "side is a wall", "sides are walls"));
+  if (placed > 0) texts.push_back(counted(placed, "wall inside", "walls inside"));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string space_lines(const Model& model, int ranks) {
+  const Space& space = model.space;
+  const auto corner = [&](Vec3 p) {
+    return space.dimension == 2 ? fmt::format("({}, {})", p.x, p.y)
+                                : fmt::format("({}, {}, {})", p.x, p.y, p.z);
+  };
+  std::string lines = fmt::format("space          {}D, {} to {} m, {}\n", space.dimension, corner(space.min),
+                                  corner(space.max), walls_text(model));
+  lines += sides_line(space) + gravity_line(model.gravity);
+  const ParticleTotals& particles = model.particles.totals;
+  if (particles.count == 0) return lines + "particles      none\n";
+  lines += fmt::format("particles      {}{}, radius {}, mass {}\n", particles.count,
+                       ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
+                       range(particles.smallest_radius, particles.largest_radius, "m"),
+                       range(particles.smallest_mass, particles.largest_mass, "kg"));
+  if (model.disc_thickness.largest == 0) return lines;
+  return lines + fmt::format(
+                     "thickness      {}, of discs whose mass follows from a density; assumed: 1 m, where "
+                     "particles.thickness is left out\n",
+                     range(model.disc_thickness.smallest, model.disc_thickness.largest, "m"));
+}
+
+// What resists rolling and twisting; "" where nothing does.
+std::string rolling_line(const Model& model, const PairLimit& limit) {
+  const RollingResistance rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
+  std::string parts;
+  const auto add = [&](const std::string& part) { parts += (parts.empty() ? "" : ", ") + part; };
+  if (rolling.friction > 0)
+    add(fmt::format("rolling friction {}, k_r / R^2 = {:.6g} N/m (smallest partners{})", rolling.friction,
+                    limit.rolling_stiffness, limit.law.exponent == 1 ? "" : ", at 1 % overlap"));
+  if (rolling.damping > 0) add(fmt::format("C_r = {:.6g} N m s", rolling.damping));
+  if (rolling.twisting_friction > 0) add(fmt::format("twisting friction {}", rolling.twisting_friction));
+  return parts.empty() ? "" : fmt::format("               {}\n", parts);
+}
+
+// How the two attract each other; "" where they do not.
+std::string attraction_line(const Model& model, const PairLimit& limit) {
+  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+  std::string parts;
+  if (law.adhesion_work > 0)
+    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.neck ? "JKR" : "DMT", law.adhesion_work);
+  if (law.attraction > 0)
+    parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
+  const Real reach = longest_reach(law, model.particles.totals.largest_radius);
+  if (reach > 0) parts += fmt::format(", contacts hold up to {:.4g} m beyond touch", reach);
+  return parts.empty() ? "" : fmt::format("               {}\n", parts);
+}
+
+using MaterialPair = std::pair<int, int>;
+template <class Of>
+MaterialPair pair_of(const Of& of) {
+  return {of.material[0], of.material[1]};
+}
+
+std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials) {
+  std::string lines;
+  const std::vector<std::string>& names = model.contact.material_names;
+  std::map<MaterialPair, const StepTrial*> trial_of;
+  for (const StepTrial& trial : trials) trial_of[pair_of(trial.limit)] = &trial;
+  std::map<MaterialPair, const CombinedPair*> made;  // the keys of pairs that the deck does not give
+  for (const CombinedPair& pair : model.contact.combined) made[pair_of(pair)] = &pair;
+  for (const PairLimit& limit : pair_limits(model)) {
+    const KelvinVoigt& law = limit.law;
+    const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
+    lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m{}, {}\n",
+                         names[static_cast<std::size_t>(limit.material[0])],
+                         names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
+                         law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
+                         !sized              ? ""
+                         : law.exponent == 1 ? " (smallest partners)"
+                                             : " (smallest partners, at 1 % overlap)",
+                         law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
+                             ? "may pull"
+                             : "cut at zero");
+    if (const auto pair = made.find(pair_of(limit)); pair != made.end())
+      lines += fmt::format("               made by contact.mixing: {}\n", pair->second->keys);
+    if (limit.slip_stiffness > 0)
+      lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
+                           model.contact.friction_of(limit.material[0], limit.material[1]).friction,
+                           limit.slip_stiffness, sized ? " (likewise)" : "");
+    lines += rolling_line(model, limit) + attraction_line(model, limit);
+    lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
+                         law.exponent == 1 ? "" : " (at 1 % overlap)");
+    if (const auto trial = trial_of.find(pair_of(limit)); trial != trial_of.end())
+      lines += trial_lines(*trial->second);
+    if (limit.explicit_step > 0) {
+      lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
+                           limit.explicit_step);
+    }
+  }
+  return lines;
+}
+
+// How many steps that adapt become: between what is left where nothing touches, and what a contact asks for.
+std::string adaptive_steps(const Model& model, const std::vector<StepTrial>& trials) {
+  const TimeControl& time = model.time;
+  Real shortest = time.max_step;
+  for (const StepTrial& trial : trials) shortest = std::min(shortest, trial.step);
+  const auto steps_of = [&](Real step) { return std::ceil(time.end / step * (1 - 1e-9)); };
+  const std::string fewest = fmt::format("{:.0f} steps", steps_of(time.max_step));
+  if (shortest == time.max_step) return fewest + ", more where the bodies' motion asks for shorter ones";
+  return fmt::format("{} if nothing ever touches, about {:.0f} of {:.2g} s if something always does", fewest,
+                     std::stod(fmt::format("{:.1e}", steps_of(shortest))), shortest);
+}
+
+std::string fixed_steps(const Model& model) {
+  const std::int64_t steps = steps_of_fixed(model), substeps = model.integrator.substeps;
+  return substeps == 1 ? counted(steps, "step", "steps")
+                       : fmt::format("{}, of {} substeps each: {}", counted(steps, "step", "steps"), substeps,
+                                     steps * substeps);
+}
+
+// A line with the reason of a choice; "" of what the deck names.
+std::string chosen_line(const std::vector<ChosenValue>& chosen, const std::string& key) {
+  const auto found = std::ranges::find(chosen, key, &ChosenValue::key);
+  return found == chosen.end() || found->reason.empty()
+             ? ""
+             : fmt::format("               chosen: {}\n", found->reason);
+}
+
+std::string time_lines(const Model& model, const std::vector<StepTrial>& trials,
+                       const std::vector<ChosenValue>& chosen) {
+  const TimeControl& time = model.time;
+  const Integrator& integrator = model.integrator;
+  const bool fixed = time.control == StepControl::fixed;
+  std::string lines = fmt::format("time           0 to {} s, ", time.end);
+  lines += fixed
+               ? fmt::format("fixed step {} s ({})\n", time.step, fixed_steps(model))
+               : fmt::format(
+                     "adaptive steps from {:.4g} to {:.4g} s, the first of {:.4g} s, tolerance {}\n"
+                     "               {}\n",
+                     time.min_step, time.max_step, time.step, time.tolerance, adaptive_steps(model, trials));
+  lines += chosen_line(chosen, "step");
+  const std::string particles =
+      integrator.particles == ParticleIntegrator::hht
+          ? "the same"
+          : "velocity-verlet, " + counted(integrator.substeps, "substep", "substeps");
+  return lines +
+         fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n", integrator.hht_alpha,
+                     particles) +
+         chosen_line(chosen, "particles");
+}
+
+std::string megabytes(Real bytes) {
+  if (bytes < 1e5) return fmt::format("{:.{}f} kB", bytes / 1e3, bytes < 1e4 ? 1 : 0);
+  return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0);
+}
+
+// Rank 0 has all unknowns, and its share of the particles.
+std::string memory_line(const Model& model, int ranks) {
+  const Real per_particle =
+      bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
+  const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
+  const Real unknowns =
+      kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
+  const ModelSize size = size_of(model);
+  const Real meshes = bytes_of_meshes(model, false), surfaces = meshes + bytes_of_shapes(size),
+             of_root = unknowns + bytes_of_meshes(model, true) - meshes;  // beside what every rank has
+  const std::string most = ranks == 1 ? ""
+                                      : fmt::format(" on all ranks together, {} on rank 0",
+                                                    megabytes(particles / ranks + of_root + surfaces));
+  const FreeMemory free = free_memory();
+  const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
+  return fmt::format(
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown{}{}); "
+      "{} "
+      "are free here "
+      "({})\n",
+      megabytes(particles + of_root + ranks * surfaces), most, per_particle, kBytesPerUnknown,
+      size.shapes == 0 ? "" : fmt::format(", {} B per shape on every rank", kBytesPerShape),
+      meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", bytes_per_triangle(model)),
+      megabytes(bound.bytes), bound.set_by);
+}
+
+// The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room
+// for that.
+bool can_estimate_device(const Model& model, const Ranks& ranks) {
+  constexpr Real kToEstimate = 325;  // measured [B]
+  const FreeMemory free = free_memory();
+  const Real bytes = kToEstimate * static_cast<Real>(model.particles.size()),
+             together = ranks.sum_on_host(bytes);
+  return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
+}
+
+// Of the GPU that is the fullest, where ranks share GPUs or hosts differ.
+std::string device_memory_line(const Model& model, const Ranks& ranks) {
+  if (!can_estimate_device(model, ranks))
+    return "device memory  too little memory is free here to estimate it\n";
+  const std::size_t meshes = device_memory_of_meshes(model);
+  const std::string line = fmt::format(
+      "device memory  about {} {} (estimate{})", megabytes(static_cast<Real>(device_memory(model))),
+      ranks.alone() ? "on the GPU" : "on the GPU of each rank",
+      meshes == 0 ? "" : fmt::format("; {} of it meshes", megabytes(static_cast<Real>(meshes))));
+  choose_device(ranks);
+  const std::string trouble = device_trouble();
+  if (ranks.any(!trouble.empty()))
+    return line + "; " + (trouble.empty() ? "another rank cannot use its GPU" : trouble) + "\n";
+  const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
+  const auto share = [&](int rank) {
+    const DeviceLoad load = load_of_device(claims, rank);
+    return static_cast<Real>(load.needed) / static_cast<Real>(std::max<std::size_t>(load.free, 1));
+  };
+  int fullest = 0;
+  for (int rank = 1; rank < ranks.size(); ++rank)
+    if (share(rank) > share(fullest)) fullest = rank;
+  const DeviceLoad load = load_of_device(claims, fullest);
+  const auto device_of = [&](int rank) { return claims[static_cast<std::size_t>(rank)].device; };
+  const std::string together = load.ranks == 1
+                                   ? ""
+                                   : fmt::format(", {} for the {} ranks that share one",
+                                                 megabytes(static_cast<Real>(load.needed)), load.ranks);
+  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(load.free)),
+                     device_of(fullest) == device_of(ranks.rank()) ? device_name() : "the fullest GPU");
+}
+
+}  // namespace
+
+std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks,
+                         const std::string& files) {
+  const std::vector<StepTrial> trials = try_steps(model);
+  const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
+  return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
+         limit_lines(model, trials) + time_lines(model, trials, chosen) + files + history_limit_lines(model) +
+         fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
+         memory_line(model, ranks.size()) + device_memory_line(model, ranks);
+}
+
+}  // namespace scree

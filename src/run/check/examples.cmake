@@ -1,0 +1,21 @@
+# Run where a deck has changed: writes OUTPUT, a source with the decks of input/ that need no other files.
+# -D INPUT (the folder), OUTPUT
+file(GLOB DECKS RELATIVE ${INPUT} ${INPUT}/*/*.toml)
+list(SORT DECKS)
+set(TUTORIAL ${DECKS})  # first: it is what people begin with
+list(FILTER TUTORIAL INCLUDE REGEX "^tutorial/")
+list(FILTER DECKS EXCLUDE REGEX "^tutorial/")
+list(PREPEND DECKS ${TUTORIAL})
+set(SOURCE "// Made by src/run/check/examples.cmake.\n#include \"run/check/examples.hpp\"\n\nnamespace scree {\n\n")
+string(APPEND SOURCE "std::span<const Example> examples() {\n  static constexpr Example kExamples[] = {\n")
+foreach(DECK ${DECKS})
+  file(READ ${INPUT}/${DECK} TEXT)
+  if(TEXT MATCHES "[\n{,] *file *=")
+    continue()
+  endif()
+  get_filename_component(FOLDER ${DECK} DIRECTORY)
+  get_filename_component(NAME ${DECK} NAME_WE)
+  string(APPEND SOURCE "      {\"${FOLDER}\", \"${NAME}\", R\"deck(${TEXT})deck\"},\n")
+endforeach()
+string(APPEND SOURCE "  };\n  return kExamples;\n}\n\n}  // namespace scree\n")
+file(WRITE ${OUTPUT} "${SOURCE}")

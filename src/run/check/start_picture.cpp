@@ -1,0 +1,94 @@
+#include "run/check/start_picture.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <span>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "output/run_record.hpp"
+#include "run/loop/choose_backend.hpp"
+#include "run/record/recorder.hpp"
+#include "run/report/scree_post.hpp"
+#include "run/report/signals.hpp"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A new folder beside a file, where all ranks see it; ends with this object. Its path is known on every rank.
+class FolderBeside {
+ public:
+  FolderBeside(const std::string& file, const Ranks& ranks) : ranks_(ranks) {
+    const fs::path parent = fs::path(file).parent_path();
+    path_ = ((parent.empty() ? "." : parent) / ".scree_picture_XXXXXX").string();
+    ranks.on_root([&] {
+      if (mkdtemp(path_.data()) == nullptr)
+        throw IoError(fmt::format("{}: no folder can be made beside it: {}", file, std::strerror(errno)));
+    });
+    ranks.broadcast(std::span(path_));
+  }
+  ~FolderBeside() {
+    std::error_code ignored;
+    if (ranks_.is_root()) fs::remove_all(path_, ignored);
+  }
+  FolderBeside(const FolderBeside&) = delete;
+  FolderBeside& operator=(const FolderBeside&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  const Ranks& ranks_;
+  std::string path_;
+};
+
+// What pictures are drawn from.
+Output output_of_start() {
+  Output output;
+  output.fields = {"radius", "velocity"};
+  return output;
+}
+
+// What a run writes of its start.
+void write_start(const Model& model, const std::string& folder, const Ranks& ranks) {
+  Log log(true);
+  StageTimers timers;
+  const std::unique_ptr<Backend> backend = choose_backend(model, ranks, "cpu", log);
+  BodyLink link(model, ranks);
+  CoupledStep step(model, *backend, link, timers);
+  State state;
+  state.clock = StepClock(model).state();
+  backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+  step.start(state.bodies);
+  Recorder recorder(model, *backend, link, folder, state);
+  {
+    const Reports::Instant now(backend->reports());
+    recorder.history(state, 0);
+    recorder.snapshot(state);
+  }
+  recorder.finish();
+}
+
+}  // namespace
+
+void draw_start(Model model, const std::string& resolved_deck, const std::string& program,
+                const std::string& file, const Ranks& ranks) {
+  catch_signals();  // the folder is removed first
+  model.output = output_of_start();
+  const FolderBeside folder(file, ranks);
+  write_start(model, folder.path(), ranks);
+  if (ranks.max(signal_received()) != 0) return;
+  ranks.on_root([&] {
+    RunRecord record;
+    record.resolved_deck = resolved_deck;
+    write_run_record(folder.path(), record);
+    run_scree_post(program, {"picture", folder.path(), "--output", file}, folder.path() + "/scree_post.log");
+  });
+}
+
+}  // namespace scree

@@ -1,0 +1,386 @@
+#include "run/loop/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/utc.hpp"
+#include "dem/backend/device.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "dem/reports/triangle_works.hpp"
+#include "model/checks/memory.hpp"
+#include "output/results_folder.hpp"
+#include "output/run_record.hpp"
+#include "partition/id_order.hpp"
+#include "run/loop/choose_backend.hpp"
+#include "run/loop/step_loop.hpp"
+#include "run/record/recorder.hpp"
+#include "run/report/balance.hpp"
+#include "run/report/bodies_outside.hpp"
+#include "run/report/live_view.hpp"
+#include "run/report/surfaces_outside.hpp"
+#include "run/restart/restart.hpp"
+#include "run/state/start_book.hpp"
+
+namespace scree {
+namespace {
+
+class Simulation {
+ public:
+  Simulation(const Model& model, const RunOptions& options, Log& log)
+      : model_(model),
+        options_(options),
+        ranks_(options.ranks),
+        log_(log),
+        folder_({options.output_directory, options.restart, options.overwrite}),
+        restart_(options.restart.empty() ? Restart{} : read_restart(model, options, log)),
+        state_(std::move(restart_.state)),
+        backend_(choose_backend(model, ranks_, options.backend, log)),
+        link_(model, ranks_),
+        step_(model, *backend_, link_, timers_),
+        live_(model, options, backend_->description(), log),
+        book_(restart_.starts, state_, live_.started(), backend_->description(), ranks_.size()),
+        surfaces_outside_(model) {
+    ranks_.on_root([&] { folder_.claim(); });
+    start_or_resume();
+    ranks_.on_root([&] { folder_.clear(); });
+    recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
+    if (restart_.changed) recorder_->rebase_balance(state_);
+    // Results are looked for in the folder of a run that is finished, too.
+    const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
+    if (options.restart.empty() || is_done) {
+      const Reports::Instant now(backend_->reports());
+      recorder_->history(state_, 0);
+      recorder_->snapshot(state_);
+      ranks_.on_root([&] { recorder_->flush_history(); });
+    }
+  }
+
+  ExitCode run();
+
+ private:
+  ExitCode run_to_the_end();
+  void start_or_resume();
+  void check_end() const;
+  void load_state();
+  std::string start_change() const;
+  bool continues_files() const;
+  void bring_into_id_order(State& state) const;
+  // Takes the state's particles away.
+  void checkpoint(State& state, const std::string& name);
+  void progress(const State& state, Real h);
+  void show_status(const std::string& status);
+  void watch_bodies(const State& state);
+  void watch_leavers(const std::vector<Leaver>& leavers);
+  ExitCode fail(StepLoop& loop, const SimulationError& error);
+  void keep_last_good_state(StepLoop& loop);
+  ExitCode finish(const std::string& status, ExitCode code);
+  void write_record(const std::string& status, ExitCode code);
+  void record_failure(const std::string& why, ExitCode code);
+  void summarize() const;
+
+  const Model& model_;
+  const RunOptions& options_;
+  Ranks ranks_;
+  Log& log_;
+  ResultsFolder folder_;
+  Restart restart_;  // but for its state
+  State state_;
+  StageTimers timers_;
+  std::unique_ptr<Backend> backend_;
+  BodyLink link_;
+  CoupledStep step_;
+  std::unique_ptr<Recorder> recorder_;
+  LiveView live_;
+  StartBook book_;
+  bool body_left_ = false, load_lost_ = false, overloaded_ = false;
+  const SurfacesOutside surfaces_outside_;
+  std::string state_hash_;
+  std::int64_t list_entries_ = 0, migrated_ = 0, device_bytes_ = 0;  // of all ranks
+};
+
+void Simulation::start_or_resume() {
+  if (options_.restart.empty()) {
+    state_.clock = StepClock(model_).state();
+    backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
+    step_.start(state_.bodies);
+    for (const std::string& finding : link_.start_warnings()) log_.warning(finding);
+    if (!start_change().empty())
+      log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
+    if (link_.multibody() && !link_.multibody()->redundancy().empty())
+      log_.info("redundant constraints share their reactions, which rigid bodies leave open: " +
+                link_.multibody()->redundancy());
+  } else {
+    load_state();
+    step_.counts() = state_.counts;
+    check_end();
+    if (!continues_files()) state_.history_rows = state_.snapshots = 0;
+    step_.resume(state_.bodies, state_.clock.time);
+    if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
+  }
+}
+
+// A checkpoint at the end may be past it by round-off, where the end is a multiple of an interval.
+void Simulation::check_end() const {
+  const StepClock clock(model_, state_.clock);
+  if (clock.time() > clock.end())
+    throw InputError(fmt::format("--restart {}: the checkpoint is at t = {} s, past time.end = {} s",
+                                 options_.restart, clock.time(), model_.time.end));
+  if (clock.done())
+    log_.info(fmt::format(
+        "--restart {}: nothing left to do: time.end = {} s is reached, the run is finished; a later one, "
+        "--set time.end=..., goes on from here",
+        options_.restart, model_.time.end));
+}
+
+// The checkpoint's particles are complete; another deck's constants hold from now on.
+void Simulation::load_state() {
+  bring_into_id_order(state_);
+  if (restart_.changed) take_constants(model_.particles, state_.particles);
+  backend_->particles().load(state_.particles, state_.shapes);
+  backend_->particles().load_contacts(state_.contacts);
+  backend_->particles().load_shape_contacts(state_.shape_contacts);
+  if (ranks_.is_root()) backend_->particles().load_works(state_.works);
+  state_.particles = {}, state_.contacts = {}, state_.works = {};
+}
+
+// Of the bodies' velocities, on rank 0.
+std::string Simulation::start_change() const {
+  return link_.multibody() && options_.restart.empty() ? link_.multibody()->start_change() : "";
+}
+
+// A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
+bool Simulation::continues_files() const {
+  bool same = false;
+  ranks_.on_root([&] { same = folder_.continues(); });
+  ranks_.broadcast(same);
+  return same;
+}
+
+// Each rank gets the particles of its share of the ids: what it writes, and what its part of the model has.
+void Simulation::bring_into_id_order(State& state) const {
+  std::vector<GlobalId> ids;
+  for (const Particle& p : state.particles) ids.push_back(p.global_id);
+  const IdOrder order(ranks_, model_.particles.totals.count, ids);
+  state.particles = order.apply(std::move(state.particles));
+  state.contacts = in_order(order, std::move(state.contacts));
+}
+
+void Simulation::checkpoint(State& state, const std::string& name) {
+  recorder_->flush();
+  state.works = all_works(std::move(state.works), ranks_);
+  state_hash_ = hash_of_all(state, ranks_);
+  bring_into_id_order(state);
+  Checkpoint out = pack(state);
+  add_restart_texts(out, options_, state_hash_, restart_.changes, book_.starts(state));
+  write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
+  state.particles = {}, state.contacts = {}, state.works = {};
+  live_.checkpoint_written(name, state.clock.time);
+}
+
+// Warns once of each.
+void Simulation::watch_bodies(const State& state) {
+  const auto warn_once = [this](bool& warned, const std::string& warning) {
+    if (!warning.empty()) log_.warning(warning), warned = true;
+  };
+  if (!body_left_) warn_once(body_left_, bodies_outside_warning(model_, state.bodies, state.clock.time));
+  if (!overloaded_) warn_once(overloaded_, link_.load_warning());
+}
+
+// Warns once, on every rank.
+void Simulation::watch_leavers(const std::vector<Leaver>& leavers) {
+  if (load_lost_) return;
+  const std::string warning = surfaces_outside_.warning(leavers, link_.motion(), state_.clock.time);
+  load_lost_ = !warning.empty();
+  if (load_lost_) log_.warning(warning);
+}
+
+void Simulation::progress(const State& state, Real h) {
+  if (!live_.look(state, h, recorder_->contacts())) return;
+  ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
+  show_status("running");
+}
+
+void Simulation::show_status(const std::string& status) {
+  live_.write(status, state_, recorder_ ? recorder_->contacts() : -1,
+              recorder_ ? recorder_->snapshots_written() : state_.snapshots);
+}
+
+ExitCode Simulation::run() {
+  try {
+    return run_to_the_end();
+  } catch (const IoError& error) {
+    record_failure(error.what(), ExitCode::io_failed);
+    throw;
+  } catch (const std::bad_alloc&) {
+    record_failure("not enough memory", ExitCode::bad_input);
+    throw;
+  }
+}
+
+ExitCode Simulation::run_to_the_end() {
+  ranks_.on_root([&] { write_record("running", ExitCode::done); });
+  live_.begin(state_);
+  show_status("running");
+  log_.info(fmt::format("{}, {}, backend {}, multibody solver {}",
+                        counted(model_.particles.totals.count, "particle", "particles"),
+                        counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
+                        link_.multibody() ? link_.multibody()->solver_description() : "none"));
+  const LoopParts parts{
+      model_,         *backend_,
+      link_,          step_,
+      *recorder_,     timers_,
+      steady_seconds, [this](const std::vector<Leaver>& leavers) { watch_leavers(leavers); }};
+  StepLoop loop(
+      parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
+      [this](const State& s, Real h) {
+        watch_bodies(s);
+        progress(s, h);
+      });
+  try {
+    book_.begin_loop();
+    const LoopEnd end = loop.run();
+    book_.end_loop();
+    if (end == LoopEnd::done) {
+      checkpoint(loop.complete_state(), "checkpoint_end.h5");
+      return finish("done", ExitCode::done);
+    }
+  } catch (const SimulationError& error) {
+    return fail(loop, error);
+  }
+  checkpoint(loop.complete_state(), "checkpoint.h5");
+  const std::string signal = strsignal(loop.signal());
+  log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
+            "/checkpoint.h5");
+  return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
+}
+
+// The record may meet the same trouble: what counts is the first. On a full disk the copies of growing files,
+// which nobody needs any longer, make room for it.
+void Simulation::record_failure(const std::string& why, ExitCode code) {
+  if (!ranks_.is_root()) return;
+  try {
+    state_.snapshots = recorder_->snapshots_written();
+    recorder_.reset();
+    write_record("failed: " + why, code);
+  } catch (const IoError&) {
+  }
+  show_status("failed: " + why);
+}
+
+ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
+  book_.end_loop();
+  ranks_.meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
+  log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
+  keep_last_good_state(loop);
+  return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
+}
+
+// A GPU that has failed may hold a snapshot, and the state of an implicit run: both are lost then.
+void Simulation::keep_last_good_state(StepLoop& loop) {
+  try {
+    recorder_->write_pending();
+  } catch (const DeviceError&) {
+    state_.snapshots = recorder_->snapshots_written();
+  }
+  try {
+    State* state = nullptr;
+    ranks_.together([&] { state = &loop.last_good_state(); });
+    checkpoint(*state, "checkpoint_failed.h5");
+    log_.info(fmt::format("last good state, t = {:.9g} s: {}/checkpoint_failed.h5", state->clock.time,
+                          options_.output_directory));
+  } catch (const DeviceError& error) {
+    log_.error(std::string("the last good state is lost: ") + error.what());
+  }
+}
+
+ExitCode Simulation::finish(const std::string& status, ExitCode code) {
+  recorder_->finish();
+  const std::string reactions = link_.multibody() ? link_.multibody()->reaction_warning() : "";
+  if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
+  if (overloaded_) log_.warning(link_.load_warning());
+  list_entries_ = ranks_.sum(backend_->list().entries());
+  migrated_ = ranks_.sum(backend_->list().balance().migrated);
+  device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));
+  summarize();  // what it warns of goes into the record
+  log_.tell_left_out();
+  ranks_.on_root([&] { write_record(status, code); });
+  show_status(status);
+  return code;
+}
+
+void Simulation::write_record(const std::string& status, ExitCode code) {
+  RunRecord record;
+  record.deck_path = options_.deck_path, record.resolved_deck = options_.resolved_deck;
+  record.command_line = options_.command_line;
+  record.status = status, record.exit_code = static_cast<int>(code);
+  record.started = live_.started(), record.ended = utc_now();
+  record.backend = backend_->description();
+  record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
+  record.start_change = start_change();
+  record.redundancy = link_.multibody() ? link_.multibody()->redundancy() : "";
+  record.restarted_from = options_.restart, record.changes = restart_.changes;
+  record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
+  const LoadBalance balance = backend_->list().balance();
+  record.starts = book_.starts(state_);
+  record.timers = timers_;
+  const StepCounts& n = step_.counts();
+  record.counts = {{"steps", n.steps},
+                   {"substeps", model_.integrator.substeps},
+                   {"newton_iterations", n.newton_iterations},
+                   {"linear_iterations", n.linear_iterations},
+                   {"rejected_error", n.rejected_error},
+                   {"rejected_newton", n.rejected_newton},
+                   {"frozen_steps", n.frozen_steps},
+                   {"list_builds", backend_->list().builds()},
+                   {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
+                   {"rebalances", balance.rebalances},
+                   {"migrated", migrated_},
+                   {"particles", model_.particles.totals.count},
+                   {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
+                   {"left", state_.carried_out.left},
+                   {"bodies_outside", bodies_outside(model_, state_.bodies).count},
+                   {"history_rows", state_.history_rows},
+                   {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
+  const BalanceState& b = state_.balance;
+  record.measures = {
+      {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
+      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", taken_by_integrator(b)},
+      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest}};
+  record.warnings = log_.warnings();
+  write_run_record(options_.output_directory, record);
+}
+
+void Simulation::summarize() const {
+  const StepCounts& n = step_.counts();
+  const BalanceState& b = state_.balance;
+  log_.info(fmt::format(
+      "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
+      "of the time beside output)",
+      state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
+      n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
+  if (n.frozen_steps > 0)
+    log_.info(fmt::format("friction's limits were frozen in {} of the steps: shorter ones would resolve it",
+                          n.frozen_steps));
+  const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
+  log_.info(
+      fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
+                  "integration; {} left the space{}",
+                  balance_error(b), b.exchanged, taken_by_integrator(b),
+                  counted(state_.carried_out.left, "particle", "particles"),
+                  outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
+  log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
+  const Multibody* const bodies = link_.multibody();
+  const BodiesBook book = bodies == nullptr ? BodiesBook{} : bodies_book(model_, *bodies, state_);
+  if (const std::string warning = balance_warning(b, book, model_); !warning.empty()) log_.warning(warning);
+}
+
+}  // namespace
+
+ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log) {
+  Simulation simulation(model, options, log);
+  return simulation.run();
+}
+
+}  // namespace scree

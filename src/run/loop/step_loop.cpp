@@ -1,0 +1,191 @@
+#include "run/loop/step_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/error.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "run/report/balance.hpp"
+#include "run/report/signals.hpp"
+
+namespace scree {
+namespace {
+
+// Keeping a good state of an explicit run may take this share of the run's time.
+constexpr double kGoodStateShare = 0.02;
+// Explicit steps are taken in batches of about this length [s], and of no more substeps than this.
+constexpr double kBatchSeconds = 0.2, kMostSubsteps = 1e6;
+// The same in mixed precision, as numbers of the deck: substeps times particles in a batch, about 0.07 s on
+// one H200; so many particles more stand for what a substep of few takes; and no fewer substeps than these,
+// 0.6 s where the particles fill its memory.
+constexpr double kMixedBatch = 1e9, kMixedIdle = 1e5, kFewestMixed = 32;
+
+}  // namespace
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// In mixed precision a batch closes its last step with forces in double: if the clock chose that step, a
+// rerun would have other bits. So the deck alone does. Beside bodies the host's work may take the longest,
+// and the batch is short.
+std::size_t batch_length(const Model& model, bool mixed, double step_seconds) {
+  const double substeps = model.integrator.substeps;
+  double steps = kBatchSeconds / step_seconds;
+  if (mixed) {
+    const auto particles = static_cast<double>(model.particles.totals.count);
+    const double most = model.bodies.empty() ? kMixedBatch / (kMixedIdle + particles) : 0;
+    steps = std::max(most, kFewestMixed) / substeps;
+  }
+  return static_cast<std::size_t>(std::clamp(steps, 1.0, kMostSubsteps / substeps));
+}
+
+StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
+                   std::function<void(const State&, Real)> progress)
+    : parts_(parts),
+      state_(state),
+      clock_(parts.model, state.clock),
+      write_checkpoint_(std::move(write_checkpoint)),
+      progress_(std::move(progress)),
+      implicit_(parts.model.integrator.particles == ParticleIntegrator::hht) {
+  keep_good_state();
+}
+
+LoopEnd StepLoop::run(Real until) {
+  checkpoint_age_ = parts_.seconds();
+  while (!clock_.done()) {
+    if (clock_.time() >= until) return LoopEnd::paused;
+    if (look_outside() != 0) return LoopEnd::stopped_by_signal;
+    take_step(until);
+  }
+  return LoopEnd::done;
+}
+
+// What the world wants between two steps, the same on all ranks: a signal on any of them, rank 0's clock. The
+// state is at rest here, whoever takes the steps: a checkpoint moves none of them.
+int StepLoop::look_outside() {
+  const Real interval = parts_.model.output.checkpoint_wall_interval;
+  const bool due = interval > 0 && ranks().is_root() && parts_.seconds() - checkpoint_age_ >= interval;
+  Real wanted[] = {static_cast<Real>(signal_received()), due ? Real(1) : Real(0)};
+  ranks().max(wanted);
+  signal_ = static_cast<int>(wanted[0]);
+  if (signal_ == 0 && wanted[1] != 0) {
+    const auto scope = parts_.timers.time(Stage::output);
+    write_checkpoint();
+  }
+  return signal_;
+}
+
+void StepLoop::write_checkpoint() {
+  write_checkpoint_(complete_state());
+  checkpoint_age_ = parts_.seconds();
+}
+
+void StepLoop::take_step(Real until) {
+  const Real h = clock_.begin_step();
+  next_sample_ = next_energy_sample(parts_.step.counts().steps, implicit_);
+  if (!implicit_) return take_explicit_steps(h, until);
+  const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
+  if (outcome.verdict != Verdict::accepted) return reject(outcome);
+  clock_.accepted(outcome.error);
+  close_step(h);
+}
+
+// Where a step can be shortened no further a driver may be why: of that no step length says anything.
+void StepLoop::reject(const StepOutcome& outcome) {
+  try {
+    if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
+    clock_.rejected_for_convergence(outcome.trouble);
+  } catch (const SimulationError&) {
+    const std::string dead_point = parts_.step.dead_point();
+    if (dead_point.empty()) throw;
+    throw SimulationError("stage mbs_correct: " + dead_point);
+  }
+}
+
+// Equal steps up to the next output, but no longer than until the next look at signals and progress, and none
+// that begins at `until` or later. A batch ends where the energies are sampled, but in mixed precision, where
+// ends of batches choose the bits: there the sample is taken at the end of the batch.
+void StepLoop::take_explicit_steps(Real h, Real until) {
+  const bool mixed = parts_.backend.is_mixed();
+  std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
+  if (!mixed) most = std::min(most, static_cast<std::size_t>(next_sample_ - parts_.step.counts().steps));
+  std::vector<Real> times = clock_.equal_steps(most);
+  times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
+  const double start = parts_.seconds();
+  const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
+  step_seconds_ = (parts_.seconds() - start) / static_cast<double>(taken);
+  ranks().broadcast(step_seconds_);  // clocks differ
+  for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
+  close_step(h);
+}
+
+void StepLoop::close_step(Real h) {
+  state_.clock = clock_.state();
+  leave();
+  output(h);
+}
+
+// Particles outside the space: an error, or out of the pair search from the next step on.
+void StepLoop::leave() {
+  {
+    const auto scope = parts_.timers.time(Stage::migrate);
+    const std::vector<Leaver> leavers = parts_.step.check_inside();
+    if (leavers.empty()) return;
+    parts_.leaving(leavers);
+    parts_.backend.particles().take_out(leavers);
+    book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
+  }
+  parts_.step.rebuild_list(parts_.model.contact.skin);  // has stages of its own
+}
+
+void StepLoop::output(Real h) {
+  const auto scope = parts_.timers.time(Stage::output);
+  state_.counts = parts_.step.counts();
+  const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(),
+             checkpoint = clock_.take_checkpoint();
+  state_.clock = clock_.state();
+  {
+    const Reports::Instant now(parts_.backend.reports());
+    if (state_.counts.steps >= next_sample_) parts_.records.sample_energies(state_);
+    if (history) parts_.records.history(state_, h);
+    if (snapshot) parts_.records.snapshot(state_);
+  }
+  if (checkpoint) write_checkpoint();
+  progress_(state_, h);
+  bool stale = !implicit_ && parts_.seconds() - good_age_ > good_cost_ / kGoodStateShare;
+  if (!implicit_) ranks().broadcast(stale);
+  if (stale) keep_good_state();
+}
+
+void StepLoop::keep_good_state() {
+  if (implicit_) return;
+  const double start = parts_.seconds();
+  parts_.records.write_pending();  // the copy counts it, also where the backend fails before it is written
+  good_.reset();                   // two copies are not needed
+  std::vector<Particle> particles = std::move(complete_state().particles);
+  KeptContacts contacts = std::move(state_.contacts);
+  std::vector<std::int64_t> works = std::move(state_.works);
+  state_.particles = {}, state_.contacts = {}, state_.works = {};
+  good_ = state_;
+  good_->particles = std::move(particles), good_->contacts = std::move(contacts);
+  good_->works = std::move(works);
+  good_age_ = parts_.seconds();
+  good_cost_ = good_age_ - start;
+}
+
+State& StepLoop::complete_state() {
+  state_.clock = clock_.state();
+  state_.counts = parts_.step.counts();
+  state_.particles = parts_.backend.particles().records();
+  state_.there = fields_there(parts_.model);
+  state_.contacts = parts_.backend.particles().contacts();
+  state_.shapes = parts_.backend.particles().shape_losses();
+  state_.shape_contacts = parts_.backend.particles().shape_contacts();
+  state_.works = parts_.backend.particles().works();
+  return state_;
+}
+
+State& StepLoop::last_good_state() { return good_ ? *good_ : complete_state(); }
+
+}  // namespace scree

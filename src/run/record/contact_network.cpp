@@ -1,0 +1,74 @@
+#include "run/record/contact_network.hpp"
+
+#include <utility>
+
+#include "partition/id_order.hpp"
+
+namespace scree {
+
+ContactNetwork::ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines)
+    : rubs_(model.rotates()) {
+  const IdOrder order(ranks, model.particles.totals.count, lines.global_id);
+  const SurfaceSet surfaces(model);
+  for (const ContactLine& line : lines.of_bodies) add(line, surfaces);
+  for (const ContactLine& line : order.apply(std::move(lines.lines), std::move(lines.counts)))
+    add(line, surfaces);
+}
+
+void ContactNetwork::add(const ContactLine& line, const SurfaceSet& surfaces) {
+  const ShownContact& contact = line.contact;
+  ends_.insert(ends_.end(), {line.start, line.start + contact.branch});
+  force_.push_back(contact.force);
+  normal_force_.push_back(contact.normal_force), tangential_force_.push_back(contact.tangential_force);
+  overlap_.push_back(contact.overlap);
+  if (rubs_) slip_.push_back(contact.slip);
+  const auto number = [](GlobalId id) {
+    return static_cast<Index>(id >= kFirstSurfaceId ? id - kFirstSurfaceId : -1);
+  };
+  const auto body_of = [&](Index surface) {
+    return surface >= surfaces.ground() ? surfaces.at(surface - surfaces.ground()).carrier : -1;
+  };
+  const Index surface = number(line.second);
+  const bool with_surface = surface >= 0, with_body = surface >= surfaces.ground();
+  first_.push_back(number(line.first) >= 0 ? -1 : line.first);
+  second_.push_back(with_surface ? -1 : line.second);
+  kind_.push_back(static_cast<int>(with_body      ? ContactKind::body
+                                   : with_surface ? ContactKind::wall
+                                                  : ContactKind::particle));
+  wall_.push_back(with_body ? -1 : surface);
+  body_.push_back(body_of(surface)), first_body_.push_back(body_of(number(line.first)));
+}
+
+LineSnapshot ContactNetwork::snapshot() const {
+  LineSnapshot out{ends_, {}};
+  const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
+    out.fields.push_back(field_of(name, label, values));
+  };
+  add("normal_force", {"N", "along the normal; above 0: pushes the two apart"}, normal_force_);
+  add("tangential_force", {"N", "size of the force across the normal"}, tangential_force_);
+  add("force", {"N", "on the particle or body at the line's start"}, force_);
+  add("overlap", {"m", "how far the two overlap; below 0 where they attract each other apart"}, overlap_);
+  if (rubs_) add("slip", {"m", "how far the spring of friction is stretched"}, slip_);
+  add("first", {"1", "global id of the particle at the line's start, the lower one of two; -1: none"},
+      first_);
+  add("second", {"1", "global id of the particle at its end; -1: none"}, second_);
+  add("kind", {"1", "what is at its end: 0 a particle, 1 a wall, 2 a body"}, kind_);
+  add("wall", {"1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none"},
+      wall_);
+  add("body", {"1", "which body is at its end, counted from 0 in the deck's order; -1: none"}, body_);
+  add("first_body",
+      {"1",
+       "which body's disc, sphere or corner of a mesh is at its start, likewise; -1: none, but a particle"},
+      first_body_);
+  return out;
+}
+
+std::vector<std::string> ContactNetwork::field_names(const Model& model) {
+  ContactNetwork none;
+  none.rubs_ = model.rotates();
+  std::vector<std::string> names;
+  for (const PointField& field : none.snapshot().fields) names.push_back(field.name);
+  return names;
+}
+
+}  // namespace scree

@@ -1,0 +1,177 @@
+#include "run/report/balance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "model/derived/mesh_corners.hpp"
+#include "run/report/step_trials.hpp"
+
+namespace scree {
+namespace {
+
+constexpr Real kMostShare = 0.01;  // of the energy exchanged
+// Share of the contacts' dissipation that explicit steps of the chosen length may leave unaccounted for.
+constexpr Real kUnaccounted = 0.03;
+constexpr Real kRoundOff = 1e-9;  // of the energies that there are: less than that is no reason to warn
+constexpr Real kLastBits = 16 * std::numeric_limits<Real>::epsilon();  // of a position
+constexpr std::int64_t kSamplesPerDoubling = 16;
+
+EnergyExtremes wider(const EnergyExtremes& a, const EnergyExtremes& b) {
+  return {std::max(a.most_kinetic, b.most_kinetic), std::min(a.least_elastic, b.least_elastic),
+          std::max(a.most_elastic, b.most_elastic), std::min(a.least_work, b.least_work),
+          std::max(a.most_work, b.most_work)};
+}
+
+// Below which the energies' last bits may be what is seen [J]. The weights of particles stand for sums that
+// cancel, and for positions far from the origin.
+Real round_off(const Ledger& ledger, const Model& model) {
+  Real all = 0;
+  for (const Real entry : ledger.entries()) all += std::abs(entry);
+  const Real far = std::max(norm(model.space.min), norm(model.space.max));
+  const Real weights = static_cast<Real>(model.particles.totals.count) * model.particles.totals.largest_mass *
+                       norm(model.gravity);
+  return kRoundOff * all + kLastBits * weights * far;
+}
+
+// By how much one impact's energy is misjudged in the steps that are tried, as a share of it: that of the
+// velocities of the rebound, along the normal and across it.
+Real energy_error(const StepTrial& trial) {
+  const TrialResult& r = trial.result;
+  const Real along = r.exact.restitution, across = std::abs(r.exact.across);
+  const Real slope = trial.rubs ? std::tan(trial.incidence) : 0;  // of the approach
+  const Real wrong = along * along * r.normal_error + across * std::max(across, Real(0.1)) * r.across_error;
+  return 2 * wrong / (1 + slope * slope);
+}
+
+// The largest of the deck's impacts in its explicit steps. Unknown beside bodies with shapes, or with meshes
+// on planes: no trial covers the contacts of bodies in their own steps.
+std::optional<Real> impact_error(const Model& model) {
+  const auto has_shapes = [](const Body& body) { return !body.shapes.empty(); };
+  if (std::ranges::any_of(model.bodies, has_shapes) || largest_corner_radius(model) > 0) return {};
+  std::optional<Real> largest;
+  for (const StepTrial& trial : try_steps(model))
+    largest = std::max(largest.value_or(0), energy_error(trial));
+  return largest;
+}
+
+// after: what follows the share in the sentence.
+std::string share_text(Real energy, Real exchanged, const char* after = "") {
+  return exchanged > 0 ? fmt::format(", {:.2g} % of the {:.4g} J exchanged{}", 100 * energy / exchanged,
+                                     exchanged, after)
+                       : "";
+}
+
+// Explicit steps whose impacts are right: what is missing was not lost, but not accounted for.
+std::string accounting_warning(const BalanceState& balance, Real error, Real impacts) {
+  return fmt::format(
+      "{:.3g} J{} are not accounted for: explicit steps account for what contacts dissipate, {:.3g} J here, "
+      "to first order in time.step only. Their motion is of second order: impacts in these steps keep within "
+      "{:.2g} % of their energy (scree check shows the rebounds). A shorter time.step brings the ledger "
+      "closer",
+      std::abs(error), share_text(std::abs(error), balance.exchanged, ","), balance.last.dissipated_contacts,
+      100 * impacts);
+}
+
+std::string remedy(const Model& model, std::optional<Real> impacts) {
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
+    return impacts.value_or(0) > kMostShare
+               ? fmt::format(
+                     "shorten time.step, in which impacts are off by up to {:.2g} % of their energy "
+                     "(scree check shows the rebounds)",
+                     100 * *impacts)
+               : "shorten time.step";
+  return model.time.control == StepControl::adaptive
+             ? "lower time.tolerance, or bring integrator.hht_alpha nearer to 0"
+             : "shorten time.step, or set time.control = \"adaptive\"";
+}
+
+}  // namespace
+
+std::int64_t next_energy_sample(std::int64_t steps, bool implicit) {
+  const std::int64_t least = implicit ? 4 : 128, most = implicit ? 8 : 1024;
+  const std::int64_t doubling =
+      static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(std::max(steps, std::int64_t{1}))));
+  const std::int64_t apart = std::clamp(doubling / kSamplesPerDoubling, least, most);
+  return (steps / apart + 1) * apart;
+}
+
+EnergyExtremes extremes_at(Real kinetic, Real elastic, const MultibodyState& bodies) {
+  return {kinetic, elastic, elastic, bodies.driver_work, bodies.driver_work};
+}
+
+Real energy_exchanged(const EnergyExtremes& extremes, const MultibodyState& bodies, const Ledger& now) {
+  return extremes.most_kinetic + (bodies.most_kinetic - bodies.least_kinetic) +
+         (extremes.most_elastic - extremes.least_elastic) + (extremes.most_work - extremes.least_work) +
+         now.dissipated_contacts + now.dissipated_force_elements;
+}
+
+void add_sample(BalanceState& balance, const EnergyExtremes& now) {
+  balance.extremes = wider(balance.extremes, now);
+}
+
+void add_row(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& now,
+             const MultibodyState& bodies) {
+  if (!balance.open) balance = {true, ledger.accounted(), ledger.dissipated_integrator, 0, 0, now, ledger};
+  balance.exchanged =
+      std::max(balance.exchanged_before, energy_exchanged(wider(balance.extremes, now), bodies, ledger));
+  balance.last = ledger;
+}
+
+void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& now) {
+  if (!balance.open) return;
+  balance.start += ledger.accounted() - balance.last.accounted();
+  balance.start_integrator += ledger.dissipated_integrator - balance.last.dissipated_integrator;
+  balance.exchanged_before = balance.exchanged;
+  balance.extremes = now;
+  balance.last = ledger;
+}
+
+// What forces could do, weights on the way from the origin, and the motion in a step that comes of the last
+// bits of positions: where nothing moves all energies are that small, and so is what was exchanged.
+BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State& state) {
+  const Real t = state.clock.time;
+  const MultibodyEnergies energies = bodies.energies(state.bodies, t);
+  const std::vector<BodyMotion> motion = bodies.motion(state.bodies);
+  Real weights = 0, moves = 0;
+  for (std::size_t b = 0; b < motion.size(); ++b) {
+    const Real far = norm(motion[b].position), mass = model.bodies[b].mass;
+    weights += mass * norm(model.gravity) * far;
+    moves += mass / 2 * far * far;
+  }
+  const Real rate = kLastBits * static_cast<Real>(state.counts.steps) / std::max(t, model.time.min_step);
+  const Real small = kRoundOff * (bodies.energy_of_forces(state.bodies) + weights) + moves * rate * rate;
+  return {energies.kinetic + std::abs(energies.elastic), state.bodies.integrator_loss, small};
+}
+
+// HHT has an entry of its own for its effect. The effect of velocity-Verlet on contacts is the balance error;
+// its entry is a function of state, which goes to and fro. Bodies may hold much and exchange next to nothing,
+// as a crank that is driven at constant speed: energy taken out of them is then measured by what they hold.
+std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model) {
+  const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
+  const Real error = balance_error(balance), taken = taken_by_integrator(balance);
+  const Real noise = round_off(balance.last, model) + bodies.round_off;
+  Real counts = std::abs(implicit ? taken : bodies.taken);
+  if (std::abs(bodies.taken) <= kMostShare * bodies.held)
+    counts = implicit ? std::min(counts, std::abs(taken - bodies.taken)) : 0;
+  const Real most = std::max(kMostShare * balance.exchanged, noise);
+  if (!(std::max(std::abs(error), counts) > most)) return "";
+  const std::optional<Real> impacts = implicit ? std::nullopt : impact_error(model);
+  const bool accounting = impacts && *impacts <= kMostShare && balance.last.dissipated_contacts > 0;
+  if (accounting && counts <= most)
+    return std::abs(error) <= kUnaccounted * balance.last.dissipated_contacts
+               ? ""
+               : accounting_warning(balance, error, *impacts);
+  const Real largest = std::max(std::abs(error), counts);
+  return fmt::format(
+      "the time integration has changed the energy by {:.3g} J{} (it took out {:.3g} J, and {:.3g} J are not "
+      "accounted for): {}",
+      largest, share_text(largest, balance.exchanged), taken, std::abs(error) > noise ? error : 0,
+      remedy(model, impacts));
+}
+
+}  // namespace scree

@@ -1,0 +1,33 @@
+#include "run/report/bodies_outside.hpp"
+
+#include <fmt/format.h>
+
+#include "model/data/body_layout.hpp"
+#include "model/derived/space_box.hpp"
+
+namespace scree {
+
+BodiesOutside bodies_outside(const Model& model, const MultibodyState& state) {
+  const Box space = open_box(model.space);
+  BodiesOutside outside;
+  const BodyLayout layout(model.bodies);
+  if (state.position.empty()) return outside;
+  for (int b = 0; b < layout.bodies(); ++b) {
+    const Real* q = &state.position[static_cast<std::size_t>(layout.position(b))];
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    const Vec3 centre{q[0], q[1], body.kind == BodyKind::spatial ? q[2] : body.position.z};
+    if (!space.inside(centre) && ++outside.count == 1) outside.first = static_cast<std::size_t>(b);
+  }
+  return outside;
+}
+
+std::string bodies_outside_warning(const Model& model, const MultibodyState& state, Real t) {
+  const BodiesOutside outside = bodies_outside(model, state);
+  if (outside.count == 0) return "";
+  return fmt::format(
+      "body \"{}\" is outside the space at t = {:.6g} s: bodies that leave are counted, neither stopped nor "
+      "removed",
+      model.bodies[outside.first].name, t);
+}
+
+}  // namespace scree

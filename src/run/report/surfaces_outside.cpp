@@ -1,0 +1,184 @@
+#include "run/report/surfaces_outside.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "coupling/wall_motion.hpp"
+#include "model/derived/space_box.hpp"
+#include "model/derived/start_meshes.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kInstants = 100;  // of walls that move
+// Where between two of as many equal spans an instant is, by the golden ratio: no motion's period fits to
+// all.
+constexpr Real kGolden = 0.6180339887498949;
+constexpr std::size_t kNamed = 3;  // carriers in one warning
+
+// The sides that are open; the others are at infinity.
+Box open_sides(const Space& space) {
+  const Box all = open_box(space);
+  Box open{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  const auto take = [&](int side, Real Vec3::*along) {
+    if (space.boundary[side] == Boundary::open) open.min.*along = all.min.*along;
+    if (space.boundary[side + 1] == Boundary::open) open.max.*along = all.max.*along;
+  };
+  take(kXMin, &Vec3::x), take(kYMin, &Vec3::y), take(kZMin, &Vec3::z);
+  return open;
+}
+
+bool something_leaves(const Model& model) {
+  return model.particles.totals.count > 0 && model.space.leaving != Leaving::error;
+}
+
+// Calls visit(point, radius) for the spheres and vertices that stand for a carrier's surfaces, in its frame.
+template <class Visit>
+void for_each_extreme(const Model& model, const Body& body, const Visit& visit) {
+  for (const Shape& shape : body.shapes) visit(shape.offset, shape.radius);
+  for (const MeshShape& shape : body.meshes)
+    for (const Vec3 v : model.meshes[static_cast<std::size_t>(shape.mesh)].surface->vertices)
+      visit(shape.offset + v, Real(0));
+}
+
+template <class Visit>
+void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) {
+  if (wall.mesh < 0) return;
+  for (const Vec3 v : model.meshes[static_cast<std::size_t>(wall.mesh)].surface->vertices)
+    visit(wall.point + v, Real(0));
+}
+
+// Lines of planar models are drawn along z, where their space has no sides.
+template <class Carrier>
+bool reaches_beyond(const Model& model, const Carrier& carrier, const BodyMotion& motion, const Box& open) {
+  const Mat3 axes = rotation_matrix(orientation(motion));
+  bool beyond = false;
+  for_each_extreme(model, carrier, [&](Vec3 offset, Real radius) {
+    beyond |= !open.inside(motion.position + axes * offset, radius);
+  });
+  return beyond;
+}
+
+// Grows to hold another box.
+class BoxAround {
+ public:
+  void add(Vec3 low, Vec3 high) {
+    box_.min = {std::min(box_.min.x, low.x), std::min(box_.min.y, low.y), std::min(box_.min.z, low.z)};
+    box_.max = {std::max(box_.max.x, high.x), std::max(box_.max.y, high.y), std::max(box_.max.z, high.z)};
+  }
+  void add(const Model& model, int mesh, Vec3 offset) {
+    const MeshBox& of_mesh = model.meshes[static_cast<std::size_t>(mesh)].surface->box;
+    add(offset + of_mesh.min, offset + of_mesh.max);
+  }
+  std::optional<Box> box() const { return box_.min.x <= box_.max.x ? std::optional(box_) : std::nullopt; }
+
+ private:
+  Box box_{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+};
+
+std::optional<Box> box_of(const Model& model, const Body& body) {
+  BoxAround around;
+  for (const Shape& shape : body.shapes) {
+    const Vec3 r{shape.radius, shape.radius, shape.radius};
+    around.add(shape.offset - r, shape.offset + r);
+  }
+  for (const MeshShape& shape : body.meshes) around.add(model, shape.mesh, shape.offset);
+  return around.box();
+}
+
+std::optional<Box> box_of(const Model& model, const Wall& wall) {
+  BoxAround around;
+  if (wall.mesh >= 0) around.add(model, wall.mesh, wall.point);
+  return around.box();
+}
+
+std::string body_text(const Body& body) { return fmt::format("body \"{}\"", body.name); }
+std::string wall_text(const Wall& wall) { return fmt::format("wall \"{}\"", wall.name); }
+
+// Walls that are placed, in their order, whenever they are farthest.
+std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
+  const WallMotions motions(model);
+  std::vector<const Wall*> placed;
+  for (const Wall& wall : model.walls)
+    if (wall.is_placed()) placed.push_back(&wall);
+  std::vector<bool> beyond(placed.size());
+  std::vector<BodyMotion> motion(placed.size());
+  for (int k = 0; k <= kInstants; ++k) {
+    const Real share = k < kInstants ? (k + std::fmod(k * kGolden, 1)) / kInstants : 1;
+    motions.at(share * model.time.end, motion);
+    for (std::size_t w = 0; w < placed.size(); ++w)
+      if (!beyond[w] && (k == 0 || placed[w]->moves()))
+        beyond[w] = reaches_beyond(model, *placed[w], motion[w], open);
+  }
+  std::vector<std::string> texts;
+  for (std::size_t w = 0; w < placed.size(); ++w)
+    if (beyond[w]) texts.push_back(wall_text(*placed[w]));
+  return texts;
+}
+
+std::string what_is_lost(const Model& model) {
+  return model.space.leaving == Leaving::remove
+             ? "are removed"
+             : "are searched no longer, so that no surface holds or carries them";
+}
+
+// The image of p that is the nearest to `middle` [m].
+Vec3 image_beside(Vec3 middle, Vec3 p, Vec3 periods) {
+  const auto along = [](Real m, Real x, Real period) {
+    return period > 0 ? x - std::round((x - m) / period) * period : x;
+  };
+  return {along(middle.x, p.x, periods.x), along(middle.y, p.y, periods.y), along(middle.z, p.z, periods.z)};
+}
+
+}  // namespace
+
+std::string outside_at_start(const Model& model) {
+  if (!something_leaves(model)) return "";
+  const Box open = open_sides(model.space);
+  std::vector<std::string> beyond;
+  for (const Body& body : model.bodies)
+    if (reaches_beyond(model, body, start_motion(body), open)) beyond.push_back(body_text(body));
+  for (std::string& text : walls_beyond(model, open)) beyond.push_back(std::move(text));
+  if (beyond.empty()) return "";
+  std::string names;
+  for (std::size_t k = 0; k < std::min(beyond.size(), kNamed); ++k) names += (k == 0 ? "" : ", ") + beyond[k];
+  if (beyond.size() > kNamed) names += fmt::format(" and {} more", beyond.size() - kNamed);
+  return fmt::format(
+      "{} {} beyond an open side of the space: particles that leave there {}; a larger space "
+      "would keep them",
+      names, beyond.size() > 1 ? "reach" : "reaches", what_is_lost(model));
+}
+
+SurfacesOutside::SurfacesOutside(const Model& model) : model_(model) {
+  if (!something_leaves(model)) return;
+  for (const Body& body : model.bodies)
+    boxes_.push_back(box_of(model, body)), names_.push_back(body_text(body));
+  for (const Wall& wall : model.walls)
+    if (wall.is_placed()) boxes_.push_back(box_of(model, wall)), names_.push_back(wall_text(wall));
+}
+
+std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<const BodyMotion> motion,
+                                     Real t) const {
+  const Real diameter = 2 * model_.particles.totals.largest_radius;
+  const Vec3 periods = periods_of(model_.space);
+  for (std::size_t c = 0; c < boxes_.size(); ++c) {
+    if (!boxes_[c]) continue;
+    const Box& box = *boxes_[c];
+    const Mat3 axes = rotation_matrix(orientation(motion[c]));
+    const Vec3 middle = motion[c].position + axes * (Real(0.5) * (box.min + box.max));
+    for (const Leaver& leaver : leavers) {
+      const Vec3 place = image_beside(middle, leaver.position, periods) - motion[c].position;
+      if (!box.reaches(transposed_times(axes, place), diameter)) continue;
+      return fmt::format(
+          "particle {} leaves the space at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
+          "larger space would keep them",
+          leaver.global_id, t, names_[c], what_is_lost(model_));
+    }
+  }
+  return "";
+}
+
+}  // namespace scree

@@ -1,0 +1,289 @@
+#include "run/restart/restart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.hpp"
+#include "deck/deck.hpp"
+#include "deck/differences.hpp"
+#include "dem/host/body_contacts.hpp"
+#include "model/builder/build_parts.hpp"
+#include "model/derived/choose_law.hpp"
+#include "model/derived/joint_coordinates.hpp"
+#include "model/derived/scalar_function.hpp"
+#include "run/restart/checkpoint_datasets.hpp"
+
+namespace scree {
+namespace {
+
+using Differences = std::vector<DeckDifference>;
+
+constexpr std::size_t kMostShown = 10;
+constexpr const char* kHash = "state_hash";
+
+std::string listed(const Differences& differences) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(differences.size(), kMostShown); ++i)
+    text += (i == 0 ? "" : "; ") + to_text(differences[i]);
+  if (differences.size() > kMostShown) text += fmt::format("; and {} more", differences.size() - kMostShown);
+  return text;
+}
+
+bool starts_with_any(const std::string& text, std::initializer_list<const char*> starts) {
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const char* start) { return text.starts_with(start); });
+}
+
+// The numbers of a checkpoint stand in the order of the deck's bodies, joints, drivers and particles, and
+// positions along periodic axes on a grid that belongs to the space.
+bool must_stay(const DeckDifference& difference, bool periodic) {
+  static const std::set<std::string> kLists = {"",
+                                               "bodies",
+                                               "joints",
+                                               "drivers",
+                                               "cylinders",
+                                               "motors",
+                                               "joint_frictions",
+                                               "couplers",
+                                               "particles",
+                                               "space.dimension",
+                                               "bodies.*.count",
+                                               "joints.*.type",
+                                               "joints.*.bodies",
+                                               "joints.*.markers",
+                                               "markers.*.body",
+                                               "joints.*.chain",
+                                               "joints.*.each",
+                                               "drivers.*.joint",
+                                               "cylinders.*.type",
+                                               "cylinders.*.chain",
+                                               "cylinders.*.each",
+                                               "motors.*.type",
+                                               "joint_frictions.*.joint",
+                                               "couplers.*.type",
+                                               "couplers.*.joints",
+                                               "particles.*.kind",
+                                               "particles.*.count",
+                                               "particles.*.positions",
+                                               "particles.*.file",
+                                               "particles.*.size"};
+  static const std::set<std::string> kSides = {"space.min",   "space.max",   "space.x_min", "space.x_max",
+                                               "space.y_min", "space.y_max", "space.z_min", "space.z_max"};
+  if (kSides.count(difference.pattern))
+    return periodic || difference.before == "\"periodic\"" || difference.after == "\"periodic\"";
+  return kLists.count(difference.pattern) > 0;
+}
+
+bool is_periodic(const Space& space) {
+  return std::count(space.boundary.begin(), space.boundary.end(), Boundary::periodic) > 0;
+}
+
+// Functions of time that have the same values up to t in both decks: the checkpoint is that of either.
+class SameFunctions {
+ public:
+  SameFunctions(const Deck& before, const Deck& after, Real t) : t_(t) {
+    compare(before, after, "drivers", {"motion"}, build_motion);
+    compare(before, after, "spring_dampers", {"actuator"}, build_force);
+    compare(before, after, "applied_forces", {"fx", "fy", "fz", "torque_x", "torque_y", "torque_z"},
+            build_force);
+    compare(before, after, "motors", {"effort", "command", "rate"}, build_force);
+    compare(before, after, "motors", {"position"}, build_motion);
+    compare(before, after, "cylinders", {"force", "speed"}, build_force);
+    compare(before, after, "cylinders", {"length"}, build_motion);
+  }
+  bool hold(const DeckDifference& difference) const {
+    return std::any_of(keys_.begin(), keys_.end(),
+                       [&](const std::string& key) { return difference.key.starts_with(key + "."); });
+  }
+
+ private:
+  void compare(const Deck& before, const Deck& after, const std::string& list,
+               std::initializer_list<const char*> names, TimeFunction (*build)(const DeckTable&)) {
+    const std::vector<DeckTable>& old = before.root.tables(list);
+    for (const DeckTable& now : after.root.tables(list)) {
+      const auto then = std::find_if(old.begin(), old.end(),
+                                     [&](const DeckTable& table) { return table.path() == now.path(); });
+      if (then == old.end()) continue;
+      for (const char* name : names)
+        if (then->has(name) && now.has(name) &&
+            ScalarFunction(build(then->table(name)), name, 0)
+                .same_until(ScalarFunction(build(now.table(name)), name, 0), t_))
+          keys_.push_back(now.path() + "." + name);
+    }
+  }
+
+  Real t_;
+  std::vector<std::string> keys_;
+};
+
+// Keys in which the deck is another one for the time up to the checkpoint's.
+Differences differences_until(const Checkpoint& checkpoint, const RunOptions& options) {
+  if (checkpoint.text("fingerprint") == options.fingerprint) return {};
+  Differences differences = deck_differences(checkpoint.text("fingerprint"), options.fingerprint);
+  const std::vector<Real>& time = checkpoint.real_array("clock/time");
+  try {
+    const SameFunctions same(parse_deck(checkpoint.text("deck"), "checkpoint", {}),
+                             parse_deck(options.resolved_deck, "deck", {}), time.empty() ? 0 : time[0]);
+    std::erase_if(differences, [&](const DeckDifference& d) { return same.hold(d); });
+  } catch (const InputError&) {  // a deck of a version with other keys: all that differs counts
+  }
+  return differences;
+}
+
+[[noreturn]] void refuse(const Differences& differences, const RunOptions& options) {
+  throw InputError(fmt::format(
+      "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output and "
+      "parallel may differ, unless --allow-changes lets the run go on, not bit for bit. Keys that differ: {}",
+      options.restart, listed(differences)));
+}
+
+void check_allowed(const Differences& differences, const Model& model, const RunOptions& options) {
+  if (!differences.empty() && !options.allow_changes) refuse(differences, options);
+  Differences refused;
+  for (const DeckDifference& difference : differences)
+    if (must_stay(difference, is_periodic(model.space))) refused.push_back(difference);
+  if (refused.empty()) return;
+  throw InputError(
+      fmt::format("--restart {}: the checkpoint's numbers have no meaning where these keys "
+                  "differ, with --allow-changes neither: {}",
+                  options.restart, listed(refused)));
+}
+
+bool names(const DeckDifference& difference, const char* word) {
+  return difference.pattern.find(word) != std::string::npos;
+}
+
+void check_works(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
+                 const RunOptions& options) {
+  if (!model.output.adds_up_works()) return;
+  for (const DeckDifference& difference : differences)
+    if (names(difference, "mesh"))
+      throw InputError(fmt::format(
+          "--restart {}: output.surface_fields asks for works or wear, which are those of the triangles that "
+          "the checkpoint was written with; other meshes are not allowed: {}",
+          options.restart, to_text(difference)));
+  if (checkpoint.integers.count(kWorksName) > 0) return;
+  throw InputError(fmt::format(
+      "--restart {}: output.surface_fields asks for works or wear, which count from t = 0, and the run that "
+      "wrote the checkpoint has not added them up",
+      options.restart));
+}
+
+// Arrays of other lengths belong to another model where the deck is another one, else to a damaged file.
+void check_fits(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
+                const RunOptions& options) {
+  try {
+    check_datasets(checkpoint, model, kRestartTexts);
+  } catch (const IoError& error) {
+    if (differences.empty()) throw;
+    throw InputError(
+        fmt::format("--restart {}: the checkpoint does not fit the model of this deck ({}), with "
+                    "--allow-changes neither. Keys that differ: {}",
+                    options.restart, error.what(), listed(differences)));
+  }
+}
+
+// Whether other surfaces, or features of meshes, may have the numbers by which contacts with them are
+// remembered.
+bool renumbers_surfaces(const DeckDifference& difference) {
+  return starts_with_any(difference.pattern, {"walls", "space."}) || names(difference, "mesh") ||
+         names(difference, "shapes");
+}
+
+// Of what contacts remember of the old law, where the new one remembers something else.
+void keep_sides_alone(const Model& model, State& state) {
+  const auto differs = [](const auto& contacts, int numbers) {
+    return contacts.numbers != 0 && contacts.numbers != numbers;
+  };
+  const int numbers = kept_numbers(model, history_of(model.contact)),
+            of_shapes = kept_numbers(model, history_of(without_attraction(model.contact)));
+  if (differs(state.contacts, numbers)) state.contacts = sides_of(state.contacts, model, numbers);
+  if (differs(state.shape_contacts, of_shapes))
+    state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
+}
+
+// The deck's values hold from now on. What the state carries on from the steps before belongs to the old
+// ones, forces and accelerations to the old model.
+void apply(const Differences& differences, const Model& model, Restart& restart) {
+  if (differences.empty()) return;
+  restart.changed = true;
+  bool new_steps = false, other_surfaces = false;
+  for (const DeckDifference& difference : differences) {
+    new_steps |= starts_with_any(difference.pattern, {"time."});
+    other_surfaces |= renumbers_surfaces(difference);
+    restart.forces_changed |= !starts_with_any(difference.pattern, {"time.", "integrator."}) ||
+                              difference.pattern == "integrator.particles";
+    restart.changes += fmt::format("t = {:.9g} s: {}\n", restart.state.clock.time, to_text(difference));
+  }
+  if (other_surfaces) {
+    restart.state.contacts = restart.state.contacts.without_surfaces();
+    ShapeContacts& of_shapes = restart.state.shape_contacts;
+    of_shapes.shapes.clear(), of_shapes.keys.clear(), of_shapes.values.clear();
+  }
+  keep_sides_alone(model, restart.state);
+  if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
+}
+
+void check_hash(const State& state, const Checkpoint& checkpoint, const Ranks& ranks) {
+  const std::string found = hash_of_all(state, ranks), &written = checkpoint.text(kHash);
+  if (found != written)
+    throw IoError(
+        fmt::format("{}: the checkpoint is damaged: the hash of its state is {}, of what was "
+                    "written {}",
+                    checkpoint.path, found, written));
+}
+
+}  // namespace
+
+std::string hash_of_all(const State& state, const Ranks& ranks) {
+  const auto own = static_cast<std::int64_t>(state_hash(state, ranks.is_root()));
+  return fmt::format("{:016x}", static_cast<std::uint64_t>(ranks.sum(own)));
+}
+
+void add_restart_texts(Checkpoint& checkpoint, const RunOptions& options, const std::string& state_hash,
+                       const std::string& changes, const std::vector<RunStart>& starts) {
+  checkpoint.texts["fingerprint"] = options.fingerprint;
+  checkpoint.texts["deck"] = options.resolved_deck;
+  checkpoint.texts[kHash] = state_hash;
+  checkpoint.texts["changes"] = changes;
+  checkpoint.texts["starts"] = to_text(starts);
+}
+
+Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
+  const Ranks& ranks = options.ranks;
+  const Checkpoint checkpoint = read_checkpoint(options.restart, ranks);
+  Restart restart;
+  Differences differences;
+  ranks.together([&] {
+    differences = differences_until(checkpoint, options);
+    check_allowed(differences, model, options);
+    check_works(checkpoint, differences, model, options);
+    check_fits(checkpoint, differences, model, options);
+    restart.starts = starts_in(checkpoint.text("starts"), options.restart);
+  });
+  restart.state = unpack(checkpoint, ranks);
+  check_state(restart.state, options.restart, model.particles.totals.count, ranks);
+  ranks.together([&] {
+    if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
+  });
+  check_hash(restart.state, checkpoint, ranks);
+  if (!model.output.adds_up_works()) restart.state.works = {};
+  // Of a version that did not count them: from here on.
+  MultibodyState& bodies = restart.state.bodies;
+  const auto angles = static_cast<std::size_t>(counted_angles(model));
+  bodies.position.resize(bodies.position.size() - bodies.counted_angles + angles, 0);
+  bodies.counted_angles = angles;
+  restart.changes = checkpoint.text("changes");
+  apply(differences, model, restart);
+  if (restart.changed)
+    log.warning(fmt::format(
+        "--allow-changes: from t = {:.9g} s on this run has another deck than before, and is not bit for bit "
+        "that of either{}. Keys that differ: {}",
+        restart.state.clock.time,
+        restart.forces_changed ? "; forces and accelerations are computed anew" : "", listed(differences)));
+  return restart;
+}
+
+}  // namespace scree

@@ -1,0 +1,143 @@
+#include "run/state/contact_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "dem/history/history_slots.hpp"
+
+namespace scree {
+namespace {
+
+constexpr const char* kHistory = "contacts/history";
+
+// The other rows have names of their own where sides of sheets are all that is kept: a file that lacks
+// the history is none.
+struct RowNames {
+  const char *counts, *partners, *images;
+};
+constexpr RowNames kOfContacts{"contacts/count", "contacts/partner", "contacts/image"},
+    kOfSides{"sides/count", "sides/partner", "sides/image"};
+
+const RowNames& names_of(const KeptContacts& contacts) {
+  return contacts.numbers == kSidesAlone ? kOfSides : kOfContacts;
+}
+
+// rows of one integer each.
+template <class Number>
+void add_integers(const char* name, const char* description, std::int64_t rows, const Number& number,
+                  Checkpoint& out) {
+  const auto copy = [number](std::int64_t first, std::int64_t count, std::int64_t* to) {
+    for (std::int64_t k = first; k < first + count; ++k) *to++ = number(k);
+  };
+  out.integer_rows[name] = {1, rows, copy, "1", description};
+}
+
+template <class T>
+std::vector<T> read_rows(const CheckpointRows<T>& rows, std::int64_t first, std::int64_t count) {
+  std::vector<T> values(static_cast<std::size_t>(count * rows.width));
+  if (count > 0) rows.copy(first, count, values.data());
+  return values;
+}
+
+// Whose rows are this rank's: those of the contacts of its particles, of which the ranks below have so many.
+void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t below_rows,
+                   KeptContacts& contacts) {
+  const RowNames& names = names_of(contacts);
+  const std::int64_t first = below_own - below_rows, count = contacts.offsets.back();
+  const auto partners = read_rows(in.row_array<std::int64_t>(names.partners), first, count),
+             images = read_rows(in.row_array<std::int64_t>(names.images), first, count);
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= 27)
+      throw IoError(in.path + ": the partner of a contact or its image is none");
+    contacts.keys.push_back(row_key(partners[k], static_cast<std::int8_t>(images[k])));
+  }
+  if (contacts.width() > 0) contacts.values = read_rows(in.row_array<Real>(kHistory), first, count);
+}
+
+}  // namespace
+
+void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
+  if (contacts.numbers == 0) return;
+  const RowNames& names = names_of(contacts);
+  const std::int64_t count = std::ssize(contacts.keys);
+  const auto key = [&contacts](std::int64_t k) { return contacts.keys[static_cast<std::size_t>(k)]; };
+  add_integers(
+      names.counts, "contacts of each particle, in the order of the particles", contacts.particles(),
+      [&contacts](std::int64_t i) { return contacts.contacts(i); }, out);
+  add_integers(
+      names.partners,
+      "of each contact: id of the other particle, or 2^48 plus the number of the surface and 2^20 times that "
+      "of the feature of a mesh, 2^49 where the centre is past a sheet",
+      count, [key](std::int64_t k) { return id_of(key(k)); }, out);
+  add_integers(
+      names.images, "which of its images, beside the particle: 13 plus the periods in x, 3 in y, 9 in z",
+      count, [key](std::int64_t k) { return key(k) % 27; }, out);
+  const int numbers = contacts.width();
+  if (numbers == 0) return;
+  out.real_rows[kHistory] = {numbers, count,
+                             [&contacts, numbers](std::int64_t first, std::int64_t rows, Real* to) {
+                               std::copy_n(contacts.values.begin() + first * numbers, rows * numbers, to);
+                             },
+                             "of the law", "what the contact remembers, as this particle has it"};
+}
+
+int numbers_in(const Checkpoint& checkpoint) {
+  const auto history = checkpoint.real_rows.find(kHistory);
+  if (history != checkpoint.real_rows.end()) return history->second.width;
+  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesAlone : 0;
+}
+
+KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
+  KeptContacts contacts;
+  contacts.numbers = numbers_in(in);
+  if (contacts.numbers == 0) return contacts;
+  const RowNames& names = names_of(contacts);
+  const std::int64_t rows = in.row_array<std::int64_t>(names.partners).count, all = ranks.sum(rows);
+  ranks.together([&] {
+    const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(names.counts);
+    contacts.set_counts(read_rows(counts, 0, counts.count));
+    for (const std::int64_t count : contacts.counts())
+      if (count < 0 || count > all) throw IoError(in.path + ": a particle has no such number of contacts");
+  });
+  const std::int64_t own = contacts.offsets.back(), below = ranks.sum_below(own),
+                     below_rows = ranks.sum_below(rows);
+  const bool has_values = contacts.width() > 0;
+  if (ranks.sum(own) != all || (has_values && ranks.sum(in.row_array<Real>(kHistory).count) != all) ||
+      ranks.sum(in.row_array<std::int64_t>(names.images).count) != all)
+    throw IoError(in.path + ": the contacts' arrays do not fit together");
+  ranks.together([&] { read_contacts(in, below, below_rows, contacts); });
+  return contacts;
+}
+
+void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash) {
+  for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
+    // Where nothing else is remembered the side is where the centre is, unless that is past the sheet.
+    if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[static_cast<std::size_t>(k)])) continue;
+    hash.add(contacts.keys[static_cast<std::size_t>(k)]);
+    for (const Real value : contacts.values_of(k)) hash.add(value);
+  }
+}
+
+std::string contacts_trouble(const KeptContacts& contacts, const std::vector<Particle>& particles,
+                             std::int64_t of_deck) {
+  if (contacts.numbers == 0) return "";
+  if (contacts.particles() != std::ssize(particles)) return "the contacts are of another number of particles";
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    for (std::int64_t k = contacts.offsets[i]; k < contacts.offsets[i + 1]; ++k) {
+      const GlobalId id = particles[i].global_id;
+      const std::int64_t key = contacts.keys[static_cast<std::size_t>(k)];
+      if (k > contacts.offsets[i] && contacts.keys[static_cast<std::size_t>(k) - 1] >= key)
+        return fmt::format("the contacts of particle {} are out of order", id);
+      if (id_of(key) >= of_deck && id_of(key) < kFirstSurfaceId)
+        return fmt::format("a contact of particle {} is with particle {}; the deck has {}", id, id_of(key),
+                           of_deck);
+      for (const Real value : contacts.values_of(k))
+        if (!std::isfinite(value)) return fmt::format("a contact of particle {} is not finite", id);
+    }
+  return "";
+}
+
+}  // namespace scree
