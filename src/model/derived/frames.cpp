@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/rotation.hpp"
+#include "deck/choices.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
