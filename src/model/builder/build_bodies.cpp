@@ -18,6 +18,7 @@
 #include "model/data/body_exchange.hpp"
 #include "model/derived/frames.hpp"
 #include "model/derived/shape_places.hpp"
+#include "model/derived/touching.hpp"
 #include "physics/solid_body.hpp"
 #include "physics/spatial_rotation.hpp"
 
@@ -252,10 +253,6 @@ void note_mesh_solids(const DeckTable& body, const ModelNames& names, Model& mod
 }
 
 }  // namespace
-
-bool collides(const DeckTable& body, const DeckTable& surface) {
-  return body.boolean("collides") && surface.boolean("collides");
-}
 
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names) {
   for (const DeckTable& table : deck.tables("bodies")) {

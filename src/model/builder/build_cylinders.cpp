@@ -3,6 +3,7 @@
 
 #include "model/builder/build_parts.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/time_functions.hpp"
 
 namespace scree {
 

@@ -1,6 +1,7 @@
 // Spring-dampers, torsional spring-dampers and applied forces.
 #include "model/builder/build_parts.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/time_functions.hpp"
 
 namespace scree {
 

@@ -8,6 +8,7 @@
 #include "model/derived/connections.hpp"
 #include "model/derived/frames.hpp"
 #include "model/derived/joint_coordinates.hpp"
+#include "model/derived/time_functions.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {

@@ -49,10 +49,4 @@ void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
 
-// A time function from a quantity of the deck: of a driver, or a force or torque.
-TimeFunction build_motion(const DeckTable& table);
-TimeFunction build_force(const DeckTable& table);
-// Whether this shape or mesh of the body touches anything.
-bool collides(const DeckTable& body, const DeckTable& surface);
-
 }  // namespace scree

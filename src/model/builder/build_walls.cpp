@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/builder/build_parts.hpp"
+#include "model/derived/time_functions.hpp"
 
 namespace scree {
 

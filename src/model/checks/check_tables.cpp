@@ -8,6 +8,7 @@
 #include "deck/choices.hpp"
 #include "model/checks/deck_checks.hpp"
 #include "model/derived/scalar_function.hpp"
+#include "model/derived/time_functions.hpp"
 
 namespace scree {
 

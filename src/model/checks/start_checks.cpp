@@ -7,11 +7,13 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/rotation.hpp"
 #include "model/checks/deck_checks.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/frames.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/point_bins.hpp"
 #include "model/derived/shape_places.hpp"

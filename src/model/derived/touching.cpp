@@ -6,6 +6,10 @@
 
 namespace scree {
 
+bool collides(const DeckTable& body, const DeckTable& surface) {
+  return body.boolean("collides") && surface.boolean("collides");
+}
+
 RadiusRange radius_range(const Model& model) {
   const ParticleTotals& particles = model.particles.totals;
   std::vector<Real> radii;

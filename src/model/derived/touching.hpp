@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "deck/deck.hpp"
 #include "model/data/model.hpp"
 
 namespace scree {
@@ -13,6 +14,9 @@ struct RadiusRange {
   Real smallest = 0, largest = 0;
 };
 RadiusRange radius_range(const Model& model);
+
+// Whether this shape or mesh of the body touches anything.
+bool collides(const DeckTable& body, const DeckTable& surface);
 
 // Shapes of two bodies may touch, but not those of one body, nor of two that a joint or a force element
 // connects, unless the deck says so. Particles and walls may touch all.

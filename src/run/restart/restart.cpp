@@ -9,10 +9,10 @@
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
 #include "dem/host/body_contacts.hpp"
-#include "model/builder/build_parts.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/joint_coordinates.hpp"
 #include "model/derived/scalar_function.hpp"
+#include "model/derived/time_functions.hpp"
 #include "run/restart/checkpoint_datasets.hpp"
 
 namespace scree {

@@ -1,7 +1,6 @@
-// Functions of time: of drivers, actuators and applied forces.
-#include <fmt/format.h>
+#include "model/derived/time_functions.hpp"
 
-#include "model/builder/build_parts.hpp"
+#include <fmt/format.h>
 
 namespace scree {
 
