@@ -1,4 +1,4 @@
-// The law of a contact at one instant, composed of a normal, a tangential and a rolling law.
+// Contact law at one instant or over a step, composed of a normal, a tangential and a rolling law.
 #pragma once
 
 #include <type_traits>
@@ -13,18 +13,18 @@
 
 namespace scree {
 
-// The force of one contact along its normal, and its derivatives with respect to overlap and overlap rate. F
-// > 0 pushes the two apart.
+// Normal force of one contact, and its derivatives with respect to overlap and overlap rate. F > 0 is
+// repulsive.
 template <class T>
 struct ContactForceOf {
   T force;      // F [N]
-  T stiffness;  // of the elastic part, [N/m]: dF/dd where the damping does not depend on d
+  T stiffness;  // of the elastic part [N/m]: dF/dd where the damping does not depend on d
   T damping;    // dF/d(d_dot) [N s/m]
-  T loss;       // power taken out of the mechanical energy, (F - elastic force) d_dot [W]
+  T loss;       // dissipated power, (F - elastic force) d_dot [W]
 };
 using ContactForce = ContactForceOf<Real>;
 
-// Of a closed contact: overlap d > 0 [m], overlap rate d_dot [m/s], positive when approaching.
+// Normal force of a closed contact. d: overlap > 0 [m]; d_dot: overlap rate [m/s], positive when approaching.
 template <class NormalLaw, class T>
 SCREE_HD ContactForceOf<T> contact_force(const NormalLaw& law, T d, T d_dot) {
   const T elastic = law.elastic(d), damping = law.damping(d);
@@ -33,31 +33,31 @@ SCREE_HD ContactForceOf<T> contact_force(const NormalLaw& law, T d, T d_dot) {
   return {force, law.slope(d), damping, damping * d_dot * d_dot};
 }
 
-// What one contact does to its partners.
+// Force and torques of one contact on its partners.
 template <class T, class Vector>
 struct ContactLoadOf {
-  Vector force;               // on i, and its opposite on j [N]
-  T loss;                     // power that the law takes out of the mechanical energy [W]
-  Vector torque_i, torque_j;  // about the centres [N m]
+  Vector force;               // on i; -force acts on j [N]
+  T loss;                     // dissipated power [W]
+  Vector torque_i, torque_j;  // about the centres of i and j [N m]
 
-  // What it does to the partners by the other's name.
+  // The load with i and j exchanged.
   SCREE_HD ContactLoadOf exchanged() const { return {opposite(force), loss, torque_j, torque_i}; }
 };
 
-// What a contact remembers from step to step; what its law does not use stays zero.
+// History of a contact from step to step; members that the law does not use stay zero.
 struct ContactHistory {
-  Vec3 spring;           // force of the tangential spring [N]; odd under exchange of the partners
-  Vec3 moment;           // of the springs of rolling and twisting [N m]; odd
-  bool touched = false;  // the surfaces have met: a law with a neck may hold them beyond touch
+  Vec3 spring;           // force of the tangential spring [N]; odd under exchange of i and j
+  Vec3 moment;           // moment of the rolling and twisting springs [N m]; odd
+  bool touched = false;  // the surfaces have touched: JKR contacts stay closed beyond touch
 
-  // What the other partner remembers.
+  // The history with i and j exchanged.
   SCREE_HD ContactHistory mirrored() const { return {opposite(spring), opposite(moment), touched}; }
 };
 
-// Elastic energy of the springs that contacts remember [J].
+// Elastic energy of the springs in the contact history [J].
 struct SpringEnergies {
-  Real friction = 0;  // across the normal
-  Real rolling = 0;   // of rolling and twisting
+  Real friction = 0;  // tangential spring
+  Real rolling = 0;   // rolling and twisting springs
 
   SCREE_HD Real sum() const { return friction + rolling; }
   SCREE_HD void add(const SpringEnergies& part, Real share) {
@@ -67,24 +67,25 @@ struct SpringEnergies {
 
 // Elastic energy of a contact [J].
 struct ContactEnergy {
-  Real sum = 0;            // of the normal force, and of the springs that it remembers
-  SpringEnergies springs;  // parts of the sum
-  Real cohesion = 0;       // part of the sum: that less what it were without attraction; below zero
+  Real sum = 0;            // of the normal force and of the springs in the history
+  SpringEnergies springs;  // parts of `sum`
+  Real cohesion = 0;       // part of `sum`: sum less its value without adhesion; negative
 };
 
-// A contact over the step that ends at the instant of its PairState.
+// Result of a contact law over the step that ends at the instant of its `PairState`.
 struct ContactOutcome {
-  ContactLoadOf<Real, Vec3> load;  // at that instant; loss: of the normal law there, and of the step's others
+  ContactLoadOf<Real, Vec3> load;  // at the end of the step; loss: the normal law's there, and the mean of
+                                   // the others over the step
   ContactHistory history;
-  SpringLosses friction, rolling, twisting;  // of the step [J]
+  SpringLosses friction, rolling, twisting;  // over the step [J]
 
   SCREE_HD RubbingLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
 };
 
-// The law of a contact. Without friction, rolling and neck (kMoves false) it is a function of the instant:
-// load(pair). With them it needs to know how the partners moved over the step, and what it remembers:
-// load(moving pair, history), which is pure: the new history is returned, and only who accepts the step
-// stores it.
+// The law of a contact. Without friction, rolling resistance and JKR adhesion (`kMoves` is false) it is a
+// function of the instant: `load(pair)`. Otherwise it needs the motion of the partners over the step and the
+// contact history: `load(moving pair, history)`. Both are pure: the new history is returned, and only the
+// item that accepts the step stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
@@ -95,18 +96,18 @@ struct ContactLaw {
   RollingLaw rolling{};
 
   static constexpr bool kNeck = kHasNeck<NormalLaw>;
-  static constexpr bool kReaches = kReachesBeyondTouch<NormalLaw>;  // partners apart may have a contact
+  static constexpr bool kReaches = kReachesBeyondTouch<NormalLaw>;  // contacts may exist beyond touch
   static constexpr bool kMoves = TangentialLaw::acts || RollingLaw::acts || kNeck;
-  // Numbers that a contact remembers: spring, moment, whether it has touched, in this order.
+  // Numbers in the contact history: spring, moment, whether the surfaces have touched, in this order.
   static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kNeck ? 1 : 0);
 
-  // The load of a closed contact. Pure: the same for both partners but for the sign of what is odd.
+  // Load of a closed contact. Pure; both partners get the same but for the sign of odd quantities.
   template <class T, class Vector>
   SCREE_HD ContactLoadOf<T, Vector> load(const PairStateOf<T, Vector>& pair) const {
     static_assert(!kMoves);
     return normal_load(pair);
   }
-  // Of its normal law alone.
+  // Load of the normal law alone.
   template <class T, class Vector>
   SCREE_HD ContactLoadOf<T, Vector> normal_load(const PairStateOf<T, Vector>& pair) const {
     const auto law = normal.template as<T>().of_pair(pair.size);
@@ -114,16 +115,16 @@ struct ContactLaw {
     return {pair.geometry.along(f.force), f.loss, {}, {}};
   }
 
-  // Whether there is a contact, of partners that may be apart.
+  // Whether the contact is closed; the partners may be apart.
   SCREE_HD bool closed(const PairState& pair, const ContactHistory& old) const {
     return closed(normal.of_pair(pair.size), pair.geometry.overlap, old);
   }
 
-  // Whether a step that leaves no contact has broken one whose neck held springs.
+  // Whether a step that opens the contact breaks a JKR contact, whose springs hold energy.
   SCREE_HD static bool breaks(const ContactHistory& old) { return kNeck && old.touched; }
 
-  // All zero where there is no contact, but for the losses of one that breaks(). Pair: a MovingPair, or an
-  // InstantPair.
+  // Outcome of a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
+  // `MovingPair`, or `InstantPair`.
   template <class Pair = MovingPair>
   SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
@@ -132,7 +133,8 @@ struct ContactLaw {
     const ContactMotion& step = pair.motion;
     if (!closed(law, g.overlap, old)) {
       if constexpr (std::is_same_v<Pair, MovingPair>)
-        if (breaks(old)) let_go(springs_at(step.overlap0, step.normal0, pair.size, old), step.h, out);
+        if (breaks(old))
+          release_springs(springs_at(step.overlap0, step.normal0, pair.size, old), step.h, out);
       return out;
     }
     const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
@@ -149,19 +151,20 @@ struct ContactLaw {
       SpringStep step = spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h);
       if constexpr (std::is_same_v<Pair, InstantPair>)
         step.acting = acting_at(slider, step.spring, pair.slip_rate);
-      rub(step, motion, out);
+      add_friction(step, motion, out);
     }
     if constexpr (RollingLaw::acts) {
       const RollingContact rolls{pair.size, motion, contact, slider};
       RollingStep step = rolling.step(rolls, turned_with(motion, old.moment));
       if constexpr (std::is_same_v<Pair, InstantPair>)
         step.acting = rolling.at(rolls, step.spring, pair.turning);
-      roll(step, motion.h, out);
+      add_rolling(step, motion.h, out);
     }
     return out;
   }
 
-  // Of a closed contact, with what a neck that the next step makes will lose.
+  // Elastic energy of a closed contact [J], including what the formation of a JKR contact will dissipate in
+  // the next step.
   SCREE_HD ContactEnergy energy_of(const PairState& pair, const ContactHistory& history) const {
     const auto law = normal.of_pair(pair.size);
     Real out = law.energy(pair.geometry.overlap), cohesion = cohesion_of(law, pair.geometry.overlap);
@@ -173,7 +176,7 @@ struct ContactLaw {
   SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
     return springs_at(pair.geometry.overlap, pair.geometry.normal(), pair.size, history);
   }
-  // How far the spring of friction is stretched [m].
+  // Elongation of the tangential spring [m].
   SCREE_HD Real slip_of(const PairState& pair, const ContactHistory& history) const {
     static_assert(TangentialLaw::acts);
     const Real d = pair.geometry.overlap,
@@ -195,15 +198,15 @@ struct ContactLaw {
     return out;
   }
 
-  // Whether the mirror image of what one partner remembers is what the other finds, to the signs of zeros. A
-  // limit of zero leaves of a spring zeros with the signs of what it would have been; those of one in a
-  // plane, across it, have none on either side.
+  // Whether the mirrored history of one partner equals the other's, including the signs of zeros. A Coulomb
+  // limit of zero leaves zeros in the spring that keep the signs of its former components; out-of-plane
+  // components in 2D are zero without a sign on both sides.
   SCREE_HD static bool is_mirrored(const ContactHistory& history) {
     const auto some = [](Vec3 a) { return a.x != 0 || a.y != 0 || a.z != 0; };
     return (!TangentialLaw::acts || some(history.spring)) && (!RollingLaw::acts || some(history.moment));
   }
 
-  // The kHistory numbers of a contact: number(k) reads the k-th, store(k, value) writes it.
+  // The kHistory numbers of a contact: `number(k)` reads the k-th, `store(k, value)` writes it.
   template <class Number>
   SCREE_HD static ContactHistory read_history(const Number& number) {
     ContactHistory out;
@@ -225,23 +228,24 @@ struct ContactLaw {
   }
 
  private:
-  // of: the normal law's, for these partners.
+  // of: the normal law of these partners.
   template <class Pair>
   SCREE_HD static bool closed(const Pair& of, Real overlap, const ContactHistory& old) {
     return overlap > 0 || ((!kNeck || old.touched) && overlap > -reach_of(of));
   }
-  SCREE_HD static void rub(const SpringStep& step, const ContactMotion& motion, ContactOutcome& out) {
+  SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion,
+                                    ContactOutcome& out) {
     out.load.force = fused(-motion.leverage, step.acting, out.load.force);
     const Vec3 moment = fused_cross(motion.normal1, step.acting);
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
     if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
   }
-  SCREE_HD static void let_go(const SpringEnergies& held, Real h, ContactOutcome& out) {
-    out.friction.unloading = held.friction, out.rolling.unloading = held.rolling;
-    out.load.loss = held.sum() * reciprocal(h);
+  SCREE_HD static void release_springs(const SpringEnergies& springs, Real h, ContactOutcome& out) {
+    out.friction.unloading = springs.friction, out.rolling.unloading = springs.rolling;
+    out.load.loss = springs.sum() * reciprocal(h);
   }
-  SCREE_HD static void roll(const RollingStep& step, Real h, ContactOutcome& out) {
+  SCREE_HD static void add_rolling(const RollingStep& step, Real h, ContactOutcome& out) {
     out.load.torque_i -= step.acting, out.load.torque_j += step.acting;
     SpringLosses both = step.losses;
     both += step.twisting;
@@ -250,15 +254,15 @@ struct ContactLaw {
   }
 };
 
-// Laws with a spring and slider beside a normal law without attraction, and nothing that resists rolling:
-// those of which there are implicit steps and a form in single precision.
+// Laws with friction, but neither adhesion nor rolling resistance. Only these have implicit steps and a form
+// in single precision.
 template <class Law>
 inline constexpr bool kFrictionAlone = false;
 template <class Law>
 requires Law::kMoves inline constexpr bool kFrictionAlone<Law> =
     Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
 
-// How many of LossKind its contacts tell apart.
+// How many kinds of losses (`LossKind`) the contacts of a law distinguish.
 template <class Law>
 inline constexpr int kLossKindsOf = 0;
 template <class Law>

@@ -1,9 +1,10 @@
-// How the two surfaces of a contact move against each other over a time step: slip, rolling, twisting, and
-// how what a contact remembers turns with it.
+// Kinematics of a contact over a time step: slip, rolling and twisting, and the rotation of the contact
+// history with the pair.
 //
-// Everything here is exactly odd or even under the exchange of the partners, bit for bit: sums over the two
-// are of two terms, and products have one odd factor or two. Both sides of a pair thus keep mirrored springs
-// for ever. That holds as long as R_i w_i + R_j w_j is no fused multiply-add; all others may be.
+// All results are exactly odd or even under the exchange of the partners, bit for bit: sums over the two
+// partners have two terms, and products have one odd factor or two. Both sides of a pair therefore keep
+// mirrored springs at all times. This requires that R_i w_i + R_j w_j is not a fused multiply-add; all other
+// operations may be fused.
 #pragma once
 
 #include "base/fused.hpp"
@@ -14,28 +15,29 @@
 
 namespace scree {
 
-// One partner as it turns. arm: from its centre to the contact, its radius for a sphere, 0 for a face, whose
-// own motion is in the velocity at the contact.
+// Rotation of one partner. arm: distance from its centre to the contact; its radius for a sphere, 0 for a
+// face, whose rotation is part of the velocity at the contact.
 struct TurningPartner {
-  Vec3 spin;                 // of the half step, in the space frame [rad/s]
+  Vec3 spin;                 // at mid-step, in the global frame [rad/s]
   Real arm = 0;              // [m]
-  Real inertia = kInfinity;  // about its centre [kg m^2]; infinite for what does not give way
+  Real inertia = kInfinity;  // about its centre [kg m^2]; infinite for immovable partners
 };
 
-// Over the step that ends at the instant of a PairState.
+// Motion of a contact over the step that ends at the instant of its `PairState`.
 struct ContactMotion {
-  Vec3 normal0, normal1;  // at its start and its end, unit vectors from j to i
-  Real overlap0;          // at its start [m]
-  Vec3 slip;      // of i over j, across the normal [m], turned with the contact to the end of the step; odd
-  Vec3 rolling;   // of i against j, across the normal [rad], likewise; odd
-  Real twisting;  // of i against j about the normal [rad]; even
-  Real turn;      // of the pair as a whole about the normal, the mean of both spins [rad]; odd
-  Real leverage;  // (R_i + R_j) / |r|, 1 at a face: of the spring force for the force on the centres
+  Vec3 normal0, normal1;  // unit vectors from j to i at the start and the end of the step
+  Real overlap0;          // at the start of the step [m]
+  Vec3 slip;      // tangential displacement of i relative to j [m], rotated with the contact to the end of
+                  // the step; odd
+  Vec3 rolling;   // tangential part of the rotation of i relative to j [rad], rotated likewise; odd
+  Real twisting;  // rotation of i relative to j about the normal [rad]; even
+  Real turn;      // rotation of the pair about the normal, the mean of both spins [rad]; odd
+  Real leverage;  // lever-arm ratio (R_i + R_j) / |r|, 1 at a face: force on the centres over spring force
   Real arm_i, arm_j;          // [m]
   Real inertia_i, inertia_j;  // [kg m^2]
   Real h;                     // [s]
 
-  // The contact was closed over this share of the step only.
+  // Motion over this fraction of the step, during which the contact was closed.
   SCREE_HD ContactMotion over(Real share) const {
     ContactMotion part = *this;
     part.slip = share * slip, part.rolling = share * rolling, part.twisting = share * twisting;
@@ -43,18 +45,18 @@ struct ContactMotion {
   }
 };
 
-// All that a law with friction, rolling or a neck sees of a contact.
+// State and motion of a contact, as laws with friction, rolling resistance or JKR adhesion read it.
 struct MovingPair : PairState {
   ContactMotion motion;
 };
 
-// The part of a across the unit vector n.
+// Tangential part of a at the unit normal n.
 SCREE_HD Vec3 across(Vec3 a, Vec3 n) { return fused(-fused_dot(a, n), n, a); }
 
-// What the motions of spheres and of faces have in common. slide: of the centre of i over that of j, or over
-// the face's point, in the step [m], without its part along the normal or with it.
-SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, const TurningPartner& i,
-                                      const TurningPartner& j, Real h) {
+// Common part of the motion of sphere and face contacts. tangential_displacement: of the centre of i relative
+// to that of j, or to the face's point, over the step [m]; a normal component does not matter.
+SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 tangential_displacement,
+                                      const TurningPartner& i, const TurningPartner& j, Real h) {
   ContactMotion out{};
   out.normal0 = normal0, out.normal1 = normal1, out.h = h, out.leverage = 1;
   out.arm_i = i.arm, out.arm_j = j.arm, out.inertia_i = i.inertia, out.inertia_j = j.inertia;
@@ -63,7 +65,8 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
   const auto to_end = [&](Vec3 a) {
     return across(fused(out.turn / 4, fused_cross(twice_middle, a), a), normal1);
   };
-  out.slip = to_end(fused(-h / 2, fused_cross(i.arm * i.spin + j.arm * j.spin, twice_middle), slide));
+  out.slip = to_end(
+      fused(-h / 2, fused_cross(i.arm * i.spin + j.arm * j.spin, twice_middle), tangential_displacement));
   const Real twice_twisting = fused_dot(relative, twice_middle);
   out.twisting = twice_twisting / 2;
   out.rolling = to_end(
@@ -71,87 +74,89 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
   return out;
 }
 
-// Of two spheres. geometry: at the end of the step; travel: of i relative to j in it [m]. "Rolling arms": the
-// slip is (R_i + R_j) dn/dt - (R_i w_i + R_j w_j) x n, and with forces and torques that do the same work
-// spheres that roll on each other stay without slip whatever their overlap does, and angular momentum is kept
-// exactly (arms that shrink with the overlap ratchet: McNamara, Garcia-Rojo, Herrmann, Phys. Rev. E 77,
-// 2008).
-SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 travel, const TurningPartner& i,
-                                     const TurningPartner& j, Real h) {
-  const Vec3 r = geometry.direction, r0 = r - travel;
+// Motion of two spheres. geometry: at the end of the step; displacement: of i relative to j over the step
+// [m]. The lever arms are the radii: the slip is (R_i + R_j) dn/dt - (R_i w_i + R_j w_j) x n. With forces and
+// torques that are conjugate to it, spheres roll on each other without slip whatever their overlap does, and
+// angular momentum is conserved exactly. Arms that shrink with the overlap ratchet: McNamara, Garcia-Rojo,
+// Herrmann, Phys. Rev. E 77 (2008).
+SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 displacement,
+                                     const TurningPartner& i, const TurningPartner& j, Real h) {
+  const Vec3 r = geometry.direction, r0 = r - displacement;
   const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
   const Vec3 normal0 = distance0.inverse * r0, normal1 = geometry.normal();
-  const Real reach = i.arm + j.arm;
-  // The round-off of the difference of normals, some 1e-16 of the reach, does not add up: the next step's
-  // begins where this one's ends.
-  ContactMotion out = contact_motion(normal0, normal1, reach * (normal1 - normal0), i, j, h);
-  out.overlap0 = reach - distance0.root;
-  out.leverage = reach * geometry.scale;
+  const Real radius_sum = i.arm + j.arm;
+  // The round-off of the difference of normals, some 1e-16 of the radii, does not accumulate: the next step
+  // begins with the normal at which this one ends.
+  ContactMotion out = contact_motion(normal0, normal1, radius_sum * (normal1 - normal0), i, j, h);
+  out.overlap0 = radius_sum - distance0.root;
+  out.leverage = radius_sum * geometry.scale;
   return out;
 }
 
-// Of a sphere i and a face, of the ground or of a body j whose arm is 0. normal0: the face's at the start of
-// the step; travel: of i's centre in it, relative to the material point of the face at the contact [m].
-SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 travel,
+// Motion of a sphere i and a face of the ground or of a body j whose arm is 0. normal0: the face's at the
+// start of the step; displacement: of i's centre over the step relative to the material point of the face at
+// the contact [m].
+SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 displacement,
                                    const TurningPartner& i, const TurningPartner& j, Real h) {
   const Vec3 normal1 = geometry.normal();
-  ContactMotion out = contact_motion(normal0, normal1, travel, i, j, h);
-  out.overlap0 = geometry.overlap + dot(travel, Real(0.5) * (normal0 + normal1));
+  ContactMotion out = contact_motion(normal0, normal1, displacement, i, j, h);
+  out.overlap0 = geometry.overlap + dot(displacement, Real(0.5) * (normal0 + normal1));
   return out;
 }
 
-// Of a sphere i and an edge or a corner of a body j, whose arm is 0: as of a sphere j without radius, so that
-// i rolls over it without slip. normal0: at the start of the step, where the contact may have been with a
-// face beside the edge; travel: of i's centre relative to the material of j at the contact [m].
-SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 travel,
+// Motion of a sphere i and an edge or a vertex of a body j, whose arm is 0. The edge acts as a sphere without
+// radius, so that i rolls over it without slip. normal0: at the start of the step, where the contact may have
+// been with an adjacent face; displacement: of i's centre relative to the material of j at the contact [m].
+SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 displacement,
                                    const TurningPartner& i, const TurningPartner& j, Real h) {
-  const Vec3 normal1 = geometry.normal(), r0 = geometry.distance * normal1 - travel;
+  const Vec3 normal1 = geometry.normal(), r0 = geometry.distance * normal1 - displacement;
   const Real square0 = fused_dot(r0, r0);
-  // A centre on the edge itself has no direction from it, and no lever to it.
+  // A centre on the edge itself has no direction from it and no lever arm.
   const RootAndInverse<Real> distance0 = square0 > 0 ? root_and_inverse(square0) : RootAndInverse<Real>{0, 0};
-  const Vec3 along0 = square0 > 0 ? distance0.inverse * r0 : normal1;
-  ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - along0), i, j, h);
+  const Vec3 direction0 = square0 > 0 ? distance0.inverse * r0 : normal1;
+  ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - direction0), i, j, h);
   out.overlap0 = i.arm - distance0.root;
   out.leverage = geometry.distance > 0 ? i.arm * reciprocal(geometry.distance) : 1;
   return out;
 }
 
-// The surface of j, a face or an edge, runs along itself with the velocity `slide` of the middle of the step
-// [m/s]: that is slip, and nothing else.
-SCREE_HD void add_slide(ContactMotion& c, Vec3 slide) {
-  const Vec3 ran = c.h * slide;
-  c.slip -= c.leverage * across(ran + c.turn / 4 * cross(c.normal0 + c.normal1, ran), c.normal1);
+// Adds the slip of a conveyor surface of j, a face or an edge, which has the tangential velocity
+// `surface_velocity` at mid-step [m/s].
+SCREE_HD void add_slide(ContactMotion& c, Vec3 surface_velocity) {
+  const Vec3 displacement = c.h * surface_velocity;
+  c.slip -=
+      c.leverage * across(displacement + c.turn / 4 * cross(c.normal0 + c.normal1, displacement), c.normal1);
 }
 
-// What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with
-// dashpots that see the rates of slip and turning.
+// A contact at one instant, as laws with history read it: the partners have not moved, the history acts as it
+// is, and dashpots act on the rates of slip and rotation.
 struct InstantPair : MovingPair {
-  Vec3 slip_rate;  // of i over j, across the normal [m/s]; odd
-  Vec3 turning;    // of i against j [rad/s]; odd
+  Vec3 slip_rate;  // tangential velocity of i relative to j at the contact [m/s]; odd
+  Vec3 turning;    // spin of i relative to j [rad/s]; odd
 };
 
-// pair: of a step of no length.
+// pair: over a step of zero length.
 SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j) {
-  constexpr Real kAges = 1e30;  // what has not moved has no rate [s]
+  constexpr Real kLongTime = 1e30;  // a step so long that displacements have no rate [s]
   InstantPair out{pair, {}, spin_i - spin_j};
   ContactMotion& c = out.motion;
-  const Vec3 turning = cross(c.arm_i * spin_i + c.arm_j * spin_j, c.normal1);
-  out.slip_rate = across(c.leverage * pair.velocity - turning, c.normal1);
-  c.h = kAges;
+  const Vec3 spin_velocity = cross(c.arm_i * spin_i + c.arm_j * spin_j, c.normal1);
+  out.slip_rate = across(c.leverage * pair.velocity - spin_velocity, c.normal1);
+  c.h = kLongTime;
   return out;
 }
 
-// What a contact remembers turns with it over a step: about normal0 by the turn of the pair (Cayley's form of
-// a rotation, by 2 atan(turn / 2)), then by the smallest rotation that takes normal0 to normal1. Both keep
-// lengths to round-off and need no root; together they follow a pair that turns as one body to second order
-// in the step.
-SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real turn) {
+// Rotation of the contact history over a step: by the rotation of the pair about normal0 (Cayley form, by 2
+// atan(angle / 2)), then by the smallest rotation that takes normal0 to normal1. Both preserve lengths to
+// round-off without a square root; together they follow a rigidly rotating pair to second order in the step.
+SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real angle) {
   const Vec3 b = fused_cross(normal, a);
-  return fused(reciprocal(fused(turn, turn / 4, 1)),
-               fused(turn, b, (turn * turn / 2) * fused_cross(normal, b)), a);
+  return fused(reciprocal(fused(angle, angle / 4, 1)),
+               fused(angle, b, (angle * angle / 2) * fused_cross(normal, b)), a);
 }
 
-// A vector across the normal, for which normal x (normal x a) = -a; what round-off has left along it goes.
+// Rotates a tangential vector, for which normal x (normal x a) = -a. A normal component from round-off is
+// removed.
 SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
   const Real part = c.turn * reciprocal(fused(c.turn, c.turn / 4, 1));
   const Vec3 u = fused(part, fused_cross(c.normal0, a), fused(-c.turn / 2, part, 1) * a);
@@ -159,7 +164,7 @@ SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
                c.normal0 + c.normal1, u);
 }
 
-// Any vector.
+// Rotates any vector.
 SCREE_HD Vec3 turned_with(const ContactMotion& c, Vec3 a) {
   const Vec3 u = turned_about(a, c.normal0, c.turn), sum = c.normal0 + c.normal1;
   return fused(2 * fused_dot(u, c.normal0), c.normal1,

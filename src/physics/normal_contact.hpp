@@ -1,4 +1,4 @@
-// What laws of friction, rolling and twisting need to know of a contact along its normal.
+// Normal quantities of a contact that the laws of friction, rolling and twisting depend on.
 #pragma once
 
 #include <cmath>
@@ -8,21 +8,21 @@
 
 namespace scree {
 
-// At the end of a step, and at its start (0), where all is zero if the contact was open.
+// Normal quantities at the end of a step, and at its start (0), where all are zero if the contact was open.
 struct NormalContact {
-  Real grip;  // what Coulomb's limit counts: the force after the cut, and what adhesion adds; >= 0 [N]
-  Real radius, radius0;        // of the circle of contact [m]
-  Real stiffness, stiffness0;  // elastic, of the normal force [N/m]
+  Real grip;  // load in Coulomb's limit: normal force after the cut, plus the adhesive part; >= 0 [N]
+  Real radius, radius0;        // contact radius [m]
+  Real stiffness, stiffness0;  // elastic stiffness of the normal force [N/m]
 };
 
-// Of its partners a normal law may say more than the functions of the overlap that normal_laws.hpp lists:
-//   reach()                how far beyond touch they can have a contact [m]; else none
-//   kNeck = true           only after touch: it is made at d = 0, and holds down to -reach()
-//   making_loss()          with a neck: what making a contact takes [J]
-//   contact_radius(d)      of the circle of contact [m]; else sqrt(R* d)
-//   contact_stiffness(d)   for rolling [N/m], where slope(d) will not do
-//   adhesion(d)            what attraction adds to the load that limits friction [N]; else 0
-//   cohesion(d)            what attraction adds to energy(d) [J]; else 0
+// Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
+//   reach()                interaction range beyond touch [m]; default: none
+//   kNeck = true           JKR: contacts form at touch, d = 0, and break at d = -reach()
+//   making_loss()          with kNeck: energy that the formation of a contact dissipates [J]
+//   contact_radius(d)      [m]; default: sqrt(R* d)
+//   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
+//   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
+//   cohesion(d)            adhesive part of energy(d) [J]; default: 0
 
 template <class NormalLaw>
 inline constexpr bool kHasNeck = false;
@@ -35,8 +35,7 @@ inline constexpr bool kReachesBeyondTouch = requires(const NormalLaw& law, const
   law.of_pair(size).reach();
 };
 
-// How far beyond touch partners can have a contact [m]: what a search for contacts adds to the sum of their
-// radii.
+// Interaction range beyond touch [m]: added to the sum of the radii in the search for contacts.
 template <class Pair>
 SCREE_HD Real reach_of(const Pair& pair) {
   if constexpr (requires { pair.reach(); })
@@ -82,13 +81,14 @@ SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
     return d > 0 ? law.slope(d) : 0;
 }
 
-// Of a closed contact; force: after the cut [N]; d, d0: overlaps at the end and the start of the step [m].
+// Normal quantities of a closed contact. force: after the cut [N]; d, d0: overlaps at the end and the start
+// of the step [m].
 template <class NormalLaw>
 SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size, Real force, Real d,
                                       Real d0) {
-  Real grip = force;
-  if constexpr (requires { law.adhesion(d); }) grip += law.adhesion(d);
-  return {grip > 0 ? grip : 0, contact_radius(law, size, d), contact_radius(law, size, d0),
+  Real load = force;
+  if constexpr (requires { law.adhesion(d); }) load += law.adhesion(d);
+  return {load > 0 ? load : 0, contact_radius(law, size, d), contact_radius(law, size, d0),
           contact_stiffness(law, d), contact_stiffness(law, d0)};
 }
 

@@ -1,5 +1,5 @@
-// Normal laws: the force along the normal, a spring beside a damper, F = elastic(d) + damping(d) d_dot. Each
-// is a small type with its own parameters.
+// Normal laws: a spring and a damper in parallel, F = elastic(d) + damping(d) d_dot. Each law is a small type
+// with its own parameters.
 #pragma once
 
 #include <cmath>
@@ -9,44 +9,46 @@
 
 namespace scree {
 
-// What a deck says of a pair of materials, a spring beside a damper: F = K d^n + C d_dot (Jung, Jun, Sohn,
-// 2013, Eqs. 18-24), or with a modulus E* Hertz's law in place of K and n. A damping ratio stands in place of
-// C: the damper of physics/restitution.hpp, whose rebounds depend on no speed and no mass.
+// Parameters of the normal law of a pair of materials in the deck: F = K d^n + C d_dot (Jung, Jun, Sohn,
+// 2013, Eqs. 18-24), or Hertz's law with the modulus E* in place of K and n. A damping ratio in place of C
+// gives the damper of physics/restitution.hpp, whose restitution depends on neither speed nor mass.
 struct KelvinVoigt {
   Real normal_stiffness = 0;  // K [N/m^n]
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
-  bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
+  bool tension = false;  // true: Eq. 18 as printed, F may be tensile before separation; false: F is cut at
+                         // zero
   Real effective_modulus = 0;  // E* [Pa]
   Real damping_ratio = 0;      // zeta [-]
-  // Of surfaces that attract each other (physics/cohesion.hpp).
+  // Adhesion and cohesion (physics/cohesion.hpp).
   Real adhesion_work = 0;  // w [J/m^2]
-  bool neck = false;       // of Johnson, Kendall and Roberts, else of Derjaguin, Muller and Toporov
-  Real attraction = 0;     // constant [N],
-  Real range = 0;          // falling to zero over this distance beyond touch [m]
+  bool neck = false;       // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
+  Real attraction = 0;     // constant cohesive force [N]
+  Real range = 0;          // distance beyond touch over which it decreases to zero [m]
 
-  // Whether the two feel each other.
+  // Whether particles of these materials interact.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
   bool attracts() const { return adhesion_work > 0 || attraction > 0; }
   KelvinVoigt without_attraction() const {
     return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
   }
-  // For estimates: K, C and n of partners of these sizes that overlap by some 1 % of a radius.
+  // Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
   bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
   KelvinVoigt of_size(const PairSize& size) const;
 };
 
 // Every law below has
-//   Law(const KelvinVoigt&)   its parameters, from a deck's; accepts() says of which
+//   Law(const KelvinVoigt&)   its parameters from those of the deck; accepts() says whether it applies
 //   tension                   as in KelvinVoigt
-//   as<T>()                   the same with numbers of type T
-//   of_pair(size)             the law for partners of these sizes, with the functions of the overlap d > 0
+//   as<T>()                   the law with numbers of type T
+//   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:
 //   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
 //   energy(d)                 elastic energy [J]
-//   damping(d)                of the damper [N s/m]
-//   mean_damping(d0, d1)      its mean over the overlaps between these two, which may be 0
-//   cut(d0, pull)             where the force of a contact that parts evenly from d0 on is cut [m]: the
-//                             elastic force is down to the damper's, which is `pull` [N] at d0
+//   damping(d)                damping coefficient [N s/m]
+//   mean_damping(d0, d1)      mean of damping(d) between two overlaps, which may be 0
+//   cut(d0, damper_force)     overlap at which the force of a contact that separates at constant rate from d0
+//                             is cut [m]: the elastic force has decreased to the damper's, which is
+//                             `damper_force` [N] at d0
 
 // F = K d + C d_dot.
 template <class T>
@@ -57,15 +59,15 @@ struct LinearLawOf {
   bool tension = false;
 
   LinearLawOf() = default;
-  SCREE_HD LinearLawOf(T stiffness, T damping, bool pulls)
-      : normal_stiffness(stiffness), normal_damping(damping), tension(pulls) {}
+  SCREE_HD LinearLawOf(T stiffness, T damping, bool tensile)
+      : normal_stiffness(stiffness), normal_damping(damping), tension(tensile) {}
   explicit LinearLawOf(const KelvinVoigt& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
   static bool accepts(const KelvinVoigt& p) {
     return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.attracts();
   }
 
-  // By its numbers: gcc takes a copy of the whole for one access to memory, of which no vector is made.
+  // Member by member: gcc treats a copy of the whole object as one memory access and does not vectorize it.
   SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const {
     return {normal_stiffness, normal_damping, tension};
   }
@@ -78,11 +80,12 @@ struct LinearLawOf {
   SCREE_HD T energy(T d) const { return T(0.5) * normal_stiffness * d * d; }
   SCREE_HD T damping(T) const { return normal_damping; }
   SCREE_HD T mean_damping(T, T) const { return normal_damping; }
-  SCREE_HD T cut(T, T pull) const { return pull / normal_stiffness; }
+  SCREE_HD T cut(T, T damper_force) const { return damper_force / normal_stiffness; }
 };
 using LinearLaw = LinearLawOf<Real>;
 
-// The linear law with a damper that goes with the partners' masses: F = K d + (C + 2 zeta sqrt(m* K)) d_dot.
+// Linear law with a damper in proportion to the square root of the effective mass: F = K d + (C + 2 zeta
+// sqrt(m* K)) d_dot.
 template <class T>
 struct RatedLinearLawOf {
   using Scalar = T;
@@ -92,8 +95,8 @@ struct RatedLinearLawOf {
   bool tension = false;
 
   RatedLinearLawOf() = default;
-  SCREE_HD RatedLinearLawOf(T stiffness, T damping, T factor, bool pulls)
-      : normal_stiffness(stiffness), normal_damping(damping), damping_factor(factor), tension(pulls) {}
+  SCREE_HD RatedLinearLawOf(T stiffness, T damping, T factor, bool tensile)
+      : normal_stiffness(stiffness), normal_damping(damping), damping_factor(factor), tension(tensile) {}
   explicit RatedLinearLawOf(const KelvinVoigt& p)
       : RatedLinearLawOf(T(p.normal_stiffness), T(p.normal_damping),
                          T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
@@ -112,23 +115,23 @@ struct RatedLinearLawOf {
 };
 using RatedLinearLaw = RatedLinearLawOf<Real>;
 
-// F = K d^n + C d_dot, or with c d^((n-1)/2) in place of C, c = 2 zeta sqrt(m* K (n+1)/2). A type of its own
+// F = K d^n + C d_dot, or with c d^((n-1)/2) in place of C, c = 2 zeta sqrt(m* K (n+1)/2). A separate type
 // keeps pow() out of the linear law's kernels.
 template <class T>
 struct PowerLawOf {
   using Scalar = T;
   T normal_stiffness = 0;  // K [N/m^n]
-  T normal_damping = 0;    // C [N s/m]; 0 where c is not
+  T normal_damping = 0;    // C [N s/m]; 0 where damping_factor is used
   T exponent = 1;          // n [-]
   bool tension = false;
-  T damping_factor = 0;  // c [N s/m^((n+1)/2)] of a pair, else c / sqrt(m*)
+  T damping_factor = 0;  // c [N s/m^((n+1)/2)] for a pair, else c / sqrt(m*)
 
   PowerLawOf() = default;
-  SCREE_HD PowerLawOf(T stiffness, T damping, T n, bool pulls, T factor = 0)
+  SCREE_HD PowerLawOf(T stiffness, T damping, T n, bool tensile, T factor = 0)
       : normal_stiffness(stiffness),
         normal_damping(damping),
         exponent(n),
-        tension(pulls),
+        tension(tensile),
         damping_factor(factor) {}
   explicit PowerLawOf(const KelvinVoigt& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
@@ -154,21 +157,21 @@ struct PowerLawOf {
   SCREE_HD T mean_damping(T d0, T d1) const {
     if (!(damping_factor > 0)) return normal_damping;
     const T n = (exponent + 1) / 2, span = d1 - d0;
-    // Across a span that round-off would spoil, the middle.
+    // Over a span that round-off would spoil, the midpoint.
     if (!(std::abs(span) > T(1e-4) * (d0 + d1))) return damping((d0 + d1) / 2);
     return damping_factor / n * (std::pow(d1, n) - std::pow(d0, n)) / span;
   }
-  SCREE_HD T cut(T d0, T pull) const {
-    if (!(damping_factor > 0)) return std::pow(pull / normal_stiffness, 1 / exponent);
-    return d0 * std::pow(pull / elastic(d0), 2 / (exponent + 1));
+  SCREE_HD T cut(T d0, T damper_force) const {
+    if (!(damping_factor > 0)) return std::pow(damper_force / normal_stiffness, 1 / exponent);
+    return d0 * std::pow(damper_force / elastic(d0), 2 / (exponent + 1));
   }
 };
 using PowerLaw = PowerLawOf<Real>;
 
 // Hertz's law for two partners: F = K d^(3/2) + c d^(1/4) d_dot, K = 4/3 E* sqrt(R*), c = 2 zeta sqrt(5/4 m*
-// K). In dtau = d^(1/4) dt and y = 4/5 d^(5/4), whose rate is d_dot, that is a linear oscillator of damping
-// ratio zeta: the restitution is the same at every speed. Roots and quotients alone: a GPU gives the CPU's
-// bits.
+// K). With dtau = d^(1/4) dt and y = 4/5 d^(5/4), whose rate is d_dot, this is a linear oscillator of damping
+// ratio zeta: the restitution does not depend on the speed. Only roots and quotients are used, which have the
+// same bits on a GPU.
 template <class T>
 struct HertzPairOf {
   T modulus;         // 4/3 E* [Pa]
@@ -176,13 +179,13 @@ struct HertzPairOf {
   bool tension;
   T radius, mass;  // R* [m], m* [kg]
 
-  // Of the disc in which the two touch [m].
+  // Radius of the contact area [m].
   SCREE_HD T contact_radius(T d) const { return std::sqrt(radius * d); }
   SCREE_HD T elastic(T d) const { return modulus * contact_radius(d) * d; }
   SCREE_HD T slope(T d) const { return T(1.5) * modulus * contact_radius(d); }
   SCREE_HD T energy(T d) const { return T(0.4) * modulus * contact_radius(d) * d * d; }
   SCREE_HD T damping(T d) const { return damping_factor * std::sqrt(mass * modulus * contact_radius(d)); }
-  // 4/5 c (q^5 - p^5) / (q^4 - p^4) with p, q = d^(1/4), without its differences.
+  // 4/5 c (q^5 - p^5) / (q^4 - p^4) with p, q = d^(1/4), expanded to avoid the cancellation.
   SCREE_HD T mean_damping(T d0, T d1) const {
     const T p2 = std::sqrt(d0), q2 = std::sqrt(d1), p = std::sqrt(p2), q = std::sqrt(q2);
     const T parts = (p + q) * (p2 + q2);
@@ -190,9 +193,10 @@ struct HertzPairOf {
     const T c = damping_factor * std::sqrt(mass * modulus * std::sqrt(radius));
     return T(0.8) * c * (p2 * p2 + p * q * (p2 + p * q + q2) + q2 * q2) / parts;
   }
-  // d0 x^4 where x^5 is the damper's share of the elastic force at d0, by Newton's method, which falls.
-  SCREE_HD T cut(T d0, T pull) const {
-    const T share = pull / elastic(d0);
+  // d0 x^4 where x^5 is the damper force over the elastic force at d0, by Newton's method with decreasing
+  // iterates.
+  SCREE_HD T cut(T d0, T damper_force) const {
+    const T share = damper_force / elastic(d0);
     if (!(share > 0)) return 0;
     T x = 1, x4 = 1;
     for (T next = (4 + share) / 5; next < x; next = (4 * x + share / x4) / 5) x = next, x4 = x * x * x * x;
@@ -208,10 +212,10 @@ struct HertzLawOf {
   bool tension = false;
 
   HertzLawOf() = default;
-  SCREE_HD HertzLawOf(T m, T factor, bool pulls) : modulus(m), damping_factor(factor), tension(pulls) {}
+  SCREE_HD HertzLawOf(T m, T factor, bool tensile) : modulus(m), damping_factor(factor), tension(tensile) {}
   explicit HertzLawOf(const KelvinVoigt& p)
       : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
-  // Pairs that do not act are of any law.
+  // Pairs that do not interact are accepted by any law.
   static bool accepts(const KelvinVoigt& p) {
     return (p.effective_modulus > 0 || !p.acts()) && !p.attracts();
   }

@@ -8,20 +8,20 @@
 
 namespace scree {
 
-// [kg]; radius [m], density [kg/m^3].
+// Mass of a sphere [kg]; radius [m], density [kg/m^3].
 SCREE_HD Real sphere_mass(Real radius, Real density) {
   return density * Real(4) / 3 * std::numbers::pi_v<Real> * radius * radius * radius;
 }
 
-// [kg]; radius and thickness [m], density [kg/m^3].
+// Mass of a disc [kg]; radius and thickness [m], density [kg/m^3].
 SCREE_HD Real disc_mass(Real radius, Real thickness, Real density) {
   return density * thickness * std::numbers::pi_v<Real> * radius * radius;
 }
 
-// Moment of inertia about the centre over m R^2, of a solid sphere, or in 2D a disc. A hollow sphere has 2/3,
-// a ring 1.
+// Moment of inertia about the centre over m R^2, of a solid sphere (2D: disc). A hollow sphere has 2/3, a
+// ring 1.
 SCREE_HD Real solid_inertia_factor(int dimension) { return dimension == 2 ? Real(0.5) : Real(0.4); }
-// [kg m^2]; mass [kg], radius [m].
+// Moment of inertia [kg m^2]; mass [kg], radius [m].
 SCREE_HD Real moment_of_inertia(Real factor, Real mass, Real radius) {
   return factor * mass * radius * radius;
 }

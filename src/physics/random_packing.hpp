@@ -1,4 +1,4 @@
-// How likely a random place is free, for random sequential insertion.
+// Probability that a random position is free, for random sequential insertion.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace scree {
 
-// Sums over what stands in a box, each per volume of the box (3D) or per area (2D).
+// Sums over the particles in a box, each per volume of the box (3D) or per area (2D).
 struct PackingSums {
   Real number = 0;    // 1/m^d
   Real radius = 0;    // r
   Real surface = 0;   // 4 pi r^2; 2D: 2 pi r
-  Real fraction = 0;  // 4/3 pi r^3; 2D: pi r^2: the share of the box that is filled [-]
+  Real fraction = 0;  // 4/3 pi r^3; 2D: pi r^2: volume fraction [-]
 
   void add(int dimension, Real r, Real per_volume) {
     constexpr Real pi = std::numbers::pi_v<Real>;
@@ -24,14 +24,13 @@ struct PackingSums {
   }
 };
 
-// Where spheres or discs of one size find no place any more (saturation): Torquato, Uche, Stillinger, Phys.
-// Rev. E 74 (2006); the densest packing of equal ones.
+// Volume fraction at which random sequential insertion of equal spheres or discs saturates (Torquato, Uche,
+// Stillinger, Phys. Rev. E 74, 2006), and that of their densest packing.
 inline Real saturated_fraction(int dimension) { return dimension == 2 ? 0.547074 : 0.384131; }
 inline Real densest_fraction(int dimension) { return dimension == 2 ? 0.9069 : 0.74048; }
 
-// Minus the logarithm of the chance that a sphere (disc) of radius r [m] finds room in a fluid of hard
-// spheres (discs) in equilibrium: scaled particle theory, Lebowitz, Helfand, Praestgaard, J. Chem. Phys. 43
-// (1965).
+// Minus the logarithm of the probability that a sphere (disc) of radius r [m] fits into an equilibrium fluid
+// of hard spheres (discs): scaled particle theory, Lebowitz, Helfand, Praestgaard, J. Chem. Phys. 43 (1965).
 inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
   constexpr Real pi = std::numbers::pi_v<Real>;
   if (n.fraction >= 1) return kInfinity;
@@ -46,10 +45,10 @@ inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
          Real(4) / 3 * pi * r * r * r * pressure;
 }
 
-// The chance of a random place among equal ones that were placed at random one after the other. The power of
-// the distance to saturation is that of the kinetics there, the denominators match the expansion for few of
-// them: discs by Schaaf, Talbot, J. Chem. Phys. 91 (1989); spheres with a cubic term fitted to a simulation
-// of 37,000 (within 25 % for fractions up to 0.325).
+// Probability that a random position is free among equal particles that were inserted one after the other.
+// The power of the distance to saturation follows from the kinetics there; the denominators match the
+// expansion at low density: discs by Schaaf, Talbot, J. Chem. Phys. 91 (1989); spheres with a cubic term
+// fitted to a simulation of 37,000 (within 25 % for fractions up to 0.325).
 inline Real insertion_chance(int dimension, Real fraction) {
   const Real x = fraction / saturated_fraction(dimension);
   if (x >= 1) return 0;
@@ -57,8 +56,8 @@ inline Real insertion_chance(int dimension, Real fraction) {
   return std::pow(1 - x, 4) / (1 - 0.927 * x + 0.643 * x * x + 0.70 * x * x * x);
 }
 
-// The same for a sphere (disc) of radius r [m] among others of any size: the chance among so many equal ones
-// as exclude it as much from a fluid.
+// Probability that a random position is free for a sphere (disc) of radius r [m] among particles of any
+// sizes: that of equal particles at the density that has the same exclusion in a fluid.
 inline Real insertion_chance(int dimension, const PackingSums& n, Real r) {
   const Real exclusion = fluid_exclusion(dimension, n, r);
   Real low = 0, high = saturated_fraction(dimension);

@@ -1,6 +1,6 @@
 // Rolling and twisting laws: moments against rolling and against twisting. Both springs are parts of one
-// remembered vector M [N m], along the rotation of i against j (on i acts -M): across the normal and along
-// it.
+// vector M [N m] in the contact history, along the rotation of i relative to j (-M acts on i): its tangential
+// and its normal part.
 #pragma once
 
 #include "base/hd.hpp"
@@ -10,36 +10,36 @@
 
 namespace scree {
 
-// What a deck says of how the contacts of a pair of materials resist rolling and twisting.
+// Parameters of the rolling and twisting resistance of a pair of materials in the deck.
 struct RollingResistance {
-  Real friction = 0;           // mu_r of ElasticPlasticRolling [-]
+  Real friction = 0;           // mu_r of `ElasticPlasticRolling` [-]
   Real stiffness_factor = 0;   // of its spring [-]; 0: the stiffness is given
   Real stiffness = 0;          // k_r [N m]
   Real damping_ratio = 0;      // zeta of its dashpot [-]
-  Real damping = 0;            // C of ViscousRolling [N m s]
-  Real twisting_friction = 0;  // mu of MarshallTwisting [-]
+  Real damping = 0;            // C of `ViscousRolling` [N m s]
+  Real twisting_friction = 0;  // mu of `MarshallTwisting` [-]
 };
 
-// What a rolling law sees of a contact over a step.
+// Input of a rolling law: a contact over a step.
 struct RollingContact {
   const PairSize& size;
   const ContactMotion& motion;
   const NormalContact& normal;
-  const SpringSlider& friction;  // of the tangential law; all zero without one
+  const SpringSlider& friction;  // of the tangential law; all zero without friction
 };
 
-// Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old): the step of
-// the moment across the normal, from the one of before, turned with the contact; and rolling_at(contact,
-// spring, rate), the moment at an instant. Every twisting law has the same with twisting(contact, old) and
-// twisting_at(), of the moment along the normal.
+// Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old), the step of
+// the tangential moment from the previous one, rotated with the contact; and rolling_at(contact, spring,
+// rate), the moment at an instant. Every twisting law has twisting(contact, old) and twisting_at() for the
+// normal moment.
 
-// No moment.
+// No rolling resistance.
 struct FreeRolling {
   static constexpr bool acts = false;
   static constexpr int kHistory = 0;
 };
 
-// Mass that rolling about the contact moves: 1/I_r = sum 1/(I + m R^2) [kg m^2].
+// Effective inertia of rolling about the contact: 1/I_r = sum 1/(I + m R^2) [kg m^2].
 SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
   const auto inverse = [](Real inertia, Real mass, Real arm) {
     return inertia < kInfinity ? 1 / (inertia + mass * arm * arm) : 0;
@@ -49,8 +49,8 @@ SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
 
 // Elastic-plastic spring and dashpot, "EPSD": M' = k_r w while |M| < mu_r R* F_n, w the rolling rate; dashpot
 // 2 zeta sqrt(I_r k_r), within the limit together with the spring. k_r = factor K mu_r^2 R*^2, K the elastic
-// stiffness dF/dd of the contact; a factor of 2.25 in space and 3 in the plane is the authors'. Ai, Chen,
-// Rotter, Ooi, Powder Technol. 206 (2011), model C, who let the dashpot exceed the limit.
+// stiffness dF/dd of the contact; the authors use factors of 2.25 in 3D and 3 in 2D. Ai, Chen, Rotter, Ooi,
+// Powder Technol. 206 (2011), model C, in which the dashpot may exceed the limit.
 struct ElasticPlasticRolling {
   static constexpr bool acts = true;
   static constexpr int kHistory = 3;
@@ -59,7 +59,7 @@ struct ElasticPlasticRolling {
   Real stiffness_factor = 0;  // [-]; 0: the stiffness is given
   Real stiffness = 0;         // k_r [N m]
 
-  // k_r [N m]; of the contact: [N/m].
+  // k_r [N m]; of_contact: stiffness of the contact [N/m].
   SCREE_HD Real stiffness_at(const PairSize& size, Real of_contact) const {
     const Real arm = friction * size.effective_radius();
     return stiffness + stiffness_factor * arm * arm * of_contact;
@@ -78,7 +78,7 @@ struct ElasticPlasticRolling {
   }
 };
 
-// M = C w: nothing is remembered, nothing holds at rest.
+// M = C w: no history and no static resistance.
 struct ViscousRolling {
   static constexpr bool acts = true;
   static constexpr int kHistory = 0;
@@ -95,14 +95,14 @@ struct ViscousRolling {
 };
 
 // M' = (k_t a^2 / 2) w while |M| < 2/3 a mu F_n, w the twisting rate, with the tangential law's stiffness and
-// (a^2 / 2) times its dashpot: what a slider at each point of the circle of contact amounts to. Marshall,
-// J. Comput. Phys. 228 (2009).
+// (a^2 / 2) times its dashpot: the resultant of sliders distributed over the contact area. Marshall, J.
+// Comput. Phys. 228 (2009).
 struct MarshallTwisting {
   static constexpr bool acts = true;
   static constexpr int kHistory = 3;
   Real friction = 0;  // mu [-]
 
-  // [N m]; a: radius of the circle of contact [m], of_slip: k_t [N/m].
+  // Twisting stiffness [N m]; a: contact radius [m], of_slip: k_t [N/m].
   SCREE_HD Real stiffness_at(Real a, Real of_slip) const { return a * a / 2 * of_slip; }
   SCREE_HD SpringSlider slider(const RollingContact& c) const {
     const Real a = c.normal.radius;
@@ -117,7 +117,7 @@ struct MarshallTwisting {
   }
 };
 
-// Either of the two against rolling, or both, whose moments add.
+// Elastic-plastic and viscous rolling resistance, whose moments add; either may be zero.
 struct EitherRolling {
   static constexpr bool acts = true;
   static constexpr int kHistory = 3;
@@ -136,17 +136,17 @@ struct EitherRolling {
     }
     return out;
   }
-  SCREE_HD Vec3 rolling_at(const RollingContact& c, Vec3 held, Vec3 rate) const {
-    return spring.rolling_at(c, held, rate) + viscous.rolling_at(c, held, rate);
+  SCREE_HD Vec3 rolling_at(const RollingContact& c, Vec3 spring_moment, Vec3 rate) const {
+    return spring.rolling_at(c, spring_moment, rate) + viscous.rolling_at(c, spring_moment, rate);
   }
 };
 
-// A step of what resists rolling and twisting; losses: by rolling.
+// Step of the rolling and twisting moments; losses: of rolling.
 struct RollingStep : SpringStep {
   SpringLosses twisting;
 };
 
-// Rolling and twisting laws as one, over one remembered vector.
+// A rolling and a twisting law with one moment vector in the history.
 template <class Rolling, class Twisting = FreeRolling>
 struct RollingAndTwisting {
   static constexpr bool acts = true;
@@ -154,7 +154,7 @@ struct RollingAndTwisting {
   Rolling rolling{};
   Twisting twisting{};
 
-  // old: turned with the contact.
+  // old: rotated with the contact.
   SCREE_HD RollingStep step(const RollingContact& c, Vec3 old) const {
     const Vec3 along = dot(old, c.motion.normal1) * c.motion.normal1;
     RollingStep out{};
@@ -165,11 +165,11 @@ struct RollingAndTwisting {
     }
     return out;
   }
-  // The moment at an instant. spring: remembered; turning: of i against j [rad/s].
-  SCREE_HD Vec3 at(const RollingContact& c, Vec3 spring, Vec3 turning) const {
-    const Vec3 n = c.motion.normal1, along = dot(spring, n) * n, twist = dot(turning, n) * n;
+  // The moment at an instant. spring: from the history [N m]; turning: spin of i relative to j [rad/s].
+  SCREE_HD Vec3 at(const RollingContact& c, Vec3 spring, Vec3 relative_spin) const {
+    const Vec3 n = c.motion.normal1, along = dot(spring, n) * n, twist = dot(relative_spin, n) * n;
     Vec3 out;
-    if constexpr (Rolling::acts) out = rolling.rolling_at(c, spring - along, turning - twist);
+    if constexpr (Rolling::acts) out = rolling.rolling_at(c, spring - along, relative_spin - twist);
     if constexpr (Twisting::acts) out += twisting.twisting_at(c, along, twist);
     return out;
   }
@@ -185,7 +185,7 @@ struct RollingAndTwisting {
   }
 };
 
-// All that a deck may ask for as one type, so that pairs of materials may differ and kernels are compiled
+// All rolling laws of a deck in one type, so that pairs of materials may differ and the kernels are compiled
 // once.
 struct AnyRolling : RollingAndTwisting<EitherRolling, MarshallTwisting> {
   static AnyRolling of(const RollingResistance& p) {

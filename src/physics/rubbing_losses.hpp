@@ -1,4 +1,4 @@
-// What contacts that rub, roll and twist take out of the mechanical energy, by kind.
+// Dissipation of friction, rolling and twisting, by kind.
 #pragma once
 
 #include "base/hd.hpp"
@@ -6,11 +6,11 @@
 
 namespace scree {
 
-// What contacts lose beside the damping of their normal force: to sliders, to their dashpots, and to springs
-// that weaken.
+// Kinds of dissipation beside that of the normal force: in sliders, in their dashpots, and in springs whose
+// stiffness decreases.
 enum LossKind { kFrictionLoss, kRollingLoss, kTwistingLoss, kLossKinds };
 
-// The first kinds of it, of a step or of several [J].
+// Dissipation by the first kKinds kinds, over one or several steps [J].
 template <int kKinds>
 struct LossesOf {
   Real of[kKinds];
@@ -26,7 +26,7 @@ struct LossesOf {
   SCREE_HD void fill(Real value) {
     for (int k = 0; k < kKinds; ++k) of[k] = value;
   }
-  // Books what there is of particle i.
+  // Adds the losses to those of particle i.
   SCREE_HD void book(Real* const (&losses)[kLossKinds], Index i) const {
     for (int k = 0; k < kKinds; ++k)
       if (of[k] != 0) losses[k][i] += of[k];

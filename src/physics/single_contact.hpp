@@ -1,7 +1,7 @@
-// A contact that rubs, over an explicit step, in single precision; what it remembers stays in double, because
-// a step changes it by less than a single's last bit. For laws of kFrictionAlone (contact_law.hpp), which is
-// what each formula here is: to the rounding of singles, and to second order in the step where there the turn
-// of a contact is exact at any.
+// A contact with friction over an explicit step in single precision. The contact history stays in double
+// precision, because a step changes it by less than the last bit of a single. For laws of `kFrictionAlone`
+// (contact_law.hpp), with the same formulas to single-precision round-off; the rotation of the contact is
+// second order in the step here, and exact there.
 #pragma once
 
 #include <cmath>
@@ -10,31 +10,32 @@
 
 namespace scree {
 
-// How two spheres have moved over the step that ends at the instant of the pair. Differences of normals would
-// lose their digits; the way of the centres has all of them.
+// Motion of two spheres over the step that ends at the instant of the pair. It is computed from the
+// displacement of the centres, because differences of normals would lose their digits.
 struct SinglePair : PairStateOf<float, Vec3f> {
   Vec3f normal;                // at the end of the step
-  Vec3f slip;                  // of i over j, across the normal [m]
-  Vec3f turn;                  // of the pair as a whole [rad]
-  float overlap0;              // at its start [m]
+  Vec3f slip;                  // tangential displacement of i relative to j [m]
+  Vec3f turn;                  // rotation of the pair [rad]
+  float overlap0;              // at the start of the step [m]
   float leverage;              // (R_i + R_j) / |r|
   float inertia_i, inertia_j;  // [kg m^2]
   float h;                     // [s]
 };
 
-// spin_i, spin_j: of the half step [rad/s].
+// spin_i, spin_j: at mid-step [rad/s].
 SCREE_HD SinglePair single_pair(const PairStateOf<float, Vec3f>& state, Vec3f spin_i, Vec3f spin_j, float h) {
   SinglePair out{state, state.geometry.normal(), {}, {}, 0, 0, 0, 0, h};
-  const float inverse = state.geometry.scale, reach = state.size.radius_i + state.size.radius_j;
-  const Vec3f way = h * state.velocity;
+  const float inverse = state.geometry.scale, radius_sum = state.size.radius_i + state.size.radius_j;
+  const Vec3f displacement = h * state.velocity;
   const auto across = [](Vec3f a, Vec3f n) { return a - dot(a, n) * n; };
-  const Vec3f middle = out.normal - (0.5f * inverse) * across(way, out.normal);
-  const Vec3f sideways = across(way, middle);
+  const Vec3f mid_normal = out.normal - (0.5f * inverse) * across(displacement, out.normal);
+  const Vec3f tangential = across(displacement, mid_normal);
   const Vec3f rolling = state.size.radius_i * spin_i + state.size.radius_j * spin_j;
-  out.leverage = reach * inverse;
-  out.slip = out.leverage * sideways - h * cross(rolling, middle);
-  out.turn = inverse * cross(middle, sideways) + (h / 2 * dot(spin_i + spin_j, middle)) * middle;
-  out.overlap0 = state.geometry.overlap + dot(way, middle);
+  out.leverage = radius_sum * inverse;
+  out.slip = out.leverage * tangential - h * cross(rolling, mid_normal);
+  out.turn =
+      inverse * cross(mid_normal, tangential) + (h / 2 * dot(spin_i + spin_j, mid_normal)) * mid_normal;
+  out.overlap0 = state.geometry.overlap + dot(displacement, mid_normal);
   return out;
 }
 
@@ -42,33 +43,33 @@ struct SingleLoad {
   Vec3f force;     // on i [N]
   float loss;      // [W]
   Vec3f torque_i;  // [N m]
-  float friction;  // of the loss, over the step [J]
+  float friction;  // friction's part of the loss, over the step [J]
 };
 struct SingleOutcome : SingleLoad {
-  Vec3 history;  // the spring's force [N]
+  Vec3 history;  // force of the tangential spring [N]
 };
 
-// spring_slider.hpp's spring_step with stiffnesses, dashpot and limit of the step.
+// Stiffnesses, dashpot and limit of the step: `SpringSlider` (spring_slider.hpp) in single precision.
 struct SingleSlider {
   float stiffness, stiffness0, dashpot, limit;
 };
 
 struct SingleSpring {
   Vec3 spring;   // [N]
-  Vec3f acting;  // with the dashpot's [N]
-  float loss;    // of the step [J]
+  Vec3f acting;  // spring and dashpot [N]
+  float loss;    // over the step [J]
 };
 
 SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair& pair, Vec3 old) {
   const Vec3f start = in_single(old), first = cross(pair.turn, start);
   const bool shrinks = p.stiffness < p.stiffness0;
-  const float kept = shrinks ? p.stiffness / p.stiffness0 : 1;
+  const float retained = shrinks ? p.stiffness / p.stiffness0 : 1;
   float of_way = p.stiffness;
   if (p.stiffness > p.stiffness0)
     of_way = (p.stiffness * p.stiffness + p.stiffness * p.stiffness0 + p.stiffness0 * p.stiffness0) /
              (1.5f * (p.stiffness + p.stiffness0));
-  const Vec3f way = pair.slip;
-  Vec3f change = first + 0.5f * cross(pair.turn, first) + (kept - 1) * start + of_way * way;
+  const Vec3f displacement = pair.slip;
+  Vec3f change = first + 0.5f * cross(pair.turn, first) + (retained - 1) * start + of_way * displacement;
   change = change - dot(start + change, pair.normal) * pair.normal;
   const Vec3f trial = start + change;
   SingleSpring out{old + in_double(change), {}, 0};
@@ -76,20 +77,20 @@ SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair
   if (square > p.limit * p.limit) {
     const float share = p.limit * root_and_inverse(square).inverse;
     out.acting = share * trial;
-    out.loss = dot(kept * start + out.acting, (1 - share) * trial) / (2 * of_way);
+    out.loss = dot(retained * start + out.acting, (1 - share) * trial) / (2 * of_way);
     out.spring = Real(share) * out.spring;
   } else {
     out.acting = in_single(out.spring);
     if (p.dashpot > 0) {
-      const Vec3f sum = out.acting + (p.dashpot / pair.h) * way;
+      const Vec3f sum = out.acting + (p.dashpot / pair.h) * displacement;
       const float length = dot(sum, sum);
       const Vec3f spring = out.acting;
       out.acting = length > p.limit * p.limit ? (p.limit * root_and_inverse(length).inverse) * sum : sum;
-      out.loss = dot(out.acting - spring, way);
+      out.loss = dot(out.acting - spring, displacement);
     }
   }
   if (shrinks)
-    out.loss += dot(start, start) / 2 * (1 - kept) / p.stiffness0;
+    out.loss += dot(start, start) / 2 * (1 - retained) / p.stiffness0;
   else if (p.stiffness > p.stiffness0) {
     const Vec3f spring = in_single(out.spring);
     const float after = dot(spring, spring) * (p.stiffness - of_way) / (p.stiffness * of_way);

@@ -1,4 +1,4 @@
-// Mass, centre of mass and inertia of homogeneous solids, and of what is composed of them.
+// Mass, centre of mass and inertia of homogeneous solids and of their compositions.
 #pragma once
 
 #include <numbers>
@@ -13,10 +13,10 @@ namespace scree {
 struct MassProperties {
   Real mass = 0;  // [kg]
   Vec3 center;    // of mass [m]
-  Sym3 inertia;   // about that, along the axes of the frame that it stands in [kg m^2]
+  Sym3 inertia;   // about the centre of mass, along the axes of the parent frame [kg m^2]
 };
 
-// Of density [kg/m^3], centre at the origin; cylinders and capsules along z.
+// Solids of a density [kg/m^3] with their centres at the origin; cylinders and capsules along z.
 inline MassProperties solid_sphere(Real density, Real radius) {
   const Real mass = sphere_mass(radius, density), j = moment_of_inertia(Real(0.4), mass, radius);
   return {mass, {}, {j, 0, 0, j, 0, j}};
@@ -31,8 +31,8 @@ inline MassProperties solid_cylinder(Real density, Real radius, Real length) {
   const Real across = mass / 12 * (3 * r2 + length * length);
   return {mass, {}, {across, 0, 0, across, 0, mass / 2 * r2}};
 }
-// A cylinder of this length and a half sphere on either end, whose centre of mass is 3/8 of the radius from
-// its plane: across, both together have m (2/5 r^2 + l^2/4 + 3/8 r l) about the middle.
+// A cylinder of this length with a half sphere on either end, whose centre of mass is 3/8 of the radius from
+// its plane: perpendicular to the axis both half spheres have m (2/5 r^2 + l^2/4 + 3/8 r l) about the middle.
 inline MassProperties solid_capsule(Real density, Real radius, Real length) {
   MassProperties whole = solid_cylinder(density, radius, length);
   const MassProperties ends = solid_sphere(density, radius);
@@ -42,18 +42,18 @@ inline MassProperties solid_capsule(Real density, Real radius, Real length) {
   return whole;
 }
 
-// The tensor of a body turned by a: a J a^T.
+// Inertia tensor of a body rotated by a: a J a^T.
 inline Sym3 turned_tensor(const Mat3& a, const Sym3& j) {
   const Mat3 t = a * full(j) * transposed(a);
   return {t.x.x, (t.x.y + t.y.x) / 2, (t.x.z + t.z.x) / 2, t.y.y, (t.y.z + t.z.y) / 2, t.z.z};
 }
-// m (d.d 1 - d d^T), of a point mass at d (Steiner).
+// Inertia of a point mass at d (Steiner): m (d.d 1 - d d^T).
 inline Sym3 point_inertia(Real mass, Vec3 d) {
   return {mass * (d.y * d.y + d.z * d.z), -mass * d.x * d.y, -mass * d.x * d.z,
           mass * (d.x * d.x + d.z * d.z), -mass * d.y * d.z, mass * (d.x * d.x + d.y * d.y)};
 }
 
-// All parts in one frame; at least one.
+// Composition of parts in one frame; at least one.
 inline MassProperties composed(const std::vector<MassProperties>& parts) {
   MassProperties whole;
   for (const MassProperties& part : parts) whole.mass += part.mass, whole.center += part.mass * part.center;

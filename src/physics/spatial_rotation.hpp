@@ -1,5 +1,5 @@
-// Orientations moved by rotation vectors, and their tangent: of the bodies, on the host.
-// Bruls, Cardona, Arnold, Mech. Mach. Theory 48 (2012).
+// Orientations updated by rotation vectors, and their tangent operators; for bodies, on the host. Bruls,
+// Cardona, Arnold, Mech. Mach. Theory 48 (2012).
 #pragma once
 
 #include <cmath>
@@ -13,14 +13,14 @@ inline Real norm(const Quaternion& p) { return std::sqrt(dot(p, p)); }
 inline Quaternion normalized(const Quaternion& p) { return (1 / norm(p)) * p; }
 inline Quaternion conjugate(const Quaternion& p) { return {p.w, -p.x, -p.y, -p.z}; }
 
-// A of v_global = A v_body; p: of length 1.
+// Matrix A of v_global = A v_body; p: unit quaternion.
 inline Mat3 rotation_matrix(const Quaternion& p) {
   const Real w = p.w, x = p.x, y = p.y, z = p.z;
   return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
           {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
           {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
 }
-// Its inverse, with w >= 0, after Shepperd, J. Guid. Control 1 (1978); a: orthonormal, of determinant 1.
+// Unit quaternion of a rotation matrix, with w >= 0, after Shepperd, J. Guid. Control 1 (1978).
 inline Quaternion quaternion_of(const Mat3& a) {
   const Real t[4] = {a.x.x + a.y.y + a.z.z, a.x.x, a.y.y, a.z.z};
   int largest = 0;
@@ -36,7 +36,7 @@ inline Quaternion quaternion_of(const Mat3& a) {
   return normalized(p.w < 0 ? Real(-1) * p : p);
 }
 
-// The rotation by |u| about u.
+// Unit quaternion of the rotation by |u| about u.
 inline Quaternion exponential(Vec3 u) {
   const Real angle = norm(u), half = angle / 2;
   // sin(half) / angle; the next term of the series is below round-off.
@@ -44,7 +44,7 @@ inline Quaternion exponential(Vec3 u) {
       angle < Real(1e-3) ? (1 - angle * angle / 24 * (1 - angle * angle / 80)) / 2 : std::sin(half) / angle;
   return {std::cos(half), scale * u.x, scale * u.y, scale * u.z};
 }
-// Its inverse, of length up to pi.
+// Rotation vector of a unit quaternion, of length up to pi.
 inline Vec3 rotation_vector(const Quaternion& p) {
   const Vec3 v{p.x, p.y, p.z};
   const Real sine = norm(v);
@@ -53,8 +53,8 @@ inline Vec3 rotation_vector(const Quaternion& p) {
   return (2 * half / sine) * v;
 }
 
-// T^-1(u) = 1 + u~/2 + c u~^2, c = 1/f^2 - (1 + cos f) / (2 f sin f), f = |u|: change of u per change of the
-// orientation, in the body's frame, of exponential(u). |u| < 2 pi.
+// T^-1(u) = 1 + u~/2 + c u~^2, c = 1/f^2 - (1 + cos f) / (2 f sin f), f = |u|: derivative of u with respect
+// to the orientation, in the body frame of exponential(u). |u| < 2 pi.
 inline Mat3 inverse_tangent(Vec3 u) {
   const Real f = norm(u), f2 = f * f;
   const Real c = f < Real(0.03) ? (1 + f2 / 60 * (1 + f2 / 42)) / 12 : 1 / f2 - 1 / (2 * f * std::tan(f / 2));
@@ -62,11 +62,11 @@ inline Mat3 inverse_tangent(Vec3 u) {
   return identity3() + Real(0.5) * t + c * (t * t);
 }
 
-// D with D du = d(T^-1(u)) e, e constant: how the inverse tangent changes with u.
+// Matrix D with D du = d(T^-1(u)) e, e constant: derivative of the inverse tangent.
 //   D = -e~/2 - c ((u~ e)~ + u~ e~) + (c'/f) (u~^2 e) u^T
 inline Mat3 inverse_tangent_change(Vec3 u, Vec3 e) {
   const Real f = norm(u), f2 = f * f;
-  // c and c'/f by their series, below which the closed forms cancel.
+  // c and c'/f by their series where the closed forms cancel.
   const bool small = f < Real(0.25);
   const Real tangent = std::tan(f / 2), sine = std::sin(f / 2);
   const Real c = small ? (1 + f2 / 60 * (1 + f2 / 42 * (1 + f2 / 40))) / 12 : 1 / f2 - 1 / (2 * f * tangent);
@@ -77,15 +77,15 @@ inline Mat3 inverse_tangent_change(Vec3 u, Vec3 e) {
   return turn + outer(slope, twice, u);
 }
 
-// Over a step of length h, h3 = h^3: what the rotation vector of a motion with angular velocity w and its
-// rate w' has beside the integral of w (Magnus), w x w' h^3 / 12; in the body's frame.
+// Magnus term of a rotation over a step of length h, h3 = h^3: the rotation vector of a motion with angular
+// velocity w and its rate w', less the integral of w, is w x w' h^3 / 12 in the body frame.
 inline Vec3 rotation_drift(Real h3, Vec3 w, Vec3 rate) { return (h3 / 12) * cross(w, rate); }
 
-// J w' = torque + gyroscopic_torque(J, w), in the body's frame; it does no work.
+// Gyroscopic torque in the body frame, J w' = torque + gyroscopic_torque(J, w); it does no work.
 inline Vec3 gyroscopic_torque(const Mat3& inertia, Vec3 w) { return cross(inertia * w, w); }
 inline Real rotational_energy(const Mat3& inertia, Vec3 w) { return dot(w, inertia * w) / 2; }  // [J]
 
-// integrator_loss() (time_stepping.hpp) of a rotation; torques: without the gyroscopic one.
+// `integrator_loss()` (time_stepping.hpp) of a rotation; torques: without the gyroscopic one [N m].
 inline Real rotation_loss(const Mat3& inertia, Vec3 turn, Vec3 w0, Vec3 w1, Vec3 torque0, Vec3 torque1) {
   return dot(torque0 + torque1, turn) / 2 - (rotational_energy(inertia, w1) - rotational_energy(inertia, w0));
 }

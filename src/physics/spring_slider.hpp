@@ -1,5 +1,5 @@
-// A spring that slides where its force reaches a limit, with a dashpot beside it: Coulomb friction, and
-// rolling and twisting resistance, which differ in what moves and what limits.
+// Spring-slider-dashpot: a spring that slides where its force reaches a limit, with a parallel dashpot. It
+// serves Coulomb friction and rolling and twisting resistance, which differ in displacement and limit.
 #pragma once
 
 #include "base/hd.hpp"
@@ -8,9 +8,9 @@
 
 namespace scree {
 
-inline constexpr Real kNoSquare = 1e-290;  // squares below it have no exact root on a GPU
+inline constexpr Real kNoSquare = 1e-290;  // smaller squares have no exact root on a GPU
 
-// a, no longer than limit.
+// Scales a to the length `limit` if it is longer.
 SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
   const Real square = fused_dot(a, a);
   if (square <= limit * limit) return a;
@@ -18,11 +18,11 @@ SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
   return (limit * root_and_inverse(square).inverse) * a;
 }
 
-// Where the energy that a contact takes from a step has gone [J].
+// Losses of a contact over a step, by mechanism [J].
 struct SpringLosses {
-  Real sliding = 0;    // over the limit
-  Real dashpot = 0;    // never negative
-  Real unloading = 0;  // by a spring that weakens or stiffens under its force; never negative
+  Real sliding = 0;    // sliding at the limit
+  Real dashpot = 0;    // dashpot; never negative
+  Real unloading = 0;  // change of stiffness under load; never negative
 
   SCREE_HD Real sum() const { return sliding + dashpot + unloading; }
   SCREE_HD SpringLosses& operator+=(const SpringLosses& part) {
@@ -31,34 +31,35 @@ struct SpringLosses {
   }
 };
 
-// Parameters of one step of one contact. Forces [N] and ways [m], or moments [N m] and angles [rad].
+// Parameters of one contact for one step. Forces [N] and displacements [m], or moments [N m] and angles
+// [rad].
 struct SpringSlider {
   Real stiffness;   // k at the end of the step [N/m]
-  Real stiffness0;  // at its start; 0 where the contact was open
+  Real stiffness0;  // k at the start of the step; 0 where the contact was open
   Real dashpot;     // [N s/m]
   Real limit;       // [N]
 };
 
-// The part of a dashpot that acts at an instant, and over an implicit step that begins there. As in
-// spring_step() all of it acts beside a spring within its limit, and nothing beside one that slides, which is
-// at the limit. What the end of an implicit step decides is a jump of the force, at which Newton's method
-// stalls; the start decides the same as steps shrink. Within a small margin next to the limit a part acts:
-// round-off decides nothing.
+// Fraction of the dashpot that acts at an instant, and over an implicit step that begins there. As in
+// `spring_step()`, the dashpot acts in full while the spring is within its limit, and not at all while it
+// slides at the limit. The decision is taken at the start of an implicit step: at the end it would make the
+// force jump, and Newton's method stall; both agree as steps shrink. Within a small margin below the limit
+// the fraction is linear, so that round-off decides nothing.
 SCREE_HD Real dashpot_part(const SpringSlider& p, Vec3 spring) {
   constexpr Real kMargin = 1e-3;  // of the limit
-  const Real room = p.limit - norm(spring), margin = kMargin * p.limit;
-  return room >= margin ? 1 : room > 0 ? room / margin : 0;
+  const Real headroom = p.limit - norm(spring), margin = kMargin * p.limit;
+  return headroom >= margin ? 1 : headroom > 0 ? headroom / margin : 0;
 }
 
-// Of a spring and its dashpot at an instant; rate: of what the spring resists.
+// Force of spring and dashpot at an instant; rate: of the displacement.
 SCREE_HD Vec3 acting_at(const SpringSlider& p, Vec3 spring, Vec3 rate) {
   const Real dashpot = p.dashpot > 0 ? dashpot_part(p, spring) * p.dashpot : p.dashpot;
   return shortened(spring + dashpot * rate, p.limit);
 }
 
 struct SpringStep {
-  Vec3 spring;  // the spring's force at the end of the step: what is remembered
-  Vec3 acting;  // with the dashpot's
+  Vec3 spring;  // force of the spring at the end of the step, for the history
+  Vec3 acting;  // force of spring and dashpot
   SpringLosses losses;
 };
 
@@ -67,16 +68,16 @@ SCREE_HD Real spring_energy(Vec3 force, Real stiffness) {
   return stiffness > 0 ? dot(force, force) / (2 * stiffness) : 0;
 }
 
-// Of a stiffness that grows over a step like the radius of a circle of contact, with the root of the overlap:
-// its mean over the overlap.
+// Mean over the overlap of a stiffness that grows over a step with the contact radius, that is with the root
+// of the overlap.
 SCREE_HD Real mean_stiffness(Real k0, Real k1) {
   return Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * reciprocal(k1 + k0);
 }
 
-// What a change of the stiffness does to a spring over a step.
+// Effect of a change of the stiffness on a spring over a step.
 struct StiffnessStep {
-  Real of_way;  // force per way [N/m]
-  Real kept;    // of the old force [-]
+  Real of_way;  // force per displacement [N/m]
+  Real kept;    // fraction of the old force that remains [-]
 };
 SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
   if (p.stiffness > p.stiffness0) return {mean_stiffness(p.stiffness0, p.stiffness), 1};
@@ -84,7 +85,8 @@ SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
   return {p.stiffness, 1};
 }
 
-// spring_energy() of the force before and after the step, less what the way does at the stiffness in between.
+// Energy that a change of the stiffness dissipates [J]: `spring_energy()` before and after the step, less the
+// work of the displacement at the effective stiffness.
 SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3 old, Vec3 spring) {
   if (p.stiffness < p.stiffness0) return dot(old, old) / 2 * (1 - k.kept) * reciprocal(p.stiffness0);
   if (!(p.stiffness > p.stiffness0)) return 0;
@@ -93,27 +95,28 @@ SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3
   return (after + dot(old, old) * (k.of_way - p.stiffness0) * reciprocal(p.stiffness0 * k.of_way)) / 2;
 }
 
-// The step of a spring whose force at the start, turned with the contact, was `old`, by `way`, as
-// turned_across() and ContactMotion give them.
-// - A stiffness k that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
-//   Technol. 233, 2013, Eq. 18b): T' = k s' while the contact grows, (T/k)' = s' while it shrinks, s the way.
-//   That never creates energy; the second is exact over a step, the first with the mean of k.
-// - Return to the limit along the trial force. While it sticks the dashpot acts, too, and the sum stays
-//   within the limit; while it slides the force is the limit: neither creates energy.
-// Work of the spring's mean force over the way, plus that of the dashpot's, is the change of spring_energy()
-// plus the losses, exactly. The sliding loss is the mean force over the way that slid: it could be negative
-// only where within one step the limit falls below the old force and the way turns back by more than both.
-SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
+// Step of a spring by `displacement`. old: force at the start, rotated with the contact by `turned_across()`.
+// - Stiffness k that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
+//   Technol. 233, 2013, Eq. 18b): T' = k s' while the contact grows, (T/k)' = s' while it shrinks, s the
+//   displacement. This never creates energy; the second case is exact over a step, the first uses the mean of
+//   k.
+// - Return to the limit along the trial force. While the spring sticks, the dashpot acts, and the sum stays
+//   within the limit; while it slides, the force equals the limit: neither creates energy.
+// The work of the spring's mean force and of the dashpot over the displacement is exactly the change of
+// `spring_energy()` plus the losses. The sliding loss is the mean force times the sliding displacement: it
+// could be negative only if within one step the limit dropped below the old force and the displacement
+// reversed by more than both.
+SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 displacement, Real h) {
   SpringStep out;
   const StiffnessStep k = stiffness_step(p);
-  const Vec3 start = k.kept * old, trial = fused(k.of_way, way, start);
+  const Vec3 start = k.kept * old, trial = fused(k.of_way, displacement, start);
   out.spring = shortened(trial, p.limit);
   out.acting = out.spring;
   if (fused_dot(trial, trial) > p.limit * p.limit)
     out.losses.sliding = dot(start + out.spring, trial - out.spring) * reciprocal(2 * k.of_way);
   else if (p.dashpot > 0) {
-    out.acting = shortened(fused(p.dashpot * reciprocal(h), way, trial), p.limit);
-    out.losses.dashpot = dot(out.acting - out.spring, way);
+    out.acting = shortened(fused(p.dashpot * reciprocal(h), displacement, trial), p.limit);
+    out.losses.dashpot = dot(out.acting - out.spring, displacement);
   }
   out.losses.unloading = unloading_loss(p, k, old, out.spring);
   return out;

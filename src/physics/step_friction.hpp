@@ -1,4 +1,4 @@
-// The friction of a contact over an implicit step: what its law along the normal has in step_contact.hpp.
+// Friction of a contact over an implicit step; its normal force is in step_contact.hpp.
 #pragma once
 
 #include <cmath>
@@ -10,50 +10,54 @@
 
 namespace scree {
 
-// Over an implicit step, as friction sees it.
+// Input of the friction of a contact over an implicit step.
 struct RubbingStep {
   ContactStep step;
   ContactMotion motion;  // with the mean spins
-  Real leverage0;        // ContactMotion::leverage at the start
+  Real leverage0;        // `ContactMotion::leverage` at the start
   Vec3 slip_rate0,
-      slip_rate1;  // of i over j, across the normals at both ends [m/s]; where a law has a dashpot
+      slip_rate1;  // tangential velocity of i relative to j at both ends [m/s]; for laws with a dashpot
   PairSize size;
-  Real start_force, end_force;  // along the normal, the law's at both ends [N]
-  Real step_force;              // and what the step is solved with, as in StepContact [N]
-  Real frozen_limit;  // of the mean force over the step [N]; negative: it follows from the normal forces
+  Real start_force, end_force;  // of the normal law at both ends [N]
+  Real step_force;              // normal force that the step is solved with, see `StepContact` [N]
+  Real frozen_limit;  // lagged limit of the mean force over the step [N]; negative: the limit follows the
+                      // normal force
 };
 
-// The vector T of section "Contacts that rub": -leverage T acts on i, and normal x T times the arms turns
-// both.
+// Friction force T over an implicit step (dem/README.md): -leverage T acts on i, and normal x T times the
+// arms is the torque on both.
 struct StepRub {
   Vec3 start, step,
-      end;     // acting at both ends, and what the step's end must hold [N]; across normal0, normal1
+      end;     // force at the start, force that the step is solved with, force at the end [N]; tangential at
+               // normal0, normal1, normal1
   Real limit;  // of the mean force over the step [N]
-  // Derivatives of `step`: stiffness across `direction` by the slip [N/m], grip along it by step_force;
-  // direction: unit, while it slides, else zero; growth by the overlap at the end beside grip's, because a
-  // contact that opens or closes rubs for longer, or less long [N/m].
+  // Derivatives of `step`: `stiffness` with respect to the slip perpendicular to `direction` [N/m], and
+  // `grip` along `direction` with respect to step_force. `direction` is the unit vector of sliding, or zero
+  // while the contact sticks. `growth` is the derivative with respect to the overlap at the end beside that
+  // by the normal force, because the fraction of the step in contact changes where the contact opens or
+  // closes [N/m].
   Real stiffness, grip;
   Vec3 direction, growth;
-  Vec3 spring;  // what is remembered; zero where the contact has ended
+  Vec3 spring;  // for the history; zero where the contact has ended
   SpringLosses losses;
   Real stored0, stored1;  // energy of the spring at both ends [J]
 };
 
-// Share of the step that the two touch, from the straight line between the overlaps.
+// Fraction of the step in contact, from linear interpolation of the overlap.
 SCREE_HD Real closed_share(const ContactStep& c) {
   if (c.change.kind != Changeover::Kind::none) return c.change.share;
   if (c.overlap1 > 0) return c.overlap0 > 0 ? 1 : c.overlap1 / (c.overlap1 - c.overlap0);
   return c.overlap0 > 0 ? c.overlap0 / (c.overlap0 - c.overlap1) : 0;
 }
 
-// By the overlap at the end [1/m].
+// Derivative of `closed_share()` with respect to the overlap at the end [1/m].
 SCREE_HD Real closed_share_slope(const ContactStep& c) {
   if ((c.overlap0 > 0) == (c.overlap1 > 0)) return 0;
-  const Real travel = c.overlap1 - c.overlap0;
-  return std::abs(c.overlap0) / (travel * travel);
+  const Real change = c.overlap1 - c.overlap0;
+  return std::abs(c.overlap0) / (change * change);
 }
 
-// Spring and slider at one instant, where the contact is closed; d: its overlap there [m].
+// Spring and slider of a closed contact at one instant; d: overlap there [m].
 template <class Law>
 SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real normal_force, Real d,
                                 Real leverage) {
@@ -63,21 +67,23 @@ SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real norma
                                normal_contact(law.normal.of_pair(c.size), c.size, normal_force, d, d));
 }
 
-// share times the mean force, by the share: while the contact sticks it acts for longer, and its spring is
-// drawn farther; in a slide the limit is that of the same impulse of the normal force. way: over the share.
-SCREE_HD Vec3 by_share(const StepSpring& over, Vec3 way) {
-  const Vec3 drawn = over.elastic * (way - dot(over.direction, way) * over.direction);
-  return over.grip > 0 ? drawn : over.mean + drawn;
+// Derivative of fraction times mean force with respect to the fraction: a sticking contact acts longer, with
+// a larger displacement of its spring; for a sliding one the limit is that of the same normal impulse.
+// displacement: over the fraction.
+SCREE_HD Vec3 share_derivative(const StepSpring& over, Vec3 displacement) {
+  const Vec3 elastic_part =
+      over.elastic * (displacement - dot(over.direction, displacement) * over.direction);
+  return over.grip > 0 ? elastic_part : over.mean + elastic_part;
 }
 
-// The mean of the force over the step is right, and with it work and impulse: step_spring() over the share of
-// the step that the two touch, with the limit of the mean normal force. The trapezoidal rule finds it where
-// the end of the step holds twice the mean less what acted at the start, turned with the contact:
-//   step = 2 mean - start.
-// While it sticks that is the spring's force at the end; in a slide nothing swings from step to step, because
-// `start` is the spring's, not `step` of the step before. Of a dashpot the same part acts over the whole step
-// (dashpot_part()), wherever the step ends, so that derivatives are those of a spring and a constant dashpot.
-// spring: as remembered, across normal0.
+// Friction over an implicit step. The mean force over the step, and with it work and impulse, is that of
+// `step_spring()` over the fraction of the step in contact, with the limit of the mean normal force. The
+// trapezoidal rule reproduces it with a force at the end of
+//   step = 2 mean - start, `start` rotated with the contact.
+// For a sticking contact this is the spring's force at the end. A sliding one does not oscillate from step to
+// step, because `start` is the spring's force and not `step` of the previous step. The active fraction of a
+// dashpot (`dashpot_part()`) is constant over the step, so that the derivatives are those of a spring and a
+// constant dashpot. spring: from the history, tangential at normal0 [N].
 template <class Law>
 SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   StepRub out{};
@@ -105,17 +111,17 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.limit = share * slider.limit;
   out.step = (2 * share) * over.mean - turned_across(c.motion, out.start);
   out.stiffness = 2 * share * share * over.stiffness;
-  if (!frozen) out.growth = (2 * closed_share_slope(c.step)) * by_share(over, share * c.motion.slip);
+  if (!frozen) out.growth = (2 * closed_share_slope(c.step)) * share_derivative(over, share * c.motion.slip);
   if (over.grip > 0)
     out.direction = over.direction,
     out.grip = frozen ? 0 : law.tangential.friction * reciprocal(c.motion.leverage);
   out.losses = over.losses;
   out.stored0 = spring_energy(spring, slider.stiffness0);
-  const Real left = spring_energy(over.spring, slider.stiffness);
+  const Real stored = spring_energy(over.spring, slider.stiffness);
   if (ends)
-    out.spring = over.spring, out.stored1 = left, out.end = acting_at(end, over.spring, c.slip_rate1);
+    out.spring = over.spring, out.stored1 = stored, out.end = acting_at(end, over.spring, c.slip_rate1);
   else
-    out.losses.sliding += left;  // of limits that were frozen, and of contacts that change over
+    out.losses.sliding += stored;  // with lagged limits, and in contacts that change over
   return out;
 }
 

@@ -14,24 +14,26 @@
 
 namespace scree {
 
-// What steps of velocity-verlet are good, and are chosen where a deck leaves its step out: at most these
-// shares, and no longer than trial impacts keep their rebounds (model/checks/explicit_step.hpp).
+// Recommended steps of velocity Verlet, used where a deck does not give a step: at most these fractions, and
+// no longer than trial impacts reproduce the rebound (model/explicit_step.hpp).
 inline constexpr Real kStableShare = Real(1) / 3;  // of the stability limit in dense contact
-inline constexpr Real kNeckShare = 0.01;  // of the shortest contact, where a neck must let go within one
-// Phase that a body on its contacts turns in a step [rad]: its contacts are staggered with the particles'.
+inline constexpr Real kNeckShare = 0.01;  // of the shortest contact duration, where a JKR contact must break
+                                          // within one step
+// Recommended phase of a body on its contacts in one step [rad]: its contacts are integrated staggered with
+// the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
-// The largest that is accepted; and between bodies, or bodies and walls, without friction: past it the
+// Largest accepted phase; and that between bodies, or bodies and walls, without friction [rad]: beyond it the
 // contact gains energy.
 inline constexpr Real kMostBodyPhase = 0.7, kMostAmongBodies = 2;
 
-// Mass of the relative motion of two bodies [kg].
+// Reduced mass of two bodies [kg].
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
 // radius.
 inline Real typical_stiffness(const KelvinVoigt& of, const PairSize& size) {
   const KelvinVoigt law = of.of_size(size);
-  // An attraction that falls off must be followed, too.
+  // The slope of a cohesive force that decreases with distance must be resolved, too.
   if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
   if (of.neck && of.attracts()) return JkrLaw(of).of_pair(size).slope(overlap);
@@ -53,33 +55,32 @@ SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
   return std::sqrt((dimension == 2 ? 6 : 8) * stiffness / mass);
 }
 
-// The same where they rub: slip_stiffness k_t [N/m], inertia_share I / (m R^2). The higher of two modes,
-// which do not mix. In one every second layer moves across itself against its neighbours, to which two of
-// three contacts lead; in the other all spin alike, so that every contact slips by both spins. Their squares
-// are 8 (K + k_t)/m and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs.
-// rolling_stiffness: k_r / R^2 [N/m], of springs against rolling. A contact's k_t R^2 |a + b|^2 + k_r |a -
-// b|^2 of two spins is at most twice the larger stiffness times |a|^2 + |b|^2: it stands for k_t where it is
-// larger.
+// Largest circular frequency [1/s] of equal particles with friction in the densest lattice: slip_stiffness
+// k_t [N/m], inertia_share I / (m R^2). It is the higher of two uncoupled modes. In one of them alternate
+// layers move tangentially against each other, with two of three contacts between layers; in the other all
+// particles spin alike, so that every contact slips by both spins. The squared frequencies are 8 (K + k_t)/m
+// and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs. rolling_stiffness: k_r /
+// R^2 [N/m]. For two spins a, b a contact's k_t R^2 |a + b|^2 + k_r |a - b|^2 is at most twice the larger
+// stiffness times |a|^2 + |b|^2: the larger of k_t and k_r / R^2 is used.
 SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
                                       int dimension, Real rolling_stiffness = 0) {
   const bool discs = dimension == 2;
   const Real moving = discs ? 6 * stiffness + 2 * slip_stiffness : 8 * (stiffness + slip_stiffness);
-  const Real turned = slip_stiffness > rolling_stiffness ? slip_stiffness : rolling_stiffness;
-  const Real spinning = (discs ? 12 : 16) * turned / inertia_share;
+  const Real rotational = slip_stiffness > rolling_stiffness ? slip_stiffness : rolling_stiffness;
+  const Real spinning = (discs ? 12 : 16) * rotational / inertia_share;
   return std::sqrt((moving > spinning ? moving : spinning) / mass);
 }
 
-// Stability limit [s] of velocity Verlet, whose damping acts on the predicted velocity v + h a, for one mode
-// of circular frequency w [1/s]: h^2 w^2 / 4 + 2 z h w = 1, where the mode's amplification is -1; as a
-// quotient, in which nothing cancels however strong the damping is. stiffness [N/m] and damping [N s/m] of
-// the mode's contacts give its damping ratio z = C w / (2 K).
+// Stability limit [s] of velocity Verlet with damping on the predicted velocity v + h a, for one mode of
+// circular frequency w [1/s]: h^2 w^2 / 4 + 2 z h w = 1, where the amplification factor is -1; written as a
+// quotient without cancellation at strong damping. stiffness [N/m] and damping [N s/m] of the mode's contacts
+// give its damping ratio z = C w / (2 K).
 SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
   const Real ratio = damping * frequency / (2 * stiffness);
   return 2 / frequency / (std::sqrt(1 + 4 * ratio * ratio) + 2 * ratio);
 }
 
-// Stiffness of the tangential spring [N/m] for estimates: where it depends on the overlap, at 1 % of the
-// smaller radius.
+// Tangential stiffness [N/m] for estimates; where it depends on the overlap, at 1 % of the smaller radius.
 inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
   if (of.friction == 0) return 0;
   if (of.shear_modulus == 0) return LinearSlider::of(of).stiffness_at(0);
@@ -87,26 +88,25 @@ inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
   return MindlinSlider::of(of).stiffness_at(std::sqrt(size.effective_radius() * overlap));
 }
 
-// Stiffness against rolling and twisting for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of
-// the normal spring [N/m]. Twisting's, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
-// left out.
+// Rolling and twisting stiffness for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of the
+// normal spring [N/m]. Twisting, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
+// neglected.
 inline Real typical_rolling_stiffness(const RollingResistance& of, const PairSize& size, Real stiffness) {
   if (of.friction == 0) return 0;
   const Real radius = std::min(size.radius_i, size.radius_j);
   return AnyRolling::of(of).rolling.stiffness_at(size, stiffness) / (radius * radius);
 }
 
-// Likewise of one particle on what does not give way: it moves along the normal, or across it and turns, or
-// rolls.
+// Largest circular frequency [1/s] of one particle with friction on an immovable partner: normal, tangential
+// with rotation, or rolling mode.
 inline Real wall_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
                                    Real rolling_stiffness = 0) {
-  const Real turning = (1 + 1 / inertia_share) * slip_stiffness + rolling_stiffness / inertia_share;
-  return std::sqrt(std::max(stiffness, turning) / mass);
+  const Real tangential = (1 + 1 / inertia_share) * slip_stiffness + rolling_stiffness / inertia_share;
+  return std::sqrt(std::max(stiffness, tangential) / mass);
 }
 
-// Stability limit [s] of the steps of particles that rotate, whose damping acts on the velocities of the
-// middle of the step, for modes of at most this circular frequency w [1/s] and decay 2 z w [1/s]:
-// h^2 w^2 / 4 + z h w = 1.
+// Stability limit [s] of the steps of rotating particles, with damping on the mid-step velocities, for modes
+// of at most this circular frequency w [1/s] and decay 2 z w [1/s]: h^2 w^2 / 4 + z h w = 1.
 inline Real leapfrog_step_limit(Real frequency, Real decay) {
   const Real ratio = decay / (2 * frequency);
   return 2 / frequency / (std::sqrt(1 + ratio * ratio) + ratio);

@@ -1,6 +1,6 @@
-// Tangential laws: the force across the normal from the slip. Each remembers the force of its spring, T [N],
-// along the slip of i over j (on i acts -T): a force rather than a way, because it is what stays where a
-// stiffness changes.
+// Tangential laws: tangential force from the slip. The history stores the force of the spring, T [N], along
+// the slip of i relative to j (-T acts on i). It stores the force and not the elongation, because the force
+// is what persists where the stiffness changes.
 #pragma once
 
 #include <cmath>
@@ -12,41 +12,42 @@
 
 namespace scree {
 
-// What a deck says of how the contacts of a pair of materials rub.
+// Friction parameters of a pair of materials in the deck.
 struct Friction {
   Real friction = 0;       // mu [-]
-  Real stiffness = 0;      // k_t of LinearSlider [N/m]
-  Real shear_modulus = 0;  // G* of MindlinSlider [Pa]
-  Real damping_ratio = 0;  // zeta of the slip's dashpot [-]
+  Real stiffness = 0;      // k_t of `LinearSlider` [N/m]
+  Real shear_modulus = 0;  // G* of `MindlinSlider` [Pa]
+  Real damping_ratio = 0;  // zeta of the tangential dashpot [-]
 };
 
 // Every law below has
-//   acts, kHistory                 whether there is anything to evaluate; how many numbers it remembers
-//   stiffness_at(radius)           of the spring, from the radius of the circle of contact [N/m]
+//   acts, kHistory                 whether it is to be evaluated; how many numbers of history it has
+//   stiffness_at(radius)           stiffness of the spring at this contact radius [N/m]
 //   slider(size, motion, normal)   spring and slider of a contact for a step
 
-// Mass that a slip moves: 1/m_t = 1/m* + R_i^2/I_i + R_j^2/I_j [kg]; 2/7 of m* for spheres.
+// Effective mass of the slip: 1/m_t = 1/m* + R_i^2/I_i + R_j^2/I_j [kg]; 2/7 of m* for spheres.
 SCREE_HD Real slip_mass(const PairSize& size, const ContactMotion& c) {
   return 1 / ((1 / size.mass_i + 1 / size.mass_j) +
               (c.arm_i * c.arm_i / c.inertia_i + c.arm_j * c.arm_j / c.inertia_j));
 }
 
-// 2 zeta sqrt(m k): the dashpot of a damping ratio [N s/m].
+// Dashpot of a damping ratio, 2 zeta sqrt(m k) [N s/m].
 SCREE_HD Real dashpot_of(Real damping_ratio, Real mass, Real stiffness) {
   return 2 * damping_ratio * std::sqrt(mass * stiffness);
 }
 
-// Of a slip; most contacts of most runs have none.
+// Tangential dashpot [N s/m]; skipped without damping, as in most runs.
 SCREE_HD Real slip_dashpot(Real damping_ratio, const PairSize& size, const ContactMotion& c, Real stiffness) {
   return damping_ratio > 0 ? dashpot_of(damping_ratio, slip_mass(size, c), stiffness) : 0;
 }
 
-// The spring force T may reach mu F_n |r| / (R_i + R_j), for the force on the centres to obey Coulomb.
+// Limit of the spring force T: mu F_n |r| / (R_i + R_j), for which the force on the centres obeys Coulomb's
+// law.
 SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const ContactMotion& c) {
   return friction * normal.grip * reciprocal(c.leverage);
 }
 
-// No force across the normal.
+// No tangential force.
 struct Frictionless {
   static constexpr bool acts = false;
   static constexpr int kHistory = 0;
@@ -70,15 +71,15 @@ struct LinearSlider {
   }
 };
 
-// G* of two materials [Pa]: 1/G* = sum 2 (2 - nu) (1 + nu) / E = sum (2 - nu) / G. A rigid partner has E
-// infinite.
+// Effective shear modulus G* of two materials [Pa]: 1/G* = sum 2 (2 - nu) (1 + nu) / E = sum (2 - nu) / G. A
+// rigid partner has an infinite E.
 SCREE_HD Real effective_shear_modulus(Real young_i, Real poisson_i, Real young_j, Real poisson_j) {
   return 1 /
          (2 * (2 - poisson_i) * (1 + poisson_i) / young_i + 2 * (2 - poisson_j) * (1 + poisson_j) / young_j);
 }
 
-// k_t = 8 G* a, a the radius of the circle of contact, with the rescale rule when a changes. Mindlin,
-// J. Appl. Mech. 16 (1949), without the partial slip of a ring; damping as above.
+// k_t = 8 G* a with the contact radius a, and the rescale rule where a changes. Mindlin, J. Appl. Mech. 16
+// (1949), without partial slip in an annulus; damping as in `LinearSlider`.
 struct MindlinSlider {
   static constexpr bool acts = true;
   static constexpr int kHistory = 3;

@@ -1,4 +1,4 @@
-// Scalar functions of time with two derivatives: the motions of drivers, actuators and applied forces.
+// Scalar functions of time with two derivatives: for drivers, actuators and applied forces.
 #pragma once
 
 #include <cmath>
@@ -14,11 +14,11 @@ struct TimeValue {
   Real value = 0, rate = 0, acceleration = 0;
 };
 
-// f = value + rate t; t [s].
+// Ramp f = value + rate t; t [s].
 SCREE_HD TimeValue ramp_function(Real value, Real rate, Real t) { return {value + rate * t, rate, 0}; }
 
-// f = value before t0, and a straight line of slope `rate` after t1; between them, with T = t1 - t0 and
-// s = (t - t0)/T,
+// Eased ramp: f = value before t0, and a straight line of slope `rate` after t1; between them, with T = t1 -
+// t0 and s = (t - t0)/T,
 //   f = value + rate T s^3 (1 - s/2),  f' = rate s^2 (3 - 2 s),  f'' = 6 rate/T s (1 - s):
 // twice continuously differentiable. t0 < t1 [s].
 SCREE_HD TimeValue eased_ramp_function(Real value, Real rate, Real t0, Real t1, Real t) {
@@ -29,17 +29,17 @@ SCREE_HD TimeValue eased_ramp_function(Real value, Real rate, Real t0, Real t1, 
           6 * (rate / duration) * (s * ((t1 - t) / duration))};
 }
 
-// f = value + amplitude sin(2 pi frequency t + phase); frequency [Hz], phase [rad].
+// Sine f = value + amplitude sin(2 pi frequency t + phase); frequency [Hz], phase [rad].
 SCREE_HD TimeValue sine_function(Real value, Real amplitude, Real frequency, Real phase, Real t) {
   const Real omega = 2 * std::numbers::pi_v<Real> * frequency;
   const Real s = std::sin(omega * t + phase), c = std::cos(omega * t + phase);
   return {value + amplitude * s, amplitude * omega * c, -amplitude * omega * omega * s};
 }
 
-// f = value before t0, end_value after t1; between them, with T = t1 - t0, s = (t - t0)/T and r = end_value -
-// value,
+// Smooth step: f = value before t0, end_value after t1; between them, with T = t1 - t0, s = (t - t0)/T and r
+// = end_value - value,
 //   f = value + r s^3 (10 - 15 s + 6 s^2),  f' = 30 r/T s^2 (1 - s)^2,  f'' = 60 r/T^2 s (1 - s) (1 - 2 s):
-// twice continuously differentiable, and nowhere outside [value, end_value]. t0 < t1 [s].
+// twice continuously differentiable, and within [value, end_value]. t0 < t1 [s].
 SCREE_HD TimeValue step_function(Real value, Real end_value, Real t0, Real t1, Real t) {
   if (t <= t0) return {value, 0, 0};
   if (t >= t1) return {end_value, 0, 0};
@@ -55,7 +55,7 @@ struct QuinticSegment {
   Real t0, t1, f0, f1, d0, d1, m0, m1;
 };
 
-// The polynomial of degree 5 through them. With d = t1 - t0, s = (t - t0)/d:
+// Quintic polynomial of a segment. With d = t1 - t0, s = (t - t0)/d:
 //   f = f0 + d d0 s + d^2 m0/2 s^2 + s^3 (c3 + c4 s + c5 s^2).
 SCREE_HD TimeValue quintic_function(const QuinticSegment& q, Real t) {
   const Real d = q.t1 - q.t0, s = (t - q.t0) / d, rise = q.f1 - q.f0;
@@ -73,7 +73,7 @@ struct SplineSegment {
   Real t0, t1, f0, f1, m0, m1;
 };
 
-// With d = t1 - t0, a = (t1 - t)/d, b = (t - t0)/d:
+// Cubic polynomial of a segment. With d = t1 - t0, a = (t1 - t)/d, b = (t - t0)/d:
 //   f = a f0 + b f1 + ((a^3 - a) m0 + (b^3 - b) m1) d^2 / 6,   f'' = a m0 + b m1.
 SCREE_HD TimeValue spline_function(const SplineSegment& s, Real t) {
   const Real d = s.t1 - s.t0, a = (s.t1 - t) / d, b = (t - s.t0) / d;

@@ -15,8 +15,8 @@ struct HhtCoefficients {
   Real hht_alpha;
   Real newmark_gamma;
   Real newmark_beta;
-  // Local error of the position per h^2 (a_{n+1} - a_n). HHT's a_n stands for the force at t_n + alpha h, so
-  // the step's h^3 term is beta + alpha/2 and the exact one 1/6.
+  // Local error of the position per h^2 (a_{n+1} - a_n). In HHT a_n corresponds to the force at t_n + alpha
+  // h, so that the h^3 term of the step is beta + alpha/2, while the exact one is 1/6.
   Real error_constant;
 };
 
@@ -37,8 +37,8 @@ SCREE_HD Vector newmark_velocity(const HhtCoefficients& c, Real h, Vector v, Vec
   return v + h * ((1 - c.newmark_gamma) * a0 + c.newmark_gamma * a1);
 }
 
-// Change of the position and of the velocity at the end of a step per change of the acceleration there (Eqs.
-// 1, 2) [s^2], [s].
+// Derivatives of position and velocity at the end of a step with respect to the acceleration there (Eqs. 1,
+// 2) [s^2], [s].
 SCREE_HD Real newmark_position_gain(const HhtCoefficients& c, Real h) { return c.newmark_beta * h * h; }
 SCREE_HD Real newmark_velocity_gain(const HhtCoefficients& c, Real h) { return h * c.newmark_gamma; }
 
@@ -51,19 +51,19 @@ SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1
   return (mass * scale) * a1 - f1 + (c.hht_alpha * scale) * f0;
 }
 
-// The acceleration for which it is zero.
+// Acceleration for which `hht_residual()` is zero.
 SCREE_HD Vec3 hht_acceleration(const HhtCoefficients& c, Real mass, Vec3 f1, Vec3 f0) {
   return (1 / mass) * ((1 + c.hht_alpha) * f1 - c.hht_alpha * f0);
 }
 
-// From the acceleration that a step needed at its end to the one there, where a contact opened or closed
-// within it.
+// Correction from the acceleration that a step was solved with to the one at its end, where a contact opened
+// or closed within the step.
 SCREE_HD Vec3 hht_event_acceleration(const HhtCoefficients& c, Real mass, Vec3 step_force, Vec3 end_force) {
   return ((1 + c.hht_alpha) / mass) * (end_force - step_force);
 }
 
-// Energy that a step takes out of the motion [J]: trapezoidal work of the forces minus the change of kinetic
-// energy. Zero for hht_alpha = 0.
+// Energy that the integrator removes in a step [J]: trapezoidal work of the forces minus the change of
+// kinetic energy. Zero for hht_alpha = 0.
 SCREE_HD Real integrator_loss(Real mass, Vec3 dx, Vec3 v0, Vec3 v1, Vec3 f0, Vec3 f1) {
   return Real(0.5) * (dot(f0 + f1, dx) - mass * dot(v0 + v1, v1 - v0));
 }
@@ -71,10 +71,10 @@ SCREE_HD Real integrator_loss(Real mass, Vec3 dx, Vec3 v0, Vec3 v1, Vec3 f0, Vec
 // Velocity Verlet (Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76, 1982): displacement over the step.
 SCREE_HD Vec3 verlet_displacement(Real h, Vec3 v, Vec3 a0) { return h * v + (h * h / 2) * a0; }
 
-// Velocity at the end of the step to second order in h before the force there is known.
+// Predicted velocity at the end of the step, to second order in h, before the force there is known.
 SCREE_HD Vec3 verlet_predicted_velocity(Real h, Vec3 v, Vec3 a0) { return v + h * a0; }
 
-// The displacement that led to a predicted velocity.
+// Displacement of the step that led to a predicted velocity.
 SCREE_HD Vec3 verlet_last_displacement(Real h, Vec3 predicted, Vec3 a0) {
   return h * predicted - (h * h / 2) * a0;
 }
@@ -84,8 +84,8 @@ SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) {
   return predicted + (h / 2) * (a1 - a0);
 }
 
-// The same step in terms of the velocity in its middle, v + (h/2) a_n, which one force carries on to the
-// next.
+// Velocity Verlet in terms of the mid-step velocity v + (h/2) a_n, which one force evaluation advances to the
+// next step.
 SCREE_HD Vec3 verlet_middle_velocity(Real h, Vec3 predicted, Vec3 a0) { return predicted - (h / 2) * a0; }
 SCREE_HD Vec3 verlet_next_middle(Real h, Vec3 middle, Vec3 a) { return middle + h * a; }
 SCREE_HD Vec3 verlet_predicted_from_middle(Real h, Vec3 middle, Vec3 a0) { return middle + (h / 2) * a0; }
@@ -93,11 +93,11 @@ SCREE_HD Vec3 verlet_acceleration(Real h, Vec3 predicted, Vec3 middle) {
   return (2 / h) * (predicted - middle);
 }
 
-// Half a step's change of the velocity, or of the angular velocity: to the middle of the step from its start,
-// and to its end from the middle.
+// Half a step's change of the velocity or of the angular velocity: from the start of the step to its middle,
+// and from the middle to its end.
 SCREE_HD Vec3 verlet_half_kick(Real h, Vec3 v, Vec3 a) { return v + (h / 2) * a; }
 
-// So many of these steps under a constant acceleration: the middle velocity after them, and the displacement.
+// Mid-step velocity and displacement after this many steps under a constant acceleration.
 SCREE_HD Vec3 verlet_middle_after(Real steps, Real h, Vec3 middle, Vec3 a) {
   return middle + (steps * h) * a;
 }
@@ -105,10 +105,11 @@ SCREE_HD Vec3 verlet_displacement_of(Real steps, Real h, Vec3 middle, Vec3 a) {
   return (steps * h) * (middle + ((steps + 1) / 2 * h) * a);
 }
 
-// Verlet's energy error is the difference of a function of state: this function [J].
+// The energy error of velocity Verlet is the difference of this function of state between the two instants
+// [J].
 SCREE_HD Real verlet_energy_shift(Real h, Real mass, Vec3 a) { return mass * h * h / 8 * dot(a, a); }
 
-// Local error of the position of a step, relative to `length` (Negrut et al. 2007).
+// Local position error of a step, relative to `length` (Negrut et al. 2007).
 SCREE_HD Real hht_position_error(const HhtCoefficients& c, Real h, Vec3 a0, Vec3 a1, Real length) {
   const Vec3 da = a1 - a0;
   return c.error_constant * h * h * std::sqrt(dot(da, da)) / length;

@@ -1,5 +1,4 @@
-// Two partners that meet, in the steps that a run takes: their relative motion alone, by the functions of
-// law and integrator that the run calls.
+// Relative motion of two partners in a trial impact, with the law and integrator functions that a run calls.
 #pragma once
 
 #include <cmath>
@@ -12,32 +11,32 @@ namespace scree {
 
 // Two spheres, or a sphere i on a plane (radius_j infinite), that meet without spin.
 struct TrialImpact {
-  PairSize size;              // as the law sees it
-  Real mass;                  // of the relative motion [kg]
-  Real inertia_i, inertia_j;  // [kg m^2]; infinite for what does not turn
-  Real approach, sliding;     // relative speeds along the normal and across it [m/s]
+  PairSize size;              // as in `PairSize` of the law
+  Real mass;                  // effective mass [kg]
+  Real inertia_i, inertia_j;  // [kg m^2]; infinite for partners that do not rotate
+  Real approach, sliding;     // relative normal and tangential speeds [m/s]
 };
 
 inline bool on_plane(const PairSize& size) { return size.radius_j == kInfinity; }
-// i at r from j, or over the plane z = 0.
+// Sphere i at r from j, or above the plane z = 0.
 inline ContactGeometry trial_geometry(const PairSize& size, Vec3 r) {
   return on_plane(size) ? plane_pair(r, size.radius_i, {0, 0, 0}, {0, 0, 1})
                         : sphere_pair(r, size.radius_i + size.radius_j);
 }
-// Where i is so long before they meet [s].
+// Position of i this long before the surfaces meet [s].
 inline Vec3 trial_start(const TrialImpact& impact, Real gap) {
   const PairSize& size = impact.size;
   return Vec3{0, 0, on_plane(size) ? size.radius_i : size.radius_i + size.radius_j} -
          gap * Vec3{impact.sliding, 0, -impact.approach};
 }
 
-// In velocity Verlet, or where the law moves in its form by half steps (dem/implicit/step_items.hpp). Every
-// trial has step(h), which says whether the contact was closed at the end of the step, and parting() and
-// across(): the relative velocity along the normal and across it.
+// Trial in velocity Verlet, or for laws with `kMoves` in its leapfrog form (dem/step_items.hpp). Every trial
+// has step(h), which returns whether the contact was closed at the end of the step, and parting() and
+// across(), the normal and tangential relative velocity.
 template <class Law>
 class ExplicitTrial {
  public:
-  // The surfaces meet after `gap` [s].
+  // gap: time until the surfaces meet [s].
   ExplicitTrial(const Law& law, const TrialImpact& impact, Real gap)
       : law_(law),
         impact_(impact),
@@ -68,40 +67,42 @@ class ExplicitTrial {
   }
   bool step_by_halves(Real h) {
     velocity_ = verlet_half_kick(h, velocity_, acceleration_);
-    spin_i_ = verlet_half_kick(h, spin_i_, turning_i_), spin_j_ = verlet_half_kick(h, spin_j_, turning_j_);
-    const Vec3 travel = h * velocity_;
-    r_ += travel;
+    spin_i_ = verlet_half_kick(h, spin_i_, angular_acceleration_i_),
+    spin_j_ = verlet_half_kick(h, spin_j_, angular_acceleration_j_);
+    const Vec3 displacement = h * velocity_;
+    r_ += displacement;
     const TurningPartner i{spin_i_, impact_.size.radius_i, impact_.inertia_i},
         j{spin_j_, on_plane(impact_.size) ? 0 : impact_.size.radius_j, impact_.inertia_j};
     const PairState state = pair(velocity_);
     const MovingPair moving{state, on_plane(impact_.size)
-                                       ? face_motion(state.geometry, {0, 0, 1}, travel, i, j, h)
-                                       : sphere_motion(state.geometry, travel, i, j, h)};
+                                       ? face_motion(state.geometry, {0, 0, 1}, displacement, i, j, h)
+                                       : sphere_motion(state.geometry, displacement, i, j, h)};
     const bool closed = law_.closed(moving, history_);
     const ContactOutcome out = law_.load(moving, history_);
     history_ = out.history;
     acceleration_ = (1 / impact_.mass) * out.load.force;
-    turning_i_ = (1 / impact_.inertia_i) * out.load.torque_i;
-    turning_j_ = (1 / impact_.inertia_j) * out.load.torque_j;
+    angular_acceleration_i_ = (1 / impact_.inertia_i) * out.load.torque_i;
+    angular_acceleration_j_ = (1 / impact_.inertia_j) * out.load.torque_j;
     velocity_ = verlet_half_kick(h, velocity_, acceleration_);
-    spin_i_ = verlet_half_kick(h, spin_i_, turning_i_), spin_j_ = verlet_half_kick(h, spin_j_, turning_j_);
+    spin_i_ = verlet_half_kick(h, spin_i_, angular_acceleration_i_),
+    spin_j_ = verlet_half_kick(h, spin_j_, angular_acceleration_j_);
     return closed;
   }
 
   const Law& law_;
   TrialImpact impact_;
   Vec3 r_, velocity_, acceleration_{};  // of i relative to j
-  Vec3 spin_i_{}, spin_j_{}, turning_i_{}, turning_j_{};
+  Vec3 spin_i_{}, spin_j_{}, angular_acceleration_i_{}, angular_acceleration_j_{};
   ContactHistory history_{};
 };
 
-// How implicit steps are taken.
+// Parameters of implicit steps.
 struct TrialMethod {
   HhtCoefficients hht;
   bool resolve_events;
 };
 
-// A contact's force over such a step, and at its end [N].
+// Contact force that an implicit step is solved with, and the force at its end [N].
 struct TrialForce {
   StepContactForce step;
   Real at_end;
@@ -117,8 +118,8 @@ TrialForce trial_force(const Pair& pair, const ContactStep& step, bool resolve_e
   return out;
 }
 
-// In HHT steps along the normal, each solved to round-off. A step without a solution, where the damping of a
-// contact jumps at touch, is taken in halves, as a run does.
+// Trial in HHT steps along the normal, each solved to round-off. A step without a solution, which exists
+// where the damping of a contact jumps at touch, is halved, as in a run.
 template <class Pair>
 class ImplicitTrial {
  public:
@@ -138,7 +139,7 @@ class ImplicitTrial {
   Real across() const { return 0; }
 
  private:
-  // The end of a step of an acceleration there.
+  // State at the end of a step with this acceleration.
   struct End {
     ContactStep step;
     TrialForce force;
@@ -169,8 +170,8 @@ class ImplicitTrial {
                             .x;
   }
 
-  // Newton's method for the acceleration at the end, within bounds that it has found: the residual grows with
-  // it. Whether it got there.
+  // Newton's method for the acceleration at the end, safeguarded by a bracket: the residual increases with
+  // it. Returns whether it converged.
   bool solve(Real h, Real& a) const {
     constexpr int kMostIterations = 60;
     constexpr Real kTolerance = 1e-12;
