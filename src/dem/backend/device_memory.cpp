@@ -1,5 +1,4 @@
-// How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they
-// hold.
+// Device memory of a model, counted from the arrays of cuda/. A GPU test compares it with the actual usage.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,41 +23,43 @@ namespace {
 constexpr double kItemFields = bytes_in_arrays<kItemArrays>();
 constexpr double kSecondMotion = bytes_in_arrays<kMotion>();
 constexpr double kOwnedFields = bytes_in_arrays<kOwnedArrays>();
-constexpr double kSpinFields = bytes_in_arrays<kSpins>();  // where particles rotate, and as much again
+constexpr double kSpinFields = bytes_in_arrays<kSpins>();  // where particles rotate; twice
 constexpr double kOwnedSpinFields = bytes_in_arrays<kOwnedSpins>();
 constexpr double kRollingFields = bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
-constexpr double kStartAcceleration = sizeof(Vec3);                  // of implicit steps, of each kind
-constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and the surfaces' rows
-constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);  // sorted, and their order
+constexpr double kStartAcceleration = sizeof(Vec3);                  // of implicit steps; twice where
+                                                                     // particles rotate
+constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and offsets of the surfaces' rows
+// sorted keys and their order
+constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
-// The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
+// CudaRubbingArrays, in place of matrix and solver arrays, for implicit steps with friction.
 constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
                                   sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
 constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
                                          sizeof(RubbingEntry::Shear) +
-                                         sizeof(Real);  // the last: frozen limits
+                                         sizeof(Real);  // the last: lagged limits
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
-constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts attract
-// Per surface that is placed, and per entry of the rows of surfaces where there are any: DeviceSurfaces.
+constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts have adhesion
+// Bytes per placed surface, and per entry of the surfaces' rows where there are any: DeviceSurfaces.
 constexpr double kSurfaceArrays = 2 * sizeof(PlacedSurface) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
                                 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
 constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPerSlot;
-// And where there are meshes: DeviceMeshes.
+// Bytes per entry, group and triangle with meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
 constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
                  kRowOfTriangle = sizeof(Index);
-constexpr double kSpareRoom = 1.125;  // of arrays that may grow with every list
-constexpr double kFilledSlots = 0.8;  // of a list of a settled bed; contacts remember at these alone
+constexpr double kSpareRoom = 1.125;  // capacity over size of arrays that may grow with every list
+constexpr double kFilledSlots = 0.8;  // of a list of a settled bed; only these have a contact history
 constexpr double kCellBytes = sizeof(Index);
-constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
+constexpr double kBrickMargin = 1.1;  // cells that fill up the last cell blocks
 
-// Of a snapshot.
+// Bytes per particle of a snapshot.
 double output_bytes(const Output& output) {
   double bytes = sizeof(Vec3);
   for (const OutputField& field : computed_fields(output)) bytes += static_cast<double>(field.bytes);
@@ -67,8 +68,8 @@ double output_bytes(const Output& output) {
 
 struct Sizes {
   double particles, ghosts, items, cells, slots;
-  bool on_bodies;                     // whether there are surfaces
-  double entries, groups, triangles;  // of their rows
+  bool on_bodies;                     // whether there are placed surfaces
+  double entries, groups, triangles;  // of the surfaces' rows
 };
 
 bool equal_radii(const Model& model) {
@@ -77,7 +78,7 @@ bool equal_radii(const Model& model) {
   return model.particles.size() == 0 || *largest <= 1.2 * *smallest;
 }
 
-// Slots of a list in slices of 32 rows, of particles as they are at the start.
+// Slots of a list in slices of 32 rows, for the initial particles.
 double slots_at_start(const ParticleStore& store, const ItemLayout& layout, NeighborBuilder& builder,
                       Real skin) {
   constexpr Index kSlice = 32;
@@ -93,14 +94,14 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
   return slots;
 }
 
-// The rows of surfaces, of particles and bodies as they are at the start.
+// Surface rows of the initial particles and bodies.
 SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const ItemLayout& layout,
                           NeighborBuilder& builder) {
   const Subdomain subdomain(model.space);
   SurfaceSide side(model, subdomain, Ranks());
   std::vector<BodyMotion> motion;
   for (const Body& body : model.bodies) motion.push_back(start_motion(body));
-  motion.resize(side.surfaces().carriers());  // walls begin where they are
+  motion.resize(side.surfaces().carriers());  // walls start at their initial poses
   side.set_motion(motion);
   side.bring_into_box(), side.place();
   SurfaceRows rows;
@@ -109,7 +110,7 @@ SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const 
   return rows;
 }
 
-// Memory of a mesh on the device [B], whether or not anything touches it: the arrays of a MeshView.
+// Device memory of a mesh [B], with or without contacts: the arrays of a MeshView.
 double bytes_of_mesh(const SurfaceMesh& mesh) {
   const auto of = [](const auto& values) {
     return static_cast<double>(values.size() * sizeof(values.front()));
@@ -127,7 +128,7 @@ Sizes sizes_of(const Model& model) {
   Sizes sizes{};
   sizes.on_bodies = SurfaceSet(model).placed() > 0;
   sizes.particles = static_cast<double>(particles);
-  ParticleStore store;  // only where it is needed: it is as large as the model
+  ParticleStore store;  // filled only where needed, because it is as large as the model
   if (periodic || !equal || sizes.on_bodies) store.load(initial_records(model.particles, subdomain));
   ItemLayout layout;
   layout.owned = layout.active = layout.items = store.owned;
@@ -148,20 +149,20 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
-// What explicit steps need beside the list: DeviceRoom.
+// Scratch memory of explicit steps beside the list: `DeviceRoom`.
 double bytes_of_steps(const Model& model, const Sizes& n) {
-  // Of pruned entries; they stand in the forces' place if they fit.
+  // Row indices of the inner pair list; they alias the forces if they fit.
   const double places = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
   double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
   if (places > n.particles * sizeof(Vec3)) of_steps += places;
-  // Where particles rotate these stand in the place of what is of an instant.
+  // Where particles rotate, these alias arrays of the instant.
   if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() && !model.attracts())
     of_steps += n.particles * kMixedArrays;
   return of_steps;
 }
 
-// The list, what contacts remember at its entries, and the room that explicit steps share with what is kept
-// from one list to the next and has no room in the second arrays.
+// The list, the contact history at its entries, and the scratch memory that explicit steps share with the
+// packed history, as far as that does not fit into the second arrays.
 double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   const int numbers = history_of(model.contact);
   double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
@@ -188,7 +189,7 @@ double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   return bytes;
 }
 
-// Of surfaces that are placed, their contacts, and what these remember.
+// Placed surfaces, their contacts, and the history of these.
 double surface_bytes(const Model& model, const Sizes& n) {
   if (!n.on_bodies) return 0;
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
@@ -205,8 +206,7 @@ double surface_bytes(const Model& model, const Sizes& n) {
 
 }  // namespace
 
-// Slots of a settled bed of equal particles, of which most rows of 32 hold one that has more neighbours than
-// the mean.
+// Slots per particle of a settled bed of equal particles: a slice of 32 rows is as wide as its longest row.
 double slots_per_particle(const Model& model) {
   constexpr double kDiscs = 8, kSpheres = 9.5, kPerDiameter = 15, kMost = 16;
   if (model.space.dimension == 2) return kDiscs;
@@ -237,7 +237,7 @@ std::size_t device_memory(const Model& model) {
   return static_cast<std::size_t>(bytes);
 }
 
-// What is free the ranks of a GPU may see at different times: the least counts.
+// The ranks of a GPU may read its free memory at different times: the smallest value counts.
 DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own) {
   const DeviceClaim& mine = claims[static_cast<std::size_t>(own)];
   DeviceLoad load{.free = mine.free};

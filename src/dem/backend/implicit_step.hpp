@@ -1,4 +1,4 @@
-// An implicit step of the particles that is open: neither accepted nor undone.
+// An open implicit step of the particles: neither accepted nor undone.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,11 @@
 
 namespace scree {
 
-// Norms of one Newton iteration of the particles, scaled and dimensionless, maxima over all particles.
+// Norms of one Newton iteration of the particles: dimensionless maxima over all particles.
 struct ParticleNorms {
   Real residual = 0;  // over the largest force on a particle, at the iterate and at the start of the step
-  Real correction_bound = 0;  // of the position correction that the residual can still cause, over the radius
+  Real correction_bound = 0;  // bound of the position correction that the residual can still cause, over the
+                              // radius
   bool overshoot = false;     // the last correction went too far along its direction
 };
 
@@ -20,31 +21,33 @@ struct ParticleCorrection {
   int iterations = 0;   // of the linear solve
 };
 
-// From Backend::open_step, which has put the state aside. All functions are collective (see Backend).
+// Returned by Backend::open_step, which has saved the state. All functions are collective (see Backend).
 class ImplicitStep {
  public:
   virtual ~ImplicitStep() = default;
 
-  virtual void predict() = 0;            // first
-  virtual Real step_displacement() = 0;  // largest of a particle or surface since the step's start [m]
+  virtual void predict() = 0;            // called first
+  virtual Real step_displacement() = 0;  // largest displacement of a particle or surface since the start of
+                                         // the step [m]
   virtual ParticleNorms contact_force() = 0;
-  // The particle with the largest residual in the last contact_force; -1 without particles.
+  // Particle with the largest residual of the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() = 0;
-  // After contact_force: contact wrenches on the bodies, what the step needs and at its end (equal unless
-  // contacts open or close within it). On rank 0; zero elsewhere.
+  // After contact_force: contact wrenches on the bodies, that the step is solved with and at its end; they
+  // differ where contacts open or close within the step. On rank 0; zero elsewhere.
   virtual void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;
-  // Takes part of the last correction back, after contact_force has reported an overshoot.
+  // Reverts part of the last correction, after contact_force has reported an overshoot.
   virtual void shorten_correction() = 0;
-  // From now on friction's limits stay what they are at the iterate: a step that converges where one whose
-  // limits follow the normal forces may not. Of particles that rub; at most once a step, after contact_force.
+  // From now on the friction limits are those of the current iterate: such a step converges where one whose
+  // limits follow the normal forces may not. For particles with friction; at most once a step, after
+  // contact_force.
   virtual void freeze_limits() {}
   virtual Real error() = 0;  // local position error of the step over the radius
 
-  // Either ends the step: nothing else may be called then. A step that goes without either leaves the
-  // particles where they are.
+  // Either function ends the step; no other function may be called afterwards. Destroying a step without
+  // either leaves the particles where they are.
   virtual void accept() = 0;
-  virtual void undo() = 0;  // the state is that of before open_step, to the bit
+  virtual void undo() = 0;  // restores the state before open_step, bit for bit
 };
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// The energies of the particles that have not left the space, from sums of their item.
+// Energies of the particles inside the domain, from the sums of their item.
 #pragma once
 
 #include "dem/backend/reports.hpp"
@@ -6,7 +6,7 @@
 
 namespace scree {
 
-// sums: of InsideItem, indexed by InsideTerm. bodies: whose contacts' losses are with them, as in the ledger.
+// sums: of InsideItem, indexed by InsideTerm. bodies: their contact losses are included, as in the ledger.
 inline InsideEnergies make_inside_energies(const Real* sums, const SurfaceSide& bodies) {
   return {sums[kInsideKinetic], sums[kInsideGravitational],
           sums[kInsideIntegratorLoss] + bodies.losses().integrator_loss};

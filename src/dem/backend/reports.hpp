@@ -1,4 +1,4 @@
-// What a backend tells of its particles as they are now: sums, and values for output.
+// Reports of a backend on the current state of its particles: sums and output values.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +13,37 @@
 
 namespace scree {
 
-// What of the energies of a ParticleLedger there is where particles rotate; zero elsewhere [J].
+// Rotational part of the energies of a ParticleLedger; zero where particles do not rotate [J].
 struct RotationEnergies {
-  Real kinetic = 0;                                // of the rotation
-  Real friction_springs = 0, rolling_springs = 0;  // of contact_elastic: SpringEnergies
-  RubbingLosses losses{};                          // of contact_loss
+  Real kinetic = 0;                                // rotational kinetic energy
+  Real friction_springs = 0, rolling_springs = 0;  // parts of contact_elastic, see `SpringEnergies`
+  RubbingLosses losses{};                          // parts of contact_loss
 
   friend bool operator==(const RotationEnergies&, const RotationEnergies&) = default;
 };
 
-// Energies of the particles that have not left the space [J]; integrator_loss includes that of bodies'
-// contacts.
+// Energies of the particles inside the domain [J]; integrator_loss includes that of bodies' contacts.
 struct InsideEnergies {
   Real kinetic = 0, gravitational = 0, integrator_loss = 0;
 };
 
-// Sums over all particles; order-independent.
+// Sums over all particles, independent of their order.
 struct ParticleLedger {
   Real kinetic = 0, gravitational = 0, contact_elastic = 0;  // [J]
   Real contact_loss = 0, integrator_loss = 0;                // since t = 0 [J]
-  InsideEnergies inside;                                     // where none drifts, the same bits
+  InsideEnergies inside;                                     // equal bit for bit to the sums above without
+                                                             // escaped particles
   Vec3 momentum;                                             // [kg m/s]
   Vec3 angular_momentum;                                     // about the origin, with spins [kg m^2/s]
   RotationEnergies rotation;
-  Real cohesion = 0;          // of contact_elastic, where contacts attract: ContactEnergy [J]
-  std::int64_t contacts = 0;  // touching pairs, walls and body shapes included
-  std::int64_t drifting = 0;  // particles outside that drift on
+  Real cohesion = 0;          // part of contact_elastic, with adhesion: ContactEnergy [J]
+  std::int64_t contacts = 0;  // contacts, with walls and body shapes included
+  std::int64_t drifting = 0;  // escaped particles in ballistic motion
 };
 
-// From the sums of LedgerItem over the particles, indexed by LedgerTerm, and what the bodies do to each
-// other.
+// Ledger from the sums of LedgerItem over the particles, indexed by LedgerTerm, and the contacts of bodies.
 ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
-// The same of RotationItem, indexed by RotationTerm.
+// Rotational energies from the sums of RotationItem, indexed by RotationTerm, and the contacts of bodies.
 RotationEnergies make_rotation_energies(const Real* sums, const SurfaceSide& bodies);
 
 // One entry per particle of this rank, any order.
@@ -54,17 +53,17 @@ struct ParticleOutput {
   std::vector<OutputValues> fields;  // of computed_fields()
 };
 
-// The contacts of this rank's particles, those with other particles on the rank of the first one alone.
+// Contacts of this rank's particles; those with other particles on the rank of the first one only.
 struct ContactLines {
   std::vector<GlobalId> global_id;   // of the particles, any order
   std::vector<std::int64_t> counts;  // lines of each
-  std::vector<ContactLine> lines;    // in that order; those of a particle in the order of its row
-  // Of bodies' shapes with each other and with surfaces, in the order of the first ones' numbers; first is a
-  // surface_id(). On rank 0.
+  std::vector<ContactLine> lines;    // in the order of global_id; those of a particle in the order of its row
+  // Contacts of bodies' shapes with each other and with surfaces, ordered by the number of the first; first
+  // is a surface_id(). On rank 0.
   std::vector<ContactLine> of_bodies;
 };
 
-// A particle whose motion is recorded.
+// A particle whose motion is recorded in the history.
 struct TracedParticle {
   GlobalId global_id;
   Vec3 position, velocity;     // position inside the periodic box [m], [m/s]
@@ -74,8 +73,8 @@ struct TracedParticle {
 // All functions but output() and traced() are collective (see Backend).
 class Reports {
  public:
-  // While one is there, all reports are of one instant, for which contacts with bodies are found once:
-  // nothing moves, and no list is built. One within another is of the same instant.
+  // While an object exists, all reports refer to one instant, for which contacts with bodies are evaluated
+  // once: nothing may move, and no list may be built. Nested objects refer to the same instant.
   class Instant {
    public:
     explicit Instant(Reports& of) : of_(of) { ++of_.instants_; }
@@ -96,37 +95,37 @@ class Reports {
 
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
   virtual ParticleLedger ledger(Real verlet_step) = 0;
-  // ParticleLedger::inside.kinetic alone, the same bits, where that takes less.
+  // ParticleLedger::inside.kinetic, bit for bit, at less cost.
   virtual Real inside_kinetic() { return ledger(0).inside.kinetic; }
-  // Begins to copy out what output() returns: the particles as they are now, whatever steps follow.
+  // Starts the copy of the current particles for output(), independent of later steps.
   virtual void start_output() = 0;
   virtual ParticleOutput output() = 0;
   virtual ShapePack pack_shapes() = 0;       // complete on rank 0
-  virtual ContactLines contact_lines() = 0;  // where all are now
-  // Those of these particles that this rank owns, where they are now, in any order.
+  virtual ContactLines contact_lines() = 0;  // at the current positions
+  // The particles among `wanted` that this rank owns, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;
-  // What touches each carrier (bodies, then placed walls), and each of these planes at rest (indices into
-  // Model::walls), where all are now. Complete on rank 0.
+  // Contact sums of each parent (bodies, then placed walls), and of these static planes (indices into
+  // Model::walls). Complete on rank 0.
   virtual std::vector<ContactSum> carrier_contacts() = 0;
-  // The same of each surface of SurfaceSet, its torque about its carrier's centre.
+  // Contact sums of each surface of SurfaceSet, with torques about its parent's centre.
   virtual std::vector<ContactSum> surface_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
-  // What the particles do to the triangles of meshes that they touch, where all are now. Complete on rank 0.
+  // Loads of the contacts on the triangles of meshes. Complete on rank 0.
   virtual std::vector<TriangleLoad> triangle_loads() = 0;
 
  protected:
-  // Before contacts with bodies are read.
+  // Called before contacts with bodies are read.
   void need_loads() {
     if (!loads_found_) find_loads();
     loads_found_ = instants_ > 0;
   }
 
  private:
-  // Contacts with bodies, where all are now.
+  // Evaluates the contacts with bodies at the current positions.
   virtual void find_loads() = 0;
 
   int instants_ = 0;
-  bool loads_found_ = false;  // in the instant that is there
+  bool loads_found_ = false;  // for the current Instant
 };
 
 }  // namespace scree

@@ -1,5 +1,4 @@
-// What happens for one particle in the contact stages that look at one instant. One text for the CPU and
-// CUDA.
+// Per-particle kernels of the contact stages at one instant. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <type_traits>
@@ -8,16 +7,17 @@
 
 namespace scree {
 
-// A particle's share of a contact's energies with another particle; those with surfaces are all its own.
+// A particle's share of the energies of a contact with another particle; those of contacts with surfaces
+// count in full.
 inline constexpr Real kPairShare = 0.5;
 
-// With what the contact will remember.
+// A load with the new contact history.
 template <class Load, class History>
 struct LoadWithHistory : Load {
   History history;
 };
 
-// What a contact does at an instant.
+// Evaluates the load of a contact.
 struct LoadOf {
   template <class Law, class Pair>
   SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
@@ -35,28 +35,28 @@ struct LoadOf {
   }
 };
 
-// Of one contact, or of all that acts on a particle.
+// Load of one contact, or of all contacts of a particle.
 template <int kKinds>
 struct TotalForce {
   Vec3 force;       // [N], gravity included
   Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
-  Vec3 torque;      // about its centre, of laws that move [N m]
+  Vec3 torque;      // about its centre, for laws with `kMoves` [N m]
   [[no_unique_address]] LossesOf<kKinds> losses;  // parts of the dissipation, over the step [J]
 
   SCREE_HD TotalForce& operator+=(const TotalForce& part) {
     force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
     return *this;
   }
-  // Of a contact; losses: by these kinds at least.
+  // Load of one contact; losses: of at least kKinds kinds.
   template <int kMore>
   SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesOf<kMore>& losses) {
     TotalForce out{load.force, load.loss, load.torque_i, {}};
     out.losses.add(losses);
     return out;
   }
-  // Of the contacts with other particles the particle has its share.
+  // Reduces the losses to the particle's share of contacts with other particles.
   SCREE_HD void share() { loss_power *= kPairShare, losses.scale(kPairShare); }
-  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  // No contact: adding it changes no bit, not even the sign of a zero.
   SCREE_HD static TotalForce nothing() {
     constexpr Real z = -0.0;
     TotalForce out{{z, z, z}, z, {z, z, z}, {}};
@@ -65,7 +65,7 @@ struct TotalForce {
   }
 };
 
-// What a contact of a law that moves does to one of its partners.
+// Evaluates the load on one partner, for laws with `kMoves`.
 template <int kKinds>
 struct TurningForceOf {
   using Result = TotalForce<kKinds>;
@@ -78,7 +78,7 @@ struct TurningForceOf {
   }
 };
 
-// What it does to both, with its losses; of those with bodies what was found before.
+// Load of a contact on both partners with its losses; contacts with bodies were evaluated before.
 struct TurningLoad {
   ContactLoadOf<Real, Vec3> load;
   RubbingLosses losses;
@@ -97,14 +97,14 @@ struct TurningLoadOf {
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
-// kAccepts: as in ContactWalk, at the end of an explicit step.
+// kAccepts: as in `ContactWalk`, at the end of an explicit step.
 template <class Laws, class Rows, bool kAccepts = false>
 struct ContactForceItem {
   std::conditional_t<kAccepts, ExplicitWalk<Laws, Rows>, ContactWalk<Laws, Rows>> walk;
   Vec3 gravity;
   Vec3* force;                 // [N]
   Real* loss_power;            // [W]
-  Vec3* angular_acceleration;  // of laws that move [rad/s^2]
+  Vec3* angular_acceleration;  // for laws with `kMoves` [rad/s^2]
 
   static constexpr bool kMoves = LawOf<Laws>::kMoves;
   static constexpr int kKinds = kLossKindsOf<LawOf<Laws>>;
@@ -126,7 +126,7 @@ struct ContactForceItem {
     return sum;
   }
 
-  // The two parts of it, in this order, on top of the weight.
+  // The parts of the total in this order: weight, neighbours, surfaces.
   using Self = typename decltype(walk)::Self;
   SCREE_HD Total weight(const Self& self) const { return {self.u.w * gravity, 0, {}, {}}; }
   SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
@@ -153,11 +153,11 @@ struct ContactForceItem {
   }
 };
 
-// Over the contacts of a particle, each with its weight.
+// Weighted sums over the contacts of a particle.
 struct TouchSums {
   Real energy = 0;         // elastic [J]
-  SpringEnergies springs;  // parts of it
-  Real cohesion = 0;       // likewise
+  SpringEnergies springs;  // parts of the energy
+  Real cohesion = 0;       // part of the energy [J]
   Real share = 0;          // sum of the weights
   Index contacts = 0;
 };
@@ -169,7 +169,7 @@ struct EnergyOf {
     const auto normal = law.normal.of_pair(pair.size);
     return {normal.energy(pair.geometry.overlap), {}, cohesion_of(normal, pair.geometry.overlap)};
   }
-  // With that of the springs that it remembers.
+  // Elastic energy including that of the springs in the history.
   template <class Law, class History>
   requires Law::kMoves SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
                                                          const History& history) const {
@@ -181,7 +181,7 @@ struct EnergyOf {
   }
 };
 
-// share(j): the weight of a contact with item j; those with surfaces count in full.
+// share(j): weight of a contact with item j; contacts with surfaces count in full.
 template <class Laws, class Rows, class Share>
 SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, const Share& share) {
   TouchSums sum;
@@ -198,16 +198,16 @@ SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, cons
   return sum;
 }
 
-// Per particle.
+// Outputs per particle.
 struct EnergyOutputs {
   Real* energy;  // [J]
   Index* contacts;
-  Real* pairs;              // half of each contact with another particle, all of any other
+  Real* pairs;              // half of each contact with another particle, all of any other contact
   SpringEnergies* springs;  // parts of the energy; null where particles do not rotate
-  Real* cohesion;           // likewise; null where none attract [J]
+  Real* cohesion;           // part of the energy; null without adhesion [J]
 };
 
-// Elastic energy of particle i's share of its contacts, their number, and its share of that number.
+// Particle i's share of the elastic energy and of the number of its contacts, and that number.
 template <class Laws, class Rows>
 struct ContactEnergyItem {
   ContactWalk<Laws, Rows> walk;

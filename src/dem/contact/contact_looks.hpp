@@ -1,4 +1,5 @@
-// What a walk over contacts sees of the items: at an instant, or over a step. One text for the CPU and CUDA.
+// Kinematics policies of a walk over contacts: at an instant, or over a step. Shared by the CPU and CUDA
+// backends.
 #pragma once
 
 #include <type_traits>
@@ -10,8 +11,8 @@
 
 namespace scree {
 
-// A look says what a walk sees of the items: what it reads of item i itself, which others touch it, and the
-// pair of the two. This is the look at one instant; the pair is a PairState.
+// A kinematics policy defines what a walk reads of item i itself, the test for contact with other items, and
+// the pair type. This policy is that of one instant; the pair is a `PairState`.
 struct AtInstant {
   struct Self {
     Index i;
@@ -43,8 +44,8 @@ struct AtInstant {
   }
 };
 
-// The look of laws that move (ContactLaw::kMoves): over the step that ends at this instant. The velocities
-// and angular velocities are those of the middle of the step; the pair is a MovingPair.
+// Kinematics over the explicit step that ends at this instant, for laws with `kMoves`. Velocities and angular
+// velocities are those of mid-step; the pair is a `MovingPair`.
 struct OverMotion {
   Real h;  // [s]
 
@@ -81,7 +82,7 @@ struct OverMotion {
   SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
 };
 
-// The same at an instant alone; the pair is an InstantPair.
+// Kinematics at an instant for laws with `kMoves`; the pair is an `InstantPair`.
 struct AtMovingInstant {
   using Self = OverMotion::Self;
   template <class Rows>
@@ -103,7 +104,7 @@ struct AtMovingInstant {
   SCREE_HD static bool closed(const PairState& pair) { return OverMotion::closed(pair); }
 };
 
-// The law that a choice of laws is about; what it sees at an instant, and over an explicit step.
+// The law type of a set of laws, and its kinematics at an instant and over an explicit step.
 template <class Laws>
 using LawOf = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
 template <class Laws>
@@ -111,8 +112,8 @@ using InstantLook = std::conditional_t<LawOf<Laws>::kMoves, AtMovingInstant, AtI
 template <class Laws>
 using StepLook = std::conditional_t<LawOf<Laws>::kMoves, OverMotion, AtInstant>;
 
-// Where a step started, all items, and whether contacts that open or close within it are resolved; else the
-// force at its end counts for the whole step, as in the paper.
+// State of all items at the start of a step. resolve_events: whether opening and closing of contacts within
+// the step is resolved; else the force at the end of the step is used for all of it, as in the paper.
 struct StepStart {
   const Vec4* position;  // x, y, z, radius
   const Vec4* velocity;
@@ -120,15 +121,15 @@ struct StepStart {
   bool resolve_events;
 };
 
-// One contact over an implicit step, as it lies between its two partners.
+// Kinematics of one contact over an implicit step.
 struct ContactPath {
   ContactStep step;
-  Vec3 normal0, normal1;  // at its start and its end
+  Vec3 normal0, normal1;  // at the start and the end of the step
   Vec3 travel;            // of i relative to j [m]
   PairSize size;
 };
 
-// The look over an implicit step: at what touches at its start or its end; the pair is a ContactPath.
+// Kinematics over an implicit step, for contacts at its start or its end; the pair is a `ContactPath`.
 struct OverStep {
   StepStart start;
 

@@ -1,5 +1,5 @@
-// What a walk over contacts is made of: the laws of all pairs of materials, the rows of a list, the items
-// that it reads, and the tests of what touches. One text for the CPU and CUDA.
+// Building blocks of a walk over contacts: the laws of all pairs of materials, the rows of a list, the arrays
+// of the items, and contact tests. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace scree {
 
-// The law of every contact: one pair of materials, or a table of them.
+// The law of every contact: of one pair of materials, or a table of all pairs.
 template <class Law>
 struct OneLaw {
   Law law;
@@ -29,8 +29,8 @@ struct LawTable {
   SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
 };
 
-// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the entry's number among
-// those of the list, too: the slot in packed rows, where contacts remember in all rows.
+// Calls evaluate(j) for an entry of a row, or evaluate(j, slot) if it takes the number of the entry in the
+// list: its slot in packed rows, and the index of its history record in all rows.
 template <class Evaluate>
 inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
 template <class Evaluate>
@@ -41,17 +41,18 @@ SCREE_HD auto evaluate_entry(const Evaluate& evaluate, Index j, std::int64_t slo
     return evaluate(j);
 }
 
-// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
-// another type of the same form on a GPU.
+// Rows of a neighbour list, stored contiguously in the serial backend; a GPU has another type with the same
+// interface.
 struct PackedRows {
   const Index* offsets;  // [items + 1]
   const Index* neighbors;
 
-  // Slot of the row's first entry, and from one entry to the next.
+  // Slot of the row's first entry, and the distance between its entries.
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
-  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
-  // no side effects: it may be called for others, too. It may ask for the slot (evaluate_entry).
+  // Calls add(evaluate(j)) for the entries j of row i for which touches(j) is true, in order. evaluate must
+  // have no side effects, because it may be called for other entries as well. It may take the slot
+  // (`evaluate_entry`).
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
@@ -61,8 +62,8 @@ struct PackedRows {
   }
 };
 
-// Whether rows are summed up together with those of other items: sum_contacts(i, test, evaluate, sum) calls
-// evaluate(i, j, slot) once for every contact, maybe of another row.
+// Whether rows are summed together with those of other items: sum_contacts(i, test, evaluate, sum) calls
+// evaluate(i, j, slot) once for every contact, which may belong to another row.
 template <class Rows>
 inline constexpr bool kShared = false;
 template <class Rows>
@@ -76,19 +77,19 @@ struct ContactViews {
   const int* material;
   Rows rows;
   const Index* surface_offsets;  // [particles + 1]
-  const Index* surfaces;         // numbers
+  const Index* surfaces;         // surface numbers
   SurfaceNumbers numbers;
-  const SurfaceLoad* loads;  // per entry of the surfaces: what placed ones do at this instant,
-  const SurfaceStep* steps;  // and over an implicit step
+  const SurfaceLoad* loads;  // per entry of the surfaces: loads of placed ones at this instant
+  const SurfaceStep* steps;  // per entry, over an implicit step
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
   Real reach = 0;              // Contact::reach [m]
-  // Radii [m] that laws take at planes instead of the items' own; null: the items' own. Packed rows alone
-  // have it.
+  // Radii [m] that laws use at planes instead of the items' own; null: the items' own. Supported by packed
+  // rows only.
   const Real* law_radius = nullptr;
 };
 
-// The same with other rows.
+// The views with other rows.
 template <class Rows, class From>
 SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
   return {in.position, in.velocity, in.material, rows,    in.surface_offsets, in.surfaces,  in.numbers,
@@ -101,7 +102,7 @@ SCREE_HD bool touch(Vec4 p, Vec4 q) {
   return dot(r, r) < reach * reach;
 }
 
-// Whether other items touch the one at p, or come within a margin of that [m].
+// Tests whether other items touch the one at p, or come within a margin of touch [m].
 struct TouchTest {
   Vec4 p;
   const Vec4* position;  // all items
@@ -114,14 +115,14 @@ struct TouchTest {
   }
 };
 
-// Whether partners that are apart may have a contact by this law.
+// Whether contacts may exist beyond touch with this law.
 template <class Law>
 inline constexpr bool kReaches = false;
 template <class Law>
 requires requires { Law::kReaches; }
 inline constexpr bool kReaches<Law> = Law::kReaches;
 
-// The same for laws that reach beyond touch [m]: those in reach may have a contact.
+// Tests whether items are within the interaction range of the law [m], where they may have a contact.
 template <class Test>
 struct ReachTest {
   Test test;

@@ -1,5 +1,5 @@
-// The one place that walks over what touches an item: the row of its neighbours, and the surfaces near it.
-// One text for the CPU and CUDA; what is done with a contact its visitors say.
+// The walk over the contacts of an item: the row of its neighbours, and the surfaces near it. Shared by the
+// CPU and CUDA backends; visitors define what is done with a contact.
 #pragma once
 
 #include <type_traits>
@@ -8,14 +8,13 @@
 
 namespace scree {
 
-// Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the surface's number.
-// `of` is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
-// Contacts with placed surfaces were evaluated before, once for particle and body: of.stored(in, entry)
-// has what `of` would return, null where they do not touch.
+// Visits the contacts of item i: visit(of(law, pair), j) with the neighbour's item j, or the surface's
+// number. `of` is pure: it may be called for neighbours without contact, and its result for them is
+// discarded. Contacts with placed surfaces were evaluated before, once for particle and body: of.stored(in,
+// entry) returns the result, or null without contact.
 //
-// Where the law remembers something, an `of` that wants to see it is called as of(law, pair, history), and
-// its result has as `history` what the contact will remember. Only the walk of an item that accepts a step,
-// with kAccepts, stores that; all others leave no trace.
+// Where the law has a history, an `of` that takes it is called as of(law, pair, history), and its result has
+// the new one as member `history`. It is stored only by a walk with kAccepts, of an item that accepts a step.
 template <class Laws, class Rows, class Look = InstantLook<Laws>>
 struct ContactWalk {
   ContactViews<Rows> in;
@@ -30,7 +29,7 @@ struct ContactWalk {
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
     walk<kAccepts>(self, reaching(look.test(in, self)), of, visit);
   }
-  // Adds `of` the contacts with neighbours, its Result each, to sum.
+  // Adds the contacts with neighbours to sum; `of` returns its Result for each.
   SCREE_HD_CALLER
   template <bool kAccepts, class Of, class Sum>
   SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
@@ -41,7 +40,7 @@ struct ContactWalk {
       neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
     }
   }
-  // The contact of items i and j at a slot of i's row, by `of` that sees what it remembers.
+  // The contact of items i and j at a slot of i's row; `of` takes the history.
   template <class Of>
   SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
     const Self owner = self(i);
@@ -50,11 +49,11 @@ struct ContactWalk {
     return of(laws.get(owner.material, in.material[j]), pair,
               in.history.template read<Law>(in.history.neighbors, slot));
   }
-  // What the contact at a slot remembers will be read soon.
+  // Prefetches the history of the contact at the slot.
   SCREE_HD void prepare(std::int64_t slot) const {
     fetch_ahead(in.history.neighbors + slot * records_of(Law::kHistory));
   }
-  // Of the neighbours those of which only(j) holds.
+  // Visits the neighbours for which only(j) is true.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
     const auto test = reaching(look.test(in, self));
@@ -110,12 +109,12 @@ struct ContactWalk {
         if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
-    // What of a row may have a contact.
+    // Test for possible contacts of a row.
     SCREE_HD auto test(const Self& of_row) const { return walk.reaching(walk.look.test(walk.in, of_row)); }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
 
-  // What of the row may have a contact.
+  // The test, extended by the interaction range of the law.
   template <class Test>
   SCREE_HD auto reaching(const Test& test) const {
     if constexpr (kReaches<Law> && requires { test.near(Index{}, Real{}); })
@@ -123,7 +122,7 @@ struct ContactWalk {
     else
       return test;
   }
-  // Over a step that may open and close contacts the look alone says what touches.
+  // Over an implicit step the kinematics policy alone decides which contacts act.
   template <class Pair>
   static constexpr bool kLawCloses = kReaches<Law>&& std::is_base_of_v<PairState, Pair>;
   template <class Pair>
@@ -133,7 +132,7 @@ struct ContactWalk {
     else
       return Look::closed(pair);
   }
-  // Of what may_be_closed(), or a test of the row, has let through.
+  // Whether the law confirms a contact that `may_be_closed()`, or the test of a row, has accepted.
   template <class Pair, class History>
   SCREE_HD static bool found_closed(const Law& law, const Pair& pair, const History& history) {
     if constexpr (kLawCloses<Pair>)
@@ -142,7 +141,7 @@ struct ContactWalk {
       return true;
   }
 
-  // What a step has parted may have something to lose.
+  // Whether a contact that opened in the step has stored energy to dissipate.
   template <class Pair, class History>
   SCREE_HD static bool found_breaking(const Pair&, const History& history) {
     if constexpr (kReaches<Law> && std::is_same_v<Pair, MovingPair>)
@@ -151,7 +150,7 @@ struct ContactWalk {
       return false;
   }
 
-  // Whether a contact is there at the end of the step: of one that has ended nothing is remembered.
+  // Whether the contact exists at the end of the step; else no history is stored.
   template <class Contact>
   SCREE_HD static bool lasts(const Contact& contact) {
     if constexpr (requires { contact.lasts; })
@@ -218,7 +217,7 @@ struct ContactWalk {
         });
   }
 
-  // What the test has found may turn out to be no contact: it is evaluated where it is added.
+  // The law decides whether an accepted entry is a contact: it is evaluated where it is added.
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk_reaching(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     using Pair = decltype(look.pair(in, self, 0));
@@ -259,7 +258,7 @@ struct ContactWalk {
   }
 };
 
-// Over an explicit step of h [s] that ends now; laws that do not move see its end.
+// Walk over the explicit step of h [s] that ends now; laws without `kMoves` see its end.
 template <class Laws, class Rows>
 using ExplicitWalk = ContactWalk<Laws, Rows, StepLook<Laws>>;
 template <class Laws, class Rows>

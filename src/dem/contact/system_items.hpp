@@ -1,5 +1,5 @@
-// What happens for one particle's contacts over an implicit step: forces, Newton matrix, energy books. One
-// text for the CPU and CUDA.
+// Per-particle kernels of contacts over an implicit step: forces, Newton matrix, energy accounting. Shared by
+// the CPU and CUDA backends.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace scree {
 
-// One touching pair in the Newton matrix. In single precision: the matrix only says where the iteration goes,
-// the residual says where it ends, and the entries are most of what a matrix product reads.
+// One contact in the Newton matrix, in single precision: the matrix determines the path of the iteration, but
+// the residual its result, and the entries are most of the memory traffic of a matrix product.
 struct alignas(16) ContactEntry {
   float x, y, z;   // b [sqrt(kg)]
   Index neighbor;  // j
@@ -24,16 +24,16 @@ SCREE_HD ContactEntry contact_entry(Vec3 b, Index neighbor) {
   return {static_cast<float>(b.x), static_cast<float>(b.y), static_cast<float>(b.z), neighbor};
 }
 
-// Newton matrix of the touching pairs: row i is sum over its entries of b (b . (x_i - x_j)), with
-// b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to
-// the front of a row.
+// Newton matrix of the contacts: row i is the sum over its entries of b (b . (x_i - x_j)), with b = sqrt(beta
+// h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries are at the neighbour list's slots, packed to the front of a
+// row.
 struct ContactMatrix {
   Index* count;           // entries of row i
   ContactEntry* entries;  // [slots of the list]
   Sym3* diagonal;         // sum of b b^T over the row, walls included [kg]
 };
 
-// Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.
+// Sums over the contacts of each particle in an implicit step; for "step" and "end" see `StepContact`.
 struct StepForces {
   Vec3 *step_force, *end_force;  // gravity included [N]
   Real* magnitude;               // sum of |F| over contacts and gravity: the scale of the residual [N]
@@ -67,7 +67,7 @@ struct StepContactOf {
   }
 };
 
-// What it adds to the energy ledger.
+// Energy accounting of a contact over the step.
 struct StepBooksOf {
   StepContactOf step;
 
@@ -87,7 +87,7 @@ struct StepBooksOf {
 template <class Laws, class Rows>
 using StepWalk = ContactWalk<Laws, Rows, OverStep>;
 
-// Force and Newton matrix row of particle i in an implicit step.
+// Force and row of the Newton matrix of particle i in an implicit step.
 template <class Laws, class Rows>
 struct ContactSystemItem {
   StepWalk<Laws, Rows> walk;
@@ -126,8 +126,8 @@ struct ContactSystemItem {
   }
 };
 
-// What the contacts of item i over a step add to the energy ledger; share: that of those with neighbours.
-// kAccepts: as in ContactWalk.
+// Energy accounting of item i's contacts over a step; share: of contacts with neighbours. kAccepts: as in
+// `ContactWalk`.
 template <bool kAccepts = false, class Laws, class Rows>
 SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
   ContactBooks sum;
@@ -138,7 +138,7 @@ SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real s
   return sum;
 }
 
-// Books particle i's share of its contacts over an accepted step.
+// Accounts for particle i's share of the energies of its contacts over an accepted step.
 template <class Laws, class Rows>
 struct ContactBooksItem {
   StepWalk<Laws, Rows> walk;

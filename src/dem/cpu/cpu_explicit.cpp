@@ -31,7 +31,7 @@ VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Ve
           {store.friction_loss.data(), store.rolling_loss.data(), store.twisting_loss.data()}};
 }
 
-// What all ranks must know of the open step.
+// Shares the properties of the open step that all ranks need.
 void CpuExplicitRun::share_step() {
   const bool ends_step = (closed_ + 1) % items_.model.integrator.substeps == 0;
   Real shared[2] = {step_bound_, ends_step && items_.any_outside() ? Real(1) : Real(0)};
@@ -60,8 +60,8 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
   return {taken, open_};
 }
 
-// Particles as the last step left them before it opened the next: with the velocities that the law saw. What
-// contacts remember of the step is that of the bodies' last place, from where the next step begins.
+// Uses the particles as of the last closed step, with the velocities that the law used. The history of the
+// step is that of the bodies' last poses, at which the next step begins.
 void CpuExplicitRun::shape_contacts() {
   items_.side.reopen_step();
   items_.find_loads(open_ ? items_.spare_position : items_.store.position, items_.spare_velocity,
@@ -69,7 +69,7 @@ void CpuExplicitRun::shape_contacts() {
   items_.side.close_step();
 }
 
-// Contacts with surfaces at the end of the open step, which the caller closes.
+// Contacts with surfaces at the end of the open step, before it is closed.
 void CpuExplicitRun::close_loads() {
   items_.find_loads(h_);
   items_.side.book_losses(h_);
@@ -79,8 +79,8 @@ void CpuExplicitRun::close_loads() {
 void CpuExplicitRun::advance() {
   close_loads();
   ParticleStore& store = items_.store;
-  // Where contacts rub nobody looks at a particle again once it is advanced, unless bodies do
-  // (shape_contacts).
+  // With friction a particle is not read again once it is advanced, except for contacts with bodies
+  // (`shape_contacts`).
   const bool in_place = store.rotates && items_.side.places().placed.empty();
   const VerletViews next = in_place
                                ? views_of(store.position, store.velocity, store.angular_velocity)

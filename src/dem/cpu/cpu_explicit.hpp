@@ -28,9 +28,10 @@ class CpuExplicitRun : public ExplicitRun {
   const Real h_;
   Index closed_ = 0;      // steps since the start of the run
   bool open_ = true;      // whether a step is open
-  Real step_bound_ = 0;   // displacement of any particle in the open step; 0 once the list knows it [m]
-  bool outside_ = false;  // whether a particle is outside the space where the open step ends, if one of the
-                          // bodies ends there
+  Real step_bound_ = 0;   // largest displacement of a particle in the open step; 0 once added to the list's
+                          // [m]
+  bool outside_ = false;  // whether a particle is outside the domain at the end of the open step, if a step
+                          // of the bodies ends there
 };
 
 }  // namespace scree

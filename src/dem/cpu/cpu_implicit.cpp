@@ -57,7 +57,7 @@ ContactMatrix CpuImplicitStep::matrix() {
   return {arrays_.matrix_count.data(), arrays_.matrix_entries.data(), arrays_.matrix_diagonal.data()};
 }
 
-// To where their accelerations take them.
+// Moves the particles according to their accelerations.
 void CpuImplicitStep::move_particles() {
   for_each(Serial{}, items_.layout.owned, NewmarkItem{step_views()});
   items_.refresh_ghosts();
@@ -81,7 +81,7 @@ Real CpuImplicitStep::step_displacement() {
   return items_.ranks.max(std::max(particles, items_.side.step_displacement()));
 }
 
-// Over the particles of all ranks. Throws as report_not_finite where a residual is not.
+// Maxima over the particles of all ranks. Throws like `report_not_finite` where a residual is not finite.
 StepNorms CpuImplicitStep::largest_norms() {
   Real residual = 0, bound = 0, force = 0, stiffening = 0;
   bool finite = true;
@@ -159,7 +159,8 @@ void CpuImplicitStep::shorten_correction() {
   move_particles();
 }
 
-// The bodies have already taken their correction: as a known part of the solution it moves to the right.
+// The bodies have already taken their correction: as a known part of the solution it moves to the right-hand
+// side.
 void CpuImplicitStep::subtract_surface_steps() {
   if (items_.side.size() == 0) return;
   for_each(Serial{}, items_.layout.owned,
@@ -183,8 +184,8 @@ ParticleCorrection CpuImplicitStep::particle_correct() {
   subtract_surface_steps();
   arrays_.right_hand_side = residual;
   const Real right_hand_side = ranks.max(max_over(Serial{}, n, NormItem{residual.data()}));
-  // The surfaces' displacements may be what is not finite: without a correction the bodies alone would
-  // notice.
+  // The surfaces' displacements may be not finite: without a correction of the particles only the bodies
+  // would report it.
   if (!std::isfinite(right_hand_side)) items_.report_not_finite(residual);
   const Real tolerance =
       solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, right_hand_side);

@@ -10,19 +10,19 @@
 
 namespace scree {
 
-// Workspace of implicit steps, kept from one to the next.
+// Workspace of implicit steps, reused by the next one.
 struct CpuImplicitArrays {
-  // The state at the start of the step.
+  // state at the start of the step
   std::vector<Vec4> start_position, start_velocity;
   std::vector<Vec3> start_acceleration, start_force;
-  // contact_force
+  // used by contact_force
   std::vector<Vec3> step_force, end_force;
   std::vector<Real> force_magnitude, stiffening;
   std::vector<Index> matrix_count;
   std::vector<ContactEntry> matrix_entries;
   std::vector<Sym3> matrix_diagonal, inverse_block;
   std::vector<Vec3> residual;
-  // particle_correct
+  // used by particle_correct
   std::vector<Vec3> right_hand_side, correction;
   std::vector<Vec4> direction;
 

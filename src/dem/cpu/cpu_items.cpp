@@ -40,7 +40,7 @@ void CpuItems::find_loads(const std::vector<Vec4>& position, const std::vector<V
   surfaces.find_loads(side.places(), store, list.surfaces,
                       {position.data(), velocity.data(), spin.data(), of, h});
   const bool in_step = h > 0;
-  if (in_step && side.surfaces().at_rest()) return;  // nothing there follows the sums
+  if (in_step && side.surfaces().at_rest()) return;  // static surfaces do not need the sums
   side.take_loads(surfaces.load_sums(list.surfaces), h);
 }
 

@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// With the ghosts where their particles are now: it is the places that name contacts.
+// Packs the contact history. Ghosts are refreshed first, because contact keys depend on current positions.
 void CpuList::leave_slots() {
   if (!items_.history.at_slots()) return;
   items_.refresh_ghosts();
@@ -29,7 +29,7 @@ void CpuList::wrap_positions() {
   items_.fail_if_any(bad, kUnsoundPosition[0], kUnsoundPosition[1]);
 }
 
-// Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.
+// Weights estimate the cost of a step: one for the particle, one for each entry of its row in the last list.
 void CpuList::decompose() {
   const ParticleStore& store = items_.store;
   std::vector<std::int64_t> weight(static_cast<std::size_t>(store.owned), 1);
@@ -41,13 +41,13 @@ void CpuList::decompose() {
   decomposition_ = std::move(next);
 }
 
-// migrate: every particle goes to the rank whose box it is in.
+// Stage migrate: every particle moves to the rank whose box contains it.
 void CpuList::migrate() {
   ParticleStore& store = items_.store;
   const Ranks& ranks = items_.ranks;
   if (!decomposition_.exists() || balance_.imbalance > items_.model.parallel.imbalance) decompose();
   std::vector<std::vector<Particle>> leaving(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::vector<Index>> left(leaving.size());  // where they stood
+  std::vector<std::vector<Index>> left(leaving.size());  // their local indices
   std::vector<Index> staying;
   for (Index i = 0; i < store.owned; ++i) {
     const int owner = decomposition_.owner(xyz(store.position[i]));
@@ -68,8 +68,8 @@ void CpuList::migrate() {
 
 namespace {
 
-// The place of a cell among all, the shortest axis fastest: what is near in the space is then as near in
-// memory as it can be, and most neighbours are still in the caches.
+// Order of the cells, with the shortest axis fastest: cells that are neighbours in the domain are then as
+// close in memory as possible, and most neighbours are still in the caches.
 class CellOrder {
  public:
   explicit CellOrder(const CellGrid& grid) {
@@ -88,7 +88,7 @@ class CellOrder {
 
 }  // namespace
 
-// Owned particles in the order of their cells; those outside at the end.
+// Sorts the owned particles by cell; those outside come last.
 void CpuList::sort_cells(Real skin) {
   ParticleStore& store = items_.store;
   const Ranks& ranks = items_.ranks;
@@ -102,7 +102,8 @@ void CpuList::sort_cells(Real skin) {
   store.active = 0;
   for (Index i = 0; i < store.owned; ++i) {
     const CellPlace c = cells_.place(xyz(store.position[i]));
-    // Without a cell: has left; whether it may is asked at the end of the step.
+    // A particle without a cell is outside the domain; whether that is an error is decided at the end of the
+    // step.
     cell[i] = store.drifting[i] || c.x < 0 ? outside : order(c);
     store.active += cell[i] != outside;
     ++start[cell[i] + 1];
@@ -173,7 +174,8 @@ void CpuList::build(Real skin, StageTimers& timers) {
   if (!items_.ranks.alone()) measure_balance();
 }
 
-// The sum of the steps' largest displacements is cheap; the exact value follows past it.
+// The sum of the steps' largest displacements is a cheap bound; where it is too large the exact value is
+// computed.
 bool CpuList::covers(Real step) {
   if (!current_) return false;
   bound_ += std::max(step, surface_bound_);

@@ -1,4 +1,4 @@
-// Who owns which particles, and the neighbour list of the serial backend.
+// Ownership of particles and neighbour list of the serial backend.
 #pragma once
 
 #include <vector>
@@ -19,22 +19,22 @@ class CpuList : public RankList {
   std::int64_t builds() const override { return builds_; }
   LoadBalance balance() const override { return balance_; }
 
-  // Whether the list sees every pair that can touch, once more after explicit steps that moved particles by
-  // at most `step` [m]. Collective.
+  // Whether the list covers all possible contacts after explicit steps that moved particles by at most
+  // another `step` [m]. Collective.
   bool covers(Real step);
-  // Particles came or left: the list is no longer one of these.
+  // Particles were added or removed: the list is invalid.
   void outdate() { current_ = false; }
-  // Of the owned particles these stay, in this order.
+  // Keeps the row lengths of these owned particles, in this order.
   void keep_rows(const std::vector<Index>& staying);
 
  private:
-  // Parts of build, in their order.
+  // Parts of build, in this order.
   void leave_slots();
   void wrap_positions();
   void migrate();
   void decompose();
   void sort_cells(Real skin);
-  // Sizes all item arrays, fills in ghosts.
+  // Resizes all item arrays and fills in the ghosts.
   void lay_out_items(Real skin);
   void measure_balance();
 
@@ -42,13 +42,13 @@ class CpuList : public RankList {
   NeighborBuilder builder_;
   Decomposition decomposition_;  // with several ranks, from the first list on
   LoadBalance balance_;
-  std::vector<Index> row_length_;  // of the particles when the list was built, with several ranks
+  std::vector<Index> row_length_;  // row lengths of the particles when the list was built, with several ranks
   SearchCells cells_;
   std::vector<Vec4> built_at_;  // positions of all items when the list was built
-  bool current_ = false;        // whether the items are those that the list was built of
+  bool current_ = false;        // whether the list was built from the current items
   std::int64_t builds_ = 0;
-  Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
-  Real surface_bound_ = 0;  // of any surface since `bound_` was last brought up to date, at most [m]
+  Real bound_ = 0;          // upper bound of the displacement of any item since the list was built [m]
+  Real surface_bound_ = 0;  // upper bound of the displacement of any surface since `bound_` was updated [m]
 };
 
 }  // namespace scree

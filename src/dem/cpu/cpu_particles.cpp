@@ -79,7 +79,7 @@ std::vector<Leaver> CpuParticles::outside() {
   return leavers;
 }
 
-// Before the leavers are wrapped and marked.
+// Called before the escaped particles are wrapped and marked.
 void CpuParticles::take_contacts_out() {
   ParticleStore& store = items_.store;
   const Model& model = items_.model;

@@ -1,4 +1,4 @@
-// What the serial backend tells about its particles: sums, values for output.
+// Reports of the serial backend: sums and output values.
 #pragma once
 
 #include <utility>
@@ -30,7 +30,7 @@ class CpuReports : public Reports {
 
   CpuItems& items_;
   std::vector<OutputField> fields_;
-  ParticleOutput output_;  // of start_output
+  ParticleOutput output_;  // filled by start_output
 };
 
 }  // namespace scree

@@ -55,7 +55,7 @@ RubbingMatrix CpuRubbingStep::matrix() {
           rubbing_.surface_entries.data()};
 }
 
-// To where their accelerations take them.
+// Moves and rotates the particles according to their accelerations.
 void CpuRubbingStep::turn_particles() {
   for_each(Serial{}, items_.layout.owned, TurnItem{step_views(), turning_views()});
   move_particles();
@@ -70,7 +70,7 @@ void CpuRubbingStep::undo() {
   CpuImplicitStep::undo();
 }
 
-// Over the particles of all ranks.
+// Maxima over the particles of all ranks.
 RubbingNorms CpuRubbingStep::largest_norms() {
   RubbingNorms largest{};
   bool finite = true;
@@ -152,11 +152,11 @@ void CpuRubbingStep::shorten_correction() {
   turn_particles();
 }
 
-// With frozen limits none grows.
+// The matrix is not consistent with lagged limits, which have no derivative.
 bool CpuRubbingStep::is_consistent() const { return !frozen_ && ::scree::is_consistent(sharpness_); }
 
-// Prepares it for the solve and returns its largest part [N]. The bodies have already taken their correction:
-// see CpuImplicitStep.
+// Prepares the right-hand side for the solve and returns its largest component [N]. The bodies have already
+// taken their correction, see `CpuImplicitStep`.
 Real CpuRubbingStep::right_hand_side() {
   if (items_.side.size() == 0) return scaled_residual_ * force_scale_;
   for_each(Serial{}, items_.layout.owned,

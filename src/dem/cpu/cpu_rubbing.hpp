@@ -1,4 +1,4 @@
-// The implicit step of the serial backend where contacts rub and particles turn.
+// Implicit step of the serial backend with friction and rotating particles.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace scree {
 
-// Workspace of such steps, beside CpuImplicitArrays.
+// Workspace of implicit steps with friction, beside `CpuImplicitArrays`.
 struct CpuRubbingArrays {
-  // The state at the start of the step.
+  // state at the start of the step
   std::vector<Vec4> start_spin;
   std::vector<Vec3> start_acceleration;
   std::vector<Vec4> mean_spin;  // iterate, all items
-  // contact_force
+  // used by contact_force
   std::vector<Vec3> start_torque, step_torque, end_torque;
   std::vector<Real> sharpness;
   std::vector<Index> surface_count;
@@ -23,8 +23,8 @@ struct CpuRubbingArrays {
   std::vector<ScaledMass> mass;
   std::vector<float> inverse_block;  // BlockSlices
   std::vector<Twist> residual;
-  std::vector<Real> neighbor_limits, surface_limits;  // while they are frozen
-  // particle_correct
+  std::vector<Real> neighbor_limits, surface_limits;  // lagged limits
+  // used by particle_correct
   std::vector<Twistf> correction;
   std::vector<Twistf> direction;  // all items
 
@@ -56,14 +56,14 @@ class CpuRubbingStep : public CpuImplicitStep {
   RubbingNorms largest_norms();
   bool is_consistent() const;
   Real right_hand_side();
-  void report_not_finite();  // throws, as that of the items
+  void report_not_finite();  // throws, like that of the items
   int solve(Real tolerance);
 
   CpuRubbingArrays& rubbing_;
   bool frozen_ = false;
   ResidualSearch search_;                          // along rubbing_.correction
   Real scaled_residual_ = 0;                       // of the last contact_force
-  Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
+  Real largest_stiffening_ = 0, force_scale_ = 0;  // of the last contact_force
   Real sharpness_ = 0;
   Real unit_ = 0;  // of rubbing_.correction [N]
   RubbingTolerance tolerance_;

@@ -1,4 +1,4 @@
-// The functions of device.hpp in a build without CUDA.
+// Functions of device.hpp in a build without CUDA.
 #include "base/error.hpp"
 #include "dem/backend/device.hpp"
 

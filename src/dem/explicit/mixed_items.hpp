@@ -1,5 +1,5 @@
-// The explicit step in mixed precision: state and sums at about double precision, contact forces in single.
-// Between two builds of the neighbour list only; the state at rest is in double.
+// Explicit steps in mixed precision between two builds of the neighbour list: state and sums have about
+// double precision, contact forces single precision. The committed state is in double precision.
 #pragma once
 
 #include <cmath>
@@ -14,54 +14,54 @@
 
 namespace scree {
 
-// Place on a grid of quanta, modulo 2^32: the difference of two near places is exact. What another particle
-// reads.
+// Fixed-point position in quanta modulo 2^32: the difference of two nearby positions is exact. This part is
+// read by other particles.
 struct alignas(16) MixedPlace {
   std::uint32_t x, y, z;
   float radius;  // [m]
 };
 
-// Velocity that the contact law sees, and mass. What another particle reads.
+// Velocity that the contact law uses, and mass. This part is read by other particles.
 struct alignas(16) MixedMotion {
   float x, y, z;  // [m/s]
   float mass;     // [kg]
 };
 
-// The rest of the place: 2^-16 of a quantum. What no other particle reads.
+// Fraction of the position in units of 2^-16 quantum. This part is not read by other particles.
 struct alignas(8) MixedFraction {
   std::uint16_t x, y, z;
-  std::uint16_t near_side;  // whether the particle may leave the space before the list expires
+  std::uint16_t near_side;  // whether the particle may escape from the domain before the list expires
 };
 
-// The velocity in the middle of the step, less the one that the law sees: small, so that a single holds it to
-// far below the last bit of the velocity.
+// Mid-step velocity less the one that the law uses: so small that single precision resolves it far below the
+// last bit of the velocity.
 struct alignas(16) MixedRest {
   float x, y, z;  // [m/s]
   float loss;     // dissipated since the last conversion [J]
 };
 
-// Angular velocity in the middle of the step, and the moment of inertia. What another particle reads.
+// Mid-step angular velocity, and moment of inertia. This part is read by other particles.
 struct alignas(16) MixedSpin {
   float x, y, z;  // [rad/s]
   float inertia;  // [kg m^2]
 };
 
-// What a single leaves out of the angular velocity.
+// Remainder of the angular velocity beyond single precision.
 struct alignas(16) MixedSpinRest {
   float x, y, z;   // [rad/s]
-  float friction;  // dissipated by it since the last conversion [J]
+  float friction;  // frictional dissipation since the last conversion [J]
 };
 
 struct MixedViews {
-  MixedPlace* place[2];  // all items; a step reads one and writes the other
+  MixedPlace* place[2];  // all items; double-buffered: a step reads one and writes the other
   MixedMotion* motion[2];
   MixedFraction* fraction;  // owned particles
   MixedRest* rest;
   MixedSpin* spin[2];        // all items; null where particles do not rotate
-  MixedSpinRest* spin_rest;  // owned particles; likewise
+  MixedSpinRest* spin_rest;  // owned particles; null where particles do not rotate
 };
 
-// Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
+// Grid of quanta for pairs up to `reach` [m] apart; differences wrap at eight times that distance.
 struct QuantumGrid {
   Real quantum = 1;                         // power of two [m]
   Real fraction = 1, inverse_fraction = 1;  // 2^-16 of it
@@ -69,7 +69,7 @@ struct QuantumGrid {
   SCREE_HD std::int64_t count(Real x) const {
     return static_cast<std::int64_t>(std::rint(x * inverse_fraction));
   }
-  // The place that has moved on from x: by the difference of the low bits.
+  // Position that has moved from x to these low bits.
   SCREE_HD Real moved(Real x, std::uint32_t place, std::uint16_t part) const {
     const std::int64_t from = count(x);
     const auto whole = static_cast<std::int32_t>(place - static_cast<std::uint32_t>(from >> 16));
@@ -78,7 +78,7 @@ struct QuantumGrid {
   }
 };
 
-// The place dx [m] on, and the rest of it.
+// Position displaced by dx [m]; rest: its fraction, updated.
 SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace place, MixedFraction& rest) {
   const auto move = [&](std::uint32_t& whole, std::uint16_t& part, Real by) {
     const std::int64_t parts = part + grid.count(by);
@@ -102,7 +102,7 @@ SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
           static_cast<std::uint32_t>(grid.count(p.z) >> 16), static_cast<float>(p.w)};
 }
 
-// The same place a whole number of periods away.
+// Position shifted by whole periods.
 SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shift) {
   // Rounded alike in both directions: two particles see each other at opposite differences.
   const auto whole = [&](Real x) { return static_cast<std::uint32_t>((grid.count(x) + 32768) >> 16); };
@@ -110,14 +110,14 @@ SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shif
   return place;
 }
 
-// Position of a particle that was at `from` when it was converted [m].
+// Double-precision position of a particle that was at `from` when it was converted [m].
 SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place,
                              const MixedFraction& part) {
   return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y),
           grid.moved(from.z, place.z, part.z)};
 }
 
-// Position of one relative to the other [m].
+// Position of p relative to q [m].
 SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedPlace& q) {
   const auto along = [](std::uint32_t a, std::uint32_t b) {
     return static_cast<float>(static_cast<std::int32_t>(a - b));
@@ -125,7 +125,7 @@ SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedP
   return quantum * Vec3f{along(p.x, q.x), along(p.y, q.y), along(p.z, q.z)};
 }
 
-// TouchTest for places on the grid.
+// `TouchTest` for fixed-point positions.
 struct MixedTouchTest {
   MixedPlace p;
   const MixedPlace* place;  // all items
@@ -139,9 +139,9 @@ struct MixedTouchTest {
   }
 };
 
-// From the double state of an open explicit step.
+// Converts the double-precision state of an open explicit step.
 struct ToMixedItem {
-  const Vec4 *position, *velocity, *spin;  // null unless particles rotate: then both are of the middle
+  const Vec4 *position, *velocity, *spin;  // null unless particles rotate; then both are mid-step values
   const Vec3* acceleration;
   MixedViews out;
   QuantumGrid grid;
@@ -169,14 +169,14 @@ struct ToMixedItem {
   }
 };
 
-// Back to the double state. position, velocity: as they were converted, so many steps ago.
+// Converts back to the double-precision state. position, velocity: as converted `steps` ago.
 struct FromMixedItem {
   MixedViews in;
   int parity;
   QuantumGrid grid;
   Vec4 *position, *velocity, *spin;    // null unless particles rotate
-  Vec3* acceleration;                  // not where they do
-  Real *contact_loss, *friction_loss;  // the second: null unless particles rotate
+  Vec3* acceleration;                  // unused where particles rotate
+  Real *contact_loss, *friction_loss;  // friction_loss: null unless particles rotate
   const std::uint8_t* drifting;
   Vec3 gravity;
   Real h;
@@ -188,7 +188,7 @@ struct FromMixedItem {
     const MixedPlace place = (parity == 0 ? in.place[0] : in.place[1])[i];
     const MixedRest rest = in.rest[i];
     const Vec3 seen{u.x, u.y, u.z}, middle = seen + Vec3{rest.x, rest.y, rest.z};
-    // A velocity that is not finite must not hide behind a place that always is.
+    // A velocity that is not finite must be visible in the position, which is always finite in fixed point.
     const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], place, in.fraction[i]) : middle;
     position[i] = vec4(x, position[i].w);
     contact_loss[i] += rest.loss;
@@ -208,8 +208,8 @@ struct FromMixedItem {
     spin[i] = vec4(Vec3{w.x, w.y, w.z} + Vec3{rest.x, rest.y, rest.z}, spin[i].w);
     friction_loss[i] += rest.friction;
   }
-  // No list covers what drifts, so that it may be farther away than places tell apart; but it feels gravity
-  // alone.
+  // Escaped particles are not covered by a list and may move beyond the range of fixed-point positions; they
+  // move under gravity alone.
   SCREE_HD void drift(Index i) const {
     if (steps == 0) return;
     const Vec4 p = position[i], v = velocity[i];
@@ -221,8 +221,8 @@ struct FromMixedItem {
   }
 };
 
-// The look at places on the grid: pairs of particles in single precision, walls, for which the whole position
-// is needed, in double.
+// Kinematics at fixed-point positions: pairs of particles in single precision; walls, which need the whole
+// position, in double precision.
 struct AtMixedInstant {
   const MixedPlace* place;  // all items
   const MixedMotion* motion;
@@ -292,7 +292,7 @@ struct MixedAdvanceItem {
   }
 
  private:
-  // No indexing by parity: a GPU would copy the arrays of pointers to memory for it.
+  // No indexing by parity: a GPU would copy the arrays of pointers to local memory.
   SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
   SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
 

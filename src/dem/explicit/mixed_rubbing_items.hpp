@@ -1,4 +1,4 @@
-// The explicit step of particles that rub, in mixed precision: mixed_items.hpp says what that is.
+// Explicit steps with friction in mixed precision, see mixed_items.hpp.
 #pragma once
 
 #include "dem/explicit/mixed_items.hpp"
@@ -6,7 +6,7 @@
 
 namespace scree {
 
-// A contact of two particles in single precision; what it remembers in double.
+// Evaluates a contact of two particles in single precision, with its history in double precision.
 struct SingleLoadOf {
   using Result = SingleLoad;
 
@@ -20,7 +20,8 @@ struct SingleLoadOf {
   }
 };
 
-// The look of laws that move at places on the grid: pairs of particles in single precision, walls in double.
+// Kinematics at fixed-point positions for laws with `kMoves`: pairs of particles in single precision, walls
+// in double precision.
 struct OverMixedMotion {
   AtMixedInstant at;
   const MixedSpin* spin;  // all items
@@ -59,7 +60,7 @@ struct OverMixedMotion {
   SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
 };
 
-// Closes a step and opens the next: its parts for a kernel that sums contacts up in between.
+// Closes a step and opens the next, in parts for a kernel that sums contacts between them.
 template <class Laws, class Rows>
 struct MixedRubbingItem {
   ContactWalk<Laws, Rows, OverMixedMotion> walk;  // position: as converted; velocity and spin are not used
@@ -86,7 +87,7 @@ struct MixedRubbingItem {
     const Real h = walk.look.h;
     const QuantumGrid& grid = walk.look.at.grid;
     const MixedMotion u = self.u;
-    // All is read before any of it is written: loads that do not wait for each other.
+    // All values are read before any is written, so that the loads overlap.
     const MixedRest rest = state.rest[i];
     const MixedSpinRest spin_rest = state.spin_rest[i];
     const Quaternion old_orientation = orientation[i];

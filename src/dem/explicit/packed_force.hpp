@@ -1,4 +1,4 @@
-// What contacts do to a particle, in vectors of the processor: sums over rows of the serial backend.
+// Contact loads in SIMD vectors, for the row sums of the serial backend.
 #pragma once
 
 #include <bit>
@@ -7,15 +7,14 @@
 
 namespace scree {
 
-// Four numbers, added by one instruction where the processor has it.
+// Four numbers, added by one instruction where the processor supports it.
 using Real4 = Real __attribute__((vector_size(4 * sizeof(Real))));
 
-// Of numbers that are in registers one by one, and of four in memory: the other way round the processor
-// waits.
+// Packs four numbers from registers, or four from memory; the opposite choice stalls the processor.
 inline Real4 packed(Real a, Real b, Real c, Real d) { return Real4{a, b, c, d}; }
 inline Real4 packed(const Vec4& a) { return std::bit_cast<Real4>(a); }
 
-// A TotalForce, its numbers in fours: adding two is what TotalForce does.
+// A TotalForce packed in groups of four numbers, with the same addition.
 template <int kKinds>
 struct alignas(64) PackedForce {
   static constexpr int kParts = (7 + kKinds + 3) / 4;

@@ -1,19 +1,18 @@
-// Contacts of the serial backend's explicit steps, many at a time: the compiler makes vector instructions of
-// the loop over them where the law allows it.
+// Batches of contacts in the serial backend's explicit steps: the compiler vectorizes the loop over a batch
+// where the law allows it.
 #pragma once
 
 #include "dem/explicit/packed_force.hpp"
 
 namespace scree {
 
-// One law for all contacts, with a slider that may have a dashpot beside it.
+// A single law for all contacts, whose slider may have a dashpot.
 template <class Laws>
 inline constexpr bool kMayHaveDashpot = false;
 template <class Law>
 requires Law::Tangential::acts inline constexpr bool kMayHaveDashpot<OneLaw<Law>> = true;
 
-// Pairs that were gathered from their rows, with what their contacts remember, and what they get. Of laws
-// that move.
+// Pairs gathered from their rows, with their history and results. For laws with `kMoves`.
 template <class Laws>
 class PairBatch {
  public:
@@ -23,18 +22,18 @@ class PairBatch {
   static constexpr Index kRecords = records_of(Law::kHistory);
   static constexpr std::int64_t first_record(Index slot) { return std::int64_t{slot} * kRecords; }
 
-  // The k-th pair, and its records.
+  // Stores the k-th pair and its history records.
   void put(Index k, const OverMotion::Self& i, const OverMotion::Self& j, const Vec4* records) {
     i_.put(k, i), j_.put(k, j);
     for (Index r = 0; r < kRecords; ++r) records_[first_record(k) + r] = records[r];
   }
 
-  // Evaluates the first n over a step. history: says which step that is.
+  // Evaluates the first n pairs over a step. history: for the number of that step.
   [[gnu::noinline, gnu::flatten]] void evaluate(Index n, const Laws& of, const OverMotion& look,
                                                 const HistoryViews& history) {
     if constexpr (kMayHaveDashpot<Laws>) {
       if (of.law.tangential.damping_ratio == 0) {
-        // A number that the compiler knows: it leaves out what most runs have none of.
+        // A compile-time constant lets the compiler leave out the dashpot, which most runs do not have.
         Laws without_dashpot = of;
         without_dashpot.law.tangential.damping_ratio = 0;
         return evaluate_by(without_dashpot, n, look, history);
@@ -43,18 +42,18 @@ class PairBatch {
     evaluate_by(of, n, look, history);
   }
 
-  // Of what was evaluated: whether there is a contact at the end of the step, and whether there is anything
-  // to add: a neck that breaks has losses.
+  // Results of the k-th pair: whether the contact is closed at the end of the step, and whether it has a
+  // load; a JKR contact that breaks has losses only.
   bool closed(Index k) const { return !kReaches<Law> || closed_[k]; }
   bool acts(Index k) const { return !kReaches<Law> || acts_[k]; }
-  // Whether j gets what of_j() says: else the contact must be evaluated from its side.
+  // Whether of_j() is valid; else the contact must be evaluated from the side of j.
   bool is_mirrored(Index k) const {
     return Law::is_mirrored(Law::read_history([&](int n) { return number_of(records(k), n); }));
   }
-  // What i remembered and remembers of it.
+  // Previous and new history of the k-th pair, as i has it.
   const Vec4* old_records(Index k) const { return records_ + first_record(k); }
   const Vec4* records(Index k) const { return new_records_ + first_record(k); }
-  // What the two get. By parts, of which the compiler makes whole vectors.
+  // Loads on one side of the pairs, in parts that the compiler stores as whole vectors.
   struct Side {
     alignas(64) Vec4 part[Packed::kParts][kRoom];
 
@@ -80,7 +79,7 @@ class PairBatch {
       const Vec4 p = i_.position[k], u = i_.velocity[k], v = i_.spin[k];
       const Vec4 q = j_.position[k], w = j_.velocity[k], s = j_.spin[k];
       const PairState state = AtInstant::pair(p, u, q, w);
-      // Not by a function that returns the pair: gcc would copy it as a whole.
+      // Not by a function that returns the pair, which gcc would copy as a whole.
       const MovingPair pair{
           state, OverMotion{h}.motion(state, OverMotion::partner(p, v), OverMotion::partner(q, s))};
       const auto old = history.template read<Law>(records_, k);
@@ -109,7 +108,7 @@ class PairBatch {
   Items i_, j_;
   alignas(64) Vec4 records_[kRoom * kRecords], new_records_[kRoom * kRecords];
   Side of_i_, of_j_;
-  bool closed_[kRoom], acts_[kRoom];  // of laws that reach
+  bool closed_[kRoom], acts_[kRoom];  // for laws with `kReaches`
 };
 
 }  // namespace scree

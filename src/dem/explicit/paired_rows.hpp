@@ -1,4 +1,4 @@
-// Rows of the serial backend's explicit steps: a contact of two owned particles is evaluated once, for both.
+// Rows of the serial backend's explicit steps: a contact of two owned particles is evaluated once for both.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace scree {
 
-// What contacts do to the partner in whose row a slot is, from when they are evaluated until the row is
-// summed. Places are used again, the last first: rows that are near each other need few.
+// Loads on the particle of a row, stored per slot from their evaluation until the row is summed. Freed
+// entries are reused last-in, first-out: rows that are close to each other need few.
 template <class Packed>
 class KeptResults {
  public:
-  // With nothing at any slot.
+  // Resets all slots to no load.
   void resize(std::size_t slots) { places_.resize(slots); }
-  // Makes room for `more`.
+  // Ensures that `more` entries are free.
   void reserve(Index more) {
     while (free_count_ < more) {
       free_.push_back(0);
@@ -26,7 +26,7 @@ class KeptResults {
     }
   }
   Packed& put(Index slot) { return results_[places_[slot] = free_[--free_count_]]; }
-  // Adds what was put to the slot, and forgets it.
+  // Adds the load at the slot to the sum and frees its entry.
   void take(Index slot, Packed& sum) {
     const Index place = std::exchange(places_[slot], kNothing);
     sum += results_[place];
@@ -35,24 +35,24 @@ class KeptResults {
 
  private:
   static Packed nothing() { return Packed::of(Packed::Total::nothing()); }
-  static constexpr Index kNothing = 0;  // whose result changes no sum
-  std::vector<Index> places_;           // per slot
+  static constexpr Index kNothing = 0;  // index of a load that changes no sum
+  std::vector<Index> places_;           // index of the load per slot
   std::vector<Packed> results_{nothing()};
-  std::vector<Index> free_{0};  // the first free_count_ of them
+  std::vector<Index> free_{0};  // the first free_count_ indices are free
   Index free_count_ = 0;
 };
 
-// The contacts of one step, evaluated some rows ahead of the one that is summed.
+// The contacts of one step, evaluated some rows ahead of the row that is summed.
 template <class Laws>
 class PairSweep {
  public:
-  // Before a step.
+  // Called before a step.
   void begin(PairList& pairs) {
     pairs_ = &pairs, reached_ = next_ = 0;
     results_.resize(pairs.slots);
   }
 
-  // For i = 0, 1, ...: adds what the contacts at these slots, those of row i, do to i, in this order.
+  // For i = 0, 1, ...: adds the loads on i of the contacts at these slots of row i, in this order.
   template <class Contact, class Sum>
   void add_row(Index i, Index slot, Index past_slots, const Contact& contact, Sum& sum) {
     while (i >= reached_) reach(contact);
@@ -66,13 +66,13 @@ class PairSweep {
   using Packed = typename Batch::Packed;
   using Law = typename Batch::Law;
 
-  // A contact as its first side sees it; mirror: the other's slot, if that may get the image of this.
+  // A contact of i; mirror: its slot in the row of j, if j may get the mirrored result.
   struct Found {
     Index i, j, slot, mirror;
     Vec4* records;
   };
 
-  // Evaluates the next contacts of all: as many as there is room for, which may end within a row.
+  // Evaluates the next contacts of all rows: one batch, which may end within a row.
   template <class Contact>
   [[gnu::noinline, gnu::flatten]] void reach(const Contact& contact) {
     Index found = 0;
@@ -112,7 +112,7 @@ class PairSweep {
   }
 
   Vec4* records_of_pair(Index pair) { return pairs_->records.data() + Batch::first_record(pair); }
-  // Of the k-th contact, where its other side has what it remembers itself.
+  // History record of the k-th contact on its other side.
   Vec4* mirror_records(Index k, const HistoryViews& history) {
     Vec4* const records = history.neighbors + Batch::first_record(found_[k].mirror);
     if (records->w != history.step) HistoryViews::mirror<Law>(batch_.old_records(k), records);
@@ -121,13 +121,13 @@ class PairSweep {
 
   PairList* pairs_ = nullptr;
   Index reached_ = 0;  // rows whose contacts were evaluated
-  Index next_ = 0;     // pair to look at
+  Index next_ = 0;     // next pair to evaluate
   KeptResults<Packed> results_;
   Batch batch_;
   Found found_[Batch::kRoom];
 };
 
-// Brings what the contacts of pairs remember back to the slots.
+// Writes the history of pairs back to the slots.
 template <class Law>
 void leave_records(PairList& pairs, const HistoryViews& history) {
   constexpr Index kRecords = records_of(Law::kHistory);
@@ -146,7 +146,7 @@ void leave_records(PairList& pairs, const HistoryViews& history) {
 template <class Laws>
 struct PairedRows {
   static constexpr bool kShared = true;
-  const Index* offsets;  // as of PackedRows
+  const Index* offsets;  // as in PackedRows
   PairSweep<Laws>* sweep;
 
   template <class Test, class Contact, class Sum>

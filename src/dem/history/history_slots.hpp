@@ -1,5 +1,5 @@
-// Where contacts remember: records at the slots of a list, which are its entries' numbers, read by every walk
-// and written by the items that accept a step. One text for the CPU and CUDA.
+// Contact history at the slots of a list. A slot is the number of a list entry; its record is read by every
+// walk and written by the items that accept a step. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace scree {
 
-// What a contact remembers is one or two Vec4s, whole sectors of memory, so that contacts here and there in
-// the rows cost no more than their own. In w of the first: the number of the step that wrote them. What the
-// last step did not write is of a contact that has ended: nothing need be cleared.
-inline constexpr int kMostNumbers = 7;  // that a law may remember of a contact
+// The history of a contact is one or two Vec4, whole memory sectors, so that sparse contacts cost no more
+// than their own traffic. w of the first one is the number of the step that wrote it: a record that the last
+// step did not write belongs to a contact that has ended, and nothing needs to be cleared.
+inline constexpr int kMostNumbers = 7;  // of history per contact
 SCREE_HD constexpr int records_of(int numbers) { return numbers <= 0 ? 0 : numbers <= 3 ? 1 : 2; }
 
-// The k-th of the numbers.
+// The k-th number of a history record.
 template <class Record>
 SCREE_HD auto& number_of(Record* records, int k) {
   return k == 0   ? records[0].x
@@ -31,7 +31,7 @@ SCREE_HD auto& number_of(Record* records, int k) {
                   : records[1].w;
 }
 
-// Asks the memory for a record that will be read soon.
+// Prefetches a record.
 SCREE_HD void fetch_ahead(const Vec4* record) {
 #ifdef __CUDA_ARCH__
   asm volatile("prefetch.global.L2 [%0];" ::"l"(record));
@@ -40,28 +40,26 @@ SCREE_HD void fetch_ahead(const Vec4* record) {
 #endif
 }
 
-// Pointers are null where nobody remembers.
+// Views of the history; pointers are null without one.
 struct HistoryViews {
   Vec4* neighbors = nullptr;  // [slots][records]
-  Vec4* ground = nullptr;     // [entries of the surfaces][records], of planes at rest
-  // Likewise of placed surfaces, whose contacts are evaluated before the particles' walk: after the last
-  // step, and after the step that is evaluated, if it is accepted. The latter is null where they are only
-  // looked at.
+  Vec4* ground = nullptr;     // [entries of the surfaces][records], of static planes
+  // Records of placed surfaces, whose contacts are evaluated before the particles' walk: after the last step,
+  // and after the evaluated step if it is accepted. The latter is null for evaluations that do not store it.
   Vec4 *bodies = nullptr, *ahead = nullptr;
-  // Of these the features of meshes, per entry, on sheets with the side (mesh/sheet_sides.hpp); where there
-  // are no records kNoFeature is of none.
+  // Features of the contacts with meshes, per entry; on open surfaces with the side (mesh/sheet_sides.hpp).
+  // Without records kNoFeature marks entries without contact.
   Index *features = nullptr, *features_ahead = nullptr;
   Real step = 0;  // number of the last accepted step, above 0
 
-  // For a look that leaves no trace.
+  // Views for an evaluation that stores nothing.
   HistoryViews only_read() const {
     HistoryViews views = *this;
     views.ahead = nullptr;
     return views;
   }
 
-  // What the contact at the slot remembers: what the law's read_history() makes of nothing but zeros where it
-  // was not closed at the last step.
+  // History of the contact at the slot: that of zeros if it was not closed at the last step.
   template <class Law>
   SCREE_HD auto read(const Vec4* records, std::int64_t slot) const {
     constexpr int kRecords = records_of(Law::kHistory);
@@ -71,7 +69,7 @@ struct HistoryViews {
     if (kRecords > 1 && closed) at[1] = records[slot * kRecords + 1];
     return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
   }
-  // The same of a contact that goes on from the one at the slot; -1: that has begun.
+  // History of a contact that continues the one at the slot; -1: a new contact.
   template <class Law>
   SCREE_HD auto read_from(const Vec4* records, std::int64_t slot) const {
     if (slot >= 0) return read<Law>(records, slot);
@@ -85,24 +83,24 @@ struct HistoryViews {
     at[0].w = step + 1;
     for (int r = 0; r < kRecords; ++r) records[slot * kRecords + r] = at[r];
   }
-  // What the other side remembers of the contact, of the same step.
+  // Writes the history as the other partner has it, for the same step.
   template <class Law>
   static void mirror(const Vec4* records, Vec4* of_other) {
     const auto history = Law::read_history([&](int k) { return number_of(records, k); });
     Law::write_history(history.mirrored(), [&](int k, Real value) { number_of(of_other, k) = value; });
     of_other[0].w = records[0].w;
   }
-  // The contact at the slot is open.
+  // Marks the contact at the slot as open.
   template <class Law>
   SCREE_HD void write_none(Vec4* records, std::int64_t slot) const {
     records[slot * records_of(Law::kHistory)].w = 0;
   }
 };
 
-// What a contact of a particle is called while there is no list: like a row_key, surfaces counted past all
-// particles, and of a mesh by the feature that it touches, too. The image is the one that the partner has
-// beside the particle where both are in the periodic box, so that no name depends on when that was last seen
-// to. One with a sheet that the particle's centre is past counts on from there.
+// Contact keys, which identify the contacts of a particle while there is no list: like a `row_key`, with
+// surfaces numbered after all particles, meshes with the feature in contact, and penetrated open surfaces
+// (the particle's centre is past the surface) after these. The image is that of the partner relative to the
+// particle with both in the periodic box, so that no key depends on when positions were last wrapped.
 inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPastId = 2 * kFirstSurfaceId,
                           kPartnersEnd = 3 * kFirstSurfaceId;
 SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool past = false) {
@@ -110,25 +108,25 @@ SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool past = false
 }
 SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
 SCREE_HD bool is_past(std::int64_t contact_key) { return contact_key >= 27 * kFirstPastId; }
-// Of a contact with a mesh.
+// Feature of a contact with a mesh.
 SCREE_HD Index feature_of(std::int64_t contact_key) {
   return static_cast<Index>((contact_key / 27 % kFirstSurfaceId) >> kSurfaceBits);
 }
-// The number of the surface.
+// Number of the surface of a contact.
 SCREE_HD Index surface_of(std::int64_t contact_key) {
   return static_cast<Index>(contact_key / 27 % kFirstSurfaceId & ((GlobalId{1} << kSurfaceBits) - 1));
 }
-// And on this side of it.
+// The key with feature 0 and not penetrated.
 SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
   const GlobalId of_feature = GlobalId{feature_of(contact_key)} << kSurfaceBits;
   return contact_key - 27 * (is_past(contact_key) ? of_feature + kFirstSurfaceId : of_feature);
 }
 
-// Sides of the periodic box.
+// Periodic box.
 struct PeriodicBox {
   Vec3 min, period;  // [m]
 
-  // Whether no period is to be taken off.
+  // Whether p needs no wrapping.
   SCREE_HD bool holds(Vec3 p) const {
     const auto along = [](Real x, Real start, Real length) {
       return length == 0 || (x >= start && x < start + length);
@@ -140,18 +138,18 @@ struct PeriodicBox {
     wrap(min, period, p, count);
     return count;
   }
-  // By how much a place is beyond the box that was in it when the list was built.
+  // Shift of a position that has left the box since the list was built.
   SCREE_HD Vec3 beyond(Vec3 p) const {
     const auto axis = [](Real x, Real start, Real length) {
       return x < start ? -length : x >= start + length ? length : 0;
     };
     return {axis(p.x, min.x, period.x), axis(p.y, min.y, period.y), axis(p.z, min.z, period.z)};
   }
-  // The same with images along the other axes alone.
+  // The box with periodicity along the other axes only.
   SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
-  // Number of the image of what lies at q and `image` periods on, beside p.
+  // Number of the image, relative to p, of the item at q that is shifted by `image`.
   SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
-    if (holds(p) && holds(q)) return image;  // as nearly all are
+    if (holds(p) && holds(q)) return image;  // the common case
     const ImageCount a = periods_at(p), b = periods_at(q);
     return static_cast<std::int8_t>(image + (b.x - a.x) + 3 * (b.y - a.y) + 9 * (b.z - a.z));
   }

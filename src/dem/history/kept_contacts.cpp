@@ -11,8 +11,7 @@
 namespace scree {
 namespace {
 
-// The contacts whose keys are wanted. What they remember is nothing but zeros unless there are as many
-// numbers.
+// The contacts whose keys are wanted. Their values are kept if the law has as many numbers, else zero.
 template <class Wanted>
 KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
   KeptContacts out;
@@ -28,7 +27,7 @@ KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
   return out;
 }
 
-// Tells contacts with sheets by their keys.
+// Recognizes contacts with open surfaces by their keys.
 class SheetKeys {
  public:
   explicit SheetKeys(const Model& model) {
@@ -54,7 +53,7 @@ int kept_numbers(const Model& model, int of_law) {
 
 namespace {
 
-// Of these contacts those with the surface of this number.
+// Number of contacts with the surface of this number.
 Index count_with(std::span<const std::int64_t> keys, Index surface) {
   return static_cast<Index>(std::ranges::count_if(
       keys, [&](std::int64_t key) { return is_surface(key) && surface_of(key) == surface; }));
@@ -127,7 +126,7 @@ double bytes_remembered(int numbers, double slots) {
 }
 
 double bytes_remembered_with_pairs(int numbers) {
-  constexpr double kPairs = 5;  // two slots each
+  constexpr double kPairs = 5;  // with two slots each
   return bytes_remembered(numbers) + kPairs * records_of(numbers) * static_cast<double>(sizeof(Vec4));
 }
 

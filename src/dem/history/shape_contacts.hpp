@@ -1,4 +1,4 @@
-// What contacts of bodies' shapes remember while there is no list: for the next list, or a file. Rank 0's.
+// Packed history of the contacts of bodies' shapes, for the next list or a file; on rank 0.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@ namespace scree {
 
 // The contacts that were closed at the last step, ordered by shape and key.
 struct ShapeContacts {
-  int numbers = 0;                   // as in KeptContacts
+  int numbers = 0;                   // see KeptContacts
   std::vector<std::int64_t> shapes;  // number of the placed surface (SurfaceSet)
-  std::vector<std::int64_t> keys;    // the partner, a shape or another surface, as in KeptContacts
+  std::vector<std::int64_t> keys;    // contact key: the partner is a shape or another surface, see
+                                     // KeptContacts
   std::vector<Real> values;          // [contacts][width()]
 
   int width() const { return numbers > 0 ? numbers : 0; }
-  // Of a shape with the surface of this number.
+  // Number of contacts of a shape with the surface of this number.
   Index contacts_with(std::int64_t shape, Index surface) const;
   std::span<const Real> values_of(std::size_t contact) const {
     const auto n = static_cast<std::size_t>(width());

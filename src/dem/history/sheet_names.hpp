@@ -1,6 +1,5 @@
-// How contacts with meshes are named while there is no list: by the feature, and on a sheet by whether the
-// particle's centre is past it, so that the name does not depend on how a sheet's faces are turned. One text
-// for the CPU and CUDA.
+// Contact keys of meshes: by feature, and on an open surface by whether the particle's centre has penetrated
+// it, so that keys do not depend on the orientation of its faces. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "dem/history/history_slots.hpp"
@@ -9,7 +8,7 @@
 
 namespace scree {
 
-// A mesh, and the centre of a particle beside it in its frame; shift: of the mesh's image.
+// The centre of a particle in the frame of a mesh near it; shift: of the mesh's image.
 struct BesideMesh {
   const MeshView& mesh;
   Vec3 c;
@@ -19,7 +18,7 @@ struct BesideMesh {
       : mesh(of),
         c(transposed_times(frame.axes, (place_beside(surface, frame, p) - shift) - surface.point)) {}
 
-  // From what the contact remembers, and back.
+  // Id of the contact in its key, from the stored feature; and the stored feature from the key.
   SCREE_HD GlobalId name(Index surface, Index remembered) const {
     if (!mesh.sheet) return surface_id(surface, remembered);
     return surface_id(surface, without_side(remembered), is_past(mesh, remembered, c));

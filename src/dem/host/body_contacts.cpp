@@ -14,7 +14,7 @@
 namespace scree {
 namespace {
 
-// Cells over the places of the surfaces, so that two that can touch are in neighbouring ones.
+// Bins over the surfaces' positions, in which spheres that can touch are in neighbouring bins.
 SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
   Vec3 min = placed.empty() ? Vec3{} : placed[0].point, max = min;
   Real radius = 0;
@@ -30,7 +30,7 @@ SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
 
-// As the damping of Hertz's law sees them, per placed surface [kg].
+// Mass of the body of each placed surface, for the damping of Hertz's law; infinite for walls [kg].
 std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfaces) {
   std::vector<Real> masses;
   for (Index s = 0; s < surfaces.placed(); ++s)
@@ -66,7 +66,7 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       held_(kept_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
       found_(held_) {}
 
-// Per surface, in order.
+// Possible partners of each placed surface, in order.
 std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
     std::span<const PlacedSurface> placed, Real skin) const {
   std::vector<std::vector<Item>> partners(placed.size());
@@ -98,8 +98,8 @@ std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& places, Real s
   return shapes;
 }
 
-// Rows of these shapes, in this order, with all that is no shape. Corners go as far as their meshes, and the
-// search for planes near them reaches as far as that for particles near meshes.
+// Finds the rows of these shapes with all surfaces that are not spheres. Vertices of meshes move as far as
+// their meshes: planes near them are searched in the range used for particles near meshes.
 void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
                                  SurfaceRows& rows) const {
   std::vector<Vec4> position;
@@ -134,7 +134,7 @@ void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const s
              {surfaces_, planes_, places, period_, skin, remembered, may_touch}, rows);
 }
 
-// These shapes, then the copies of partners that they have across periodic sides.
+// Lists these shapes, then the periodic images of their partners.
 void BodyContacts::list_items(const std::vector<Index>& shapes,
                               const std::vector<std::vector<Item>>& partners) {
   std::map<Item, Index> item_of;
@@ -143,7 +143,7 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
     item_of.emplace(Item{s, kNoShift}, static_cast<Index>(items_.size()));
     items_.push_back({s, kNoShift});
   }
-  const std::vector<Item> none;  // of corners
+  const std::vector<Item> none;  // for mesh vertices
   for (const Index s : shapes) {
     for (const Item& partner : corners_.has(s) ? none : partners[s]) {
       const auto [found, is_new] = item_of.emplace(partner, static_cast<Index>(items_.size()));
@@ -181,7 +181,7 @@ void BodyContacts::build(const SurfacePlaces& places, Real skin) {
   has_list_ = true;
 }
 
-// Of the shapes that the list has: what the others remember is of contacts that have ended.
+// Unpacks the history of the shapes in the list; the contacts of all others have ended.
 void BodyContacts::take_contacts(const SurfacePlaces& places) {
   KeptContacts rows;
   rows.numbers = kept_.numbers;
@@ -245,7 +245,7 @@ void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
   }
 }
 
-// Leaves the items at its start.
+// Sets the start arrays; the items are left at the start of the step.
 void BodyContacts::place_start(const SurfacePlaces& places, Real h) {
   place(places, Instant::now, h);
   mean_spin_ = store_.angular_velocity;
@@ -303,7 +303,8 @@ void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
   find_pairs();
 }
 
-// Two shapes see their contact both; that of the lower number counts. Shapes touch meshes of bodies, too.
+// A contact of two shapes appears in both rows; the row of the lower number counts. Shapes may also touch
+// meshes of bodies.
 void BodyContacts::find_pairs() {
   pairs_.clear();
   const auto touched = [&](Index item, Vec3 towards) -> TouchedBody {
@@ -381,7 +382,7 @@ std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& places) {
   std::vector<ContactLine> lines =
       contact_lines(*kernels_, views(history),
                     {store_.row_key.data(), of_surfaces.data(), model_.space.min, period_}, counts);
-  // Items are called by their numbers among the placed surfaces.
+  // Items are identified by their numbers among the placed surfaces.
   const auto id_of_shape = [&](GlobalId item) {
     return surface_id(surfaces_.number_of(corners_.surface_of(static_cast<Index>(item))));
   };

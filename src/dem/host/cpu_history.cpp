@@ -14,7 +14,7 @@ std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry) cons
   const Index s = rows.surfaces[entry];
   if (at.numbers.at_rest(s)) return row_key(surface_id(s));
   const PlacedSurface& surface = at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))];
-  if (surface.kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
+  if (surface.kind == SurfaceKind::plane) return row_key(surface_id(s));  // planes have no images
   return row_key(surface_id(s), box_.image_beside(p, surface.point, rows.images[entry]));
 }
 
@@ -108,7 +108,7 @@ void CpuHistory::put(std::vector<Vec4>& records, Index slot, std::int64_t contac
   to->w = step_;
 }
 
-// Both the row and what was kept are ordered by key: one pass over both.
+// The row and the packed history are both ordered by key: one pass over both.
 void CpuHistory::take_row(const Listed& at, Index i) {
   std::int64_t k = kept_.offsets[static_cast<std::size_t>(i)];
   const std::int64_t end = kept_.offsets[static_cast<std::size_t>(i) + 1];
@@ -131,7 +131,8 @@ void CpuHistory::take_row(const Listed& at, Index i) {
     }
 }
 
-// What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
+// Unpacks the history of contacts of a particle with a mesh to the entries of their group. entry: the first
+// of the group.
 void CpuHistory::take_mesh(const Listed& at, Index i, Index entry) {
   const SurfaceRows& surfaces = at.list.surfaces;
   const Vec3 p = xyz(at.store.position[i]);

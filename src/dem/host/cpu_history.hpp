@@ -1,5 +1,5 @@
-// What the contacts of the serial backend's particles remember: at the slots of the list while there is one,
-// else kept by name.
+// Contact history of the serial backend's particles: at the slots of the list while there is one, else packed
+// by contact keys.
 #pragma once
 
 #include <vector>
@@ -15,53 +15,53 @@ namespace scree {
 
 class CpuHistory {
  public:
-  // numbers: per contact, or kSidesAlone; 0: nothing below does anything.
+  // numbers: per contact, or `kSidesAlone`; 0: no history, and all functions below do nothing.
   CpuHistory(int numbers, const PeriodicBox& box) : numbers_(numbers), box_(box) {}
 
   bool exists() const { return numbers_ != 0; }
   int numbers() const { return numbers_; }
   int records() const { return records_of(numbers_); }
   bool at_slots() const { return at_slots_; }
-  // For walks on the list.
+  // Views for walks on the list.
   HistoryViews views();
-  // A walk has accepted a step.
+  // Commits the step that a walk has accepted.
   void accepted() { step_ += 1, bodies_.swap(ahead_), features_.swap(features_ahead_); }
-  // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
-  // held in place of what the step left.
+  // Views for a repeated evaluation of the contacts with bodies over the step that was accepted last: they
+  // read the history before that step and replace the one after it.
   HistoryViews views_before();
 
-  // The list as it is with the items where they are now, ghosts included.
+  // The list with the current positions of all items, ghosts included.
   struct Listed {
     const ParticleStore& store;
     const NeighborList& list;
     SurfacePlaces places;
     SurfaceNumbers numbers;
   };
-  // Of the owned particles, in their order.
+  // Packed history of the owned particles, in their order.
   KeptContacts contacts(const Listed& at) const;
 
-  // Before a list goes, and after another was built.
+  // Packs the history before a list is discarded; unpacks it after another one was built.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
-  // In between: how many contacts a particle has with the surface of a number.
+  // While packed: the number of contacts of a particle with a surface.
   RememberedCount remembered() const;
-  // Then, like the particles: new ones, another order of them, some that go to other ranks.
+  // While packed, the history follows the particles: loading, reordering, migration to other ranks.
   void load(const KeptContacts& contacts, Index owned);
   void reorder(const std::vector<Index>& from);
-  // leaving[r]: particles for rank r; `staying` keep their order, and what arrives comes behind. Collective.
+  // leaving[r]: particles for rank r; `staying` keep their order, and arriving ones are appended. Collective.
   void migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& leaving,
                const std::vector<Index>& staying);
 
  private:
   static HistoryViews sides_alone(std::vector<Index>& of, std::vector<Index>& ahead);
-  // Of what stands at a slot, or at an entry of the surfaces, of a particle at p.
+  // Contact key at a slot, or at an entry of the surfaces, of a particle at p.
   std::int64_t neighbor_key(const Listed& at, Vec3 p, Index slot) const;
   std::int64_t surface_key(const Listed& at, Vec3 p, Index entry) const;
   std::int64_t mesh_key(const Listed& at, Vec3 p, Index entry, GlobalId name) const;
   bool is_mesh(const Listed& at, Index entry) const;
   BesideMesh beside_mesh(const Listed& at, Vec3 p, Index entry) const;
   bool is_alone() const { return numbers_ == kSidesAlone; }
-  // What is remembered at a slot of these records; of meshes at an entry.
+  // Whether the contact at a slot of these records, or at an entry of a mesh, is closed.
   bool is_closed(const std::vector<Vec4>& records, Index slot) const {
     return is_alone() ? features_[slot] != kNoFeature : records[first_record(slot)].w == step_;
   }
@@ -75,10 +75,11 @@ class CpuHistory {
   int numbers_;
   PeriodicBox box_;
   bool at_slots_ = false;
-  KeptContacts kept_;                                      // of the owned particles, unless at the slots
-  std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews; empty if kSidesAlone
+  KeptContacts kept_;                                      // packed history of the owned particles, unless it
+                                                           // is at the slots
+  std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // see `HistoryViews`; empty if `kSidesAlone`
   std::vector<Index> features_, features_ahead_;
-  Real step_ = 2;  // there is one before the first
+  Real step_ = 2;  // number of the last accepted step; begins at 2, so that the one before it is above 0
 };
 
 }  // namespace scree

@@ -8,7 +8,7 @@
 namespace scree {
 namespace {
 
-// Per surface that something touches.
+// Sums per surface in contact.
 template <class Sums, class Contact>
 std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRows& rows,
                           const SurfaceNumbers& numbers) {
@@ -22,8 +22,7 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
   return sums;
 }
 
-// The planes that particles stand on may be anywhere in memory: each is asked for some groups before it is
-// looked at.
+// The planes under the particles are scattered in memory: each is prefetched some groups ahead of its use.
 template <bool kReaches, bool kSheets>
 void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
   constexpr Index kAhead = 8;

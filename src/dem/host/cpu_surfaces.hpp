@@ -15,30 +15,29 @@ namespace scree {
 
 class CpuSurfaces {
  public:
-  // reach, masses: SurfaceViews; no masses: null.
+  // reach, masses: see `SurfaceViews`; empty masses: null.
   CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels, Real reach,
               std::vector<Real> masses = {});
-  // Radii of the items that laws see in place of the items' own; none: their own [m].
+  // Radii of the items that laws use instead of the items' own [m]; empty: their own.
   void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
-  // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
-  // views().
+  // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
+  // of `look`.
   void find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
                   const SurfaceLook& look);
-  // The same over an implicit step, with the particles of the store; history: with what contacts will
-  // remember if the step is accepted.
+  // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
   void find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                   const StepStart& start, const HistoryViews& history);
-  // And where contacts rub.
+  // Contacts over an implicit step with friction.
   void find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                  const RubbingStart& start, const HistoryViews& history);
-  // What these sum to, per surface that something touches.
+  // Sums of the last evaluation, per surface in contact.
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> rub_sums(const SurfaceRows& rows) const;
-  // Calls visit(particle, placed surface, place where they touch from the centre of what carries it, slopes)
-  // for the contacts over a step that were found last.
+  // Calls visit(particle, placed surface, contact point relative to the parent's centre, slopes) for the
+  // contacts over the step that was evaluated last.
   template <class Visit>
   void for_each_slope(const SurfaceRows& rows, const Visit& visit) const {
     for (const Index entry : rows.by_surface) {
@@ -53,13 +52,13 @@ class CpuSurfaces {
         show(steps_[entry], steps_[entry].arm);
     }
   }
-  // Of the last find_loads(), which looked at the store's particles at an instant; per entry.
+  // Output of the contacts of the last find_loads() at an instant; per entry.
   std::vector<ShownContact> shown(const SurfacePlaces& places, const ParticleStore& store,
                                   const SurfaceRows& rows, const HistoryViews& history) const;
-  // Of the last find_loads().
+  // Sums per triangle of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
-  // Books at the triangles what the contacts found last have lost over a step that is closed: the explicit
-  // one of length h, or the implicit one.
+  // Accumulates at the triangles the dissipation of the contacts that were evaluated last, over a closed
+  // step: the explicit one of length h, or the implicit one.
   void book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, Real h);
   void book_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
   void book_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
@@ -69,7 +68,7 @@ class CpuSurfaces {
   void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
   const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
 
-  // What items see of particles at these places, with the contacts found last.
+  // Views of particles at these positions, with the contacts that were evaluated last.
   ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,
                                  const std::vector<Vec4>& velocity, const PackedRows& neighbors,
                                  const SurfaceRows& rows) const;
@@ -81,8 +80,8 @@ class CpuSurfaces {
   template <class Works>
   void book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
             const Works& works);
-  void make_room(const SurfaceRows& rows);  // for the contacts with meshes
-  // These, at both ends of a step that began with the surfaces there.
+  void make_room(const SurfaceRows& rows);  // for contacts with meshes
+  // Finds the contacts with meshes at both ends of a step that began at start_placed.
   void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
                        const PlacedSurface* start_placed);
 

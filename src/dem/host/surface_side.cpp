@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-// k: from 0 to 7.
+// k-th corner of a box, k = 0 ... 7.
 template <class AnyBox>
 Vec3 corner_of(const AnyBox& box, int k) {
   return {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z};
@@ -43,7 +43,7 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
   }
 }
 
-// A mesh as long as the periodic space goes on for ever there.
+// Determines the periods that a mesh spans: one as long as the periodic domain continues through its sides.
 void SurfaceSide::span(const Surface& surface, SurfaceFrame& frame) const {
   const MeshBox& box = boxes_[static_cast<std::size_t>(surface.mesh)];
   const auto carrier = static_cast<std::size_t>(surface.carrier);
@@ -65,7 +65,7 @@ void SurfaceSide::bring_into_box() {
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
     image_[s] = {};
-    if (surface.kind == SurfaceKind::plane) continue;  // it has no images
+    if (surface.kind == SurfaceKind::plane) continue;  // planes have no images
     subdomain_.wrap(point_with(motion_, s) + to_middle(s), image_[s]);
   }
 }
@@ -129,8 +129,8 @@ Real SurfaceSide::place() {
   return largest_displacement(step_, before, kMeshWear);
 }
 
-// Both are linear in the place: corners of boxes go farthest. Of a plane what counts is how its distance from
-// places in the space changes.
+// Displacements are linear in the position, so that the largest one is at a corner of a box. For a plane it
+// is the change of its distance from points of the domain.
 Real SurfaceSide::displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const {
   const SurfaceFrame& frame = frames_[static_cast<std::size_t>(surface.frame)];
   const bool is_plane = surface.kind == SurfaceKind::plane;
@@ -178,8 +178,8 @@ void SurfaceSide::reopen_step() {
 
 Real SurfaceSide::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from,
                                        Real of_mesh) const {
-  Real squared = 0;  // of spheres
-  Real largest = 0;  // of the others
+  Real squared = 0;  // of spheres, squared
+  Real largest = 0;  // of other surfaces
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     const bool is_sphere = placed_[s].kind == SurfaceKind::sphere;
     const Real size = is_sphere ? dot(moved[s], moved[s])
@@ -216,7 +216,7 @@ void SurfaceSide::take_steps(std::span<const StepSums> of_particles, Real h) {
   bodies_.add_sums(steps_);
 }
 
-// Of all ranks, on rank 0.
+// Merges the sums of all ranks; on rank 0.
 template <class Sums>
 std::vector<Sums> SurfaceSide::merged(std::vector<Sums> sums) const {
   return merged_by_place(ranks_.gather(std::move(sums)));
@@ -226,8 +226,9 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
   std::fill(step.wrench.begin(), step.wrench.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
   step.stiffness.clear();
-  step.pairs = bodies_.pairs();  // rank 0's
-  // Of a body, one more than where its blocks are: its meshes come after all bodies' shapes.
+  step.pairs = bodies_.pairs();  // of rank 0
+  // Index of a body's blocks plus one; 0: none yet. A body may occur again, because meshes come after the
+  // shapes of all bodies.
   std::vector<std::size_t> place(model_.bodies.size());
   for (const StepSums& sums : merged(steps_)) {
     const int body = surfaces_.at(sums.surface).carrier;
@@ -260,7 +261,7 @@ void SurfaceSide::reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t>
     contacts[carrier(loads_[own])] -= loads_[own].contacts;
 }
 
-// count: of sums; where: the one that a surface's contacts belong to.
+// count: number of sums; where: maps a surface to its sum.
 template <class Where>
 std::vector<ContactSum> SurfaceSide::contacts_of(std::size_t count, const Where& where) const {
   std::vector<ContactSum> contacts(count);
@@ -334,7 +335,7 @@ std::vector<ContactLine> SurfaceSide::contact_lines() {
 }
 ShapePack SurfaceSide::pack() const {
   ShapePack pack;
-  std::vector<std::size_t> row(placed_.size(), placed_.size());  // of the shapes
+  std::vector<std::size_t> row(placed_.size(), placed_.size());  // row of each sphere in the pack
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
     if (surface.kind != SurfaceKind::sphere) continue;

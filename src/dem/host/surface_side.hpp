@@ -1,5 +1,5 @@
-// The placed surfaces beside the particles of a backend: where they are, what their contacts sum to, what
-// the bodies lose among each other. Few and small, they live on the host for every backend.
+// Placed surfaces of a backend: poses, contact sums, and the energy accounting of bodies' contacts. They are
+// few and are kept on the host by every backend.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@
 
 namespace scree {
 
-// Of the contacts of bodies with each other and with surfaces.
+// Losses of the contacts of bodies with each other and with surfaces.
 struct ShapeLosses {
   Real contact_loss = 0;     // dissipated since t = 0 [J]
-  Real loss_power = 0;       // the same at t_n, with velocity-Verlet where nothing rubs [W]
+  Real loss_power = 0;       // current dissipation, for velocity Verlet without friction [W]
   Real integrator_loss = 0;  // taken out by HHT since t = 0 [J]
-  RubbingLosses rubbing{};   // of contact_loss
+  RubbingLosses rubbing{};   // parts of contact_loss
 };
 
-// Of the shapes of all bodies.
+// Output of the shapes of all bodies.
 struct ShapePack {
   std::vector<int> body;
   std::vector<Real> radius;
@@ -39,63 +39,60 @@ class SurfaceSide {
 
   const SurfaceSet& surfaces() const { return surfaces_; }
   Index size() const { return surfaces_.placed(); }
-  // Of the carriers: the bodies, then the placed walls.
+  // Motion of the parents: the bodies, then the placed walls.
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
-  // When a list is built: brings each surface into the periodic box, where it stays until the next one.
-  // Before, the surfaces are placed where the bodies are.
+  // Chooses the periodic image of each surface for a new list. Called before place().
   void bring_into_box();
-  // What bodies can touch, until a surface has moved by half the skin.
+  // Finds possible contacts of bodies until a surface has moved by half the skin.
   void build_list(Real skin);
-  // Moves the surfaces to where the bodies are; returns how much of the list that takes, as the displacement
-  // of a particle that takes as much [m].
+  // Updates the poses to the motion of the parents. Returns the largest displacement, weighted such that it
+  // counts as a particle's displacement for the list [m].
   Real place();
   // One entry per placed surface.
   const std::vector<PlacedSurface>& placed() const { return placed_; }
   const std::vector<SurfaceFrame>& frames() const { return frames_; }
   SurfacePlaces places() const { return {placed_, frames_, meshes_, start_}; }
-  // By the last place(): displacements, and turns: of spheres, for laws that move, times the radii [m], of
-  // others as they are [rad].
+  // Changes by the last place(): displacements, and rotations; of spheres, for laws with `kMoves`, times the
+  // radii [m], else [rad].
   const std::vector<Vec3>& step() const { return step_; }
   const std::vector<Vec3>& step_turn() const { return step_turn_; }
 
-  // Steps of laws that move see how far the surfaces have come since the last one was closed, where they were
-  // then. An explicit one may be opened again, for the surfaces where they are now: it then began where it
-  // did.
+  // Laws with `kMoves` use the displacements of the surfaces since the last step was closed. reopen_step():
+  // reopens the last explicit step from its start to the current poses.
   void close_step();
   void reopen_step();
 
-  // Start of an implicit step, to look back at.
+  // Stores the start of an implicit step.
   void keep_start();
-  // Of any place on a surface since then [m].
+  // Largest displacement of any point of a surface since then [m].
   Real step_displacement() const { return displacement_since(start_, start_axes_, 1); }
-  // Since the list was built, as place() counts [m].
+  // Largest displacement since the list was built, weighted as in place() [m].
   Real list_displacement() const { return displacement_since(listed_, listed_axes_, kMeshWear); }
 
-  // What touches the surfaces at an instant (h = 0) or over the explicit step that ends now, and over an
-  // implicit step: the backend hands over what its particles do, in any order and a surface in any number of
-  // parts; rank 0 adds what the bodies' shapes do.
+  // Takes the contact sums of the backend's particles at an instant (h = 0) or over the explicit step that
+  // ends now, and over an implicit step, in any order and in any number of parts per surface; rank 0 adds the
+  // contacts of bodies' shapes.
   void take_loads(std::span<const InstantSums> of_particles, Real h);
   void take_steps(std::span<const StepSums> of_particles, Real h);
 
-  // reduce_wrench: brings the sums of all ranks to rank 0, one message per rank, and adds them up to the
-  // contact wrenches on the bodies for the step and at its end, or at an instant; on other ranks they come
-  // out as zero. Collective.
+  // Stage reduce_wrench: gathers the sums of all ranks on rank 0, one message per rank, and adds them up to
+  // the contact wrenches on the bodies: for the step and at its end, or at an instant. Zero on other ranks.
+  // Collective.
   void reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const;
   void reduce(std::vector<BodyWrench>& end) const;
-  // contacts: of particles, per carrier.
+  // contacts: of particles, per parent.
   void reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t>& contacts) const;
 
-  // Of the bodies' shapes. book_losses: of an explicit step of length h from the last loads, like the
-  // particles', by the trapezoidal rule unless contacts rub; book_step: of an implicit step, which is
-  // accepted, from the last take_steps().
+  // Energy accounting of bodies' shapes. book_losses(): over an explicit step of length h from the last
+  // loads, by the trapezoidal rule without friction, like the particles'; book_step(): over an accepted
+  // implicit step, from the last take_steps().
   void book_losses(Real h);
   void book_step();
   const ShapeLosses& losses() const { return losses_; }
   BodyContactTotals shape_totals() const { return bodies_.totals(); }  // at the last take_loads()
-  // Of a state, on rank 0: what shapes have lost; of what their contacts remember, and of works, there is
-  // none yet.
+  // Loads the losses of a state, on rank 0, and clears contact history and works.
   void load(const ShapeLosses& losses);
-  // What shapes' contacts remember, on rank 0; load: before the first list.
+  // Packed history of the shapes' contacts, on rank 0; load_contacts(): before the first list.
   void load_contacts(const ShapeContacts& contacts) { bodies_.load(contacts); }
   ShapeContacts shape_contacts();
 
@@ -104,19 +101,20 @@ class SurfaceSide {
   std::vector<ContactSum> surface_contacts() const;  // of surfaces()
   ShapePack pack() const;                            // of the spheres
   ContactSum on_wall(int wall) { return bodies_.on_wall(wall); }
-  // Of the bodies' shapes, on rank 0.
+  // Contacts of the bodies' shapes, on rank 0.
   std::vector<ContactLine> contact_lines();
-  // Of all ranks' particles, and of shapes, ordered by surface and triangle. Collective; complete on rank 0.
+  // Loads of all ranks' particles and of shapes, ordered by surface and triangle. Collective; complete on
+  // rank 0.
   std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> contacts) const;
-  // Adds what shapes have lost at the triangles to the words of TriangleWorks; on rank 0.
+  // Adds the work of shapes' contacts at the triangles to the limbs of TriangleWorks; on rank 0.
   void add_works(std::vector<std::int64_t>& words) const;
 
  private:
-  // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
+  // Position of a surface's point, on the grid of the periodic domain, but unwrapped like its body's [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
-  Vec3 to_middle(Index surface) const;  // SurfaceFrame::to_middle, of a mesh
-  // Of any place on a surface, on meshes times of_mesh [m].
-  // moved: of the surfaces' points; from: the axes of the frames before.
+  Vec3 to_middle(Index surface) const;  // SurfaceFrame::to_middle of a mesh
+  // Largest displacement of any point of a surface, on meshes times of_mesh [m]. moved: displacements of the
+  // surfaces' points; from: previous axes of the frames.
   Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from, Real of_mesh) const;
   Real displacement_since(const std::vector<PlacedSurface>& then, const std::vector<Mat3>& axes,
                           Real of_mesh) const;
@@ -125,7 +123,7 @@ class SurfaceSide {
   void begin_step();
   void turn_frames();
   void span(const Surface& surface, SurfaceFrame& frame) const;
-  // Whether something asks how far the surfaces have come since a step began.
+  // Whether displacements since the start of a step are needed.
   bool keeps_travel() const { return model_.rotates() || !frames_.empty(); }
   template <class Where>
   std::vector<ContactSum> contacts_of(std::size_t count, const Where& where) const;
@@ -137,17 +135,17 @@ class SurfaceSide {
   Ranks ranks_;
   SurfaceSet surfaces_;
   BodyContacts bodies_;
-  // Of the carriers as last set, where the explicit step began, and the one before it.
+  // Motion of the parents: current, at the start of the explicit step, and at the start of the previous one.
   std::vector<BodyMotion> motion_, step_start_, start_before_;
-  std::vector<ImageCount> image_;  // of each surface's middle when it was brought into the box
+  std::vector<ImageCount> image_;  // image of each surface's middle for the current list
   std::vector<PlacedSurface> placed_, start_, listed_;
   std::vector<MeshView> meshes_;
-  std::vector<MeshBox> boxes_;  // of the meshes
+  std::vector<MeshBox> boxes_;  // bounding boxes of the meshes
   std::vector<SurfaceFrame> frames_;
   std::vector<Mat3> start_axes_, listed_axes_;
   std::vector<Vec3> step_, step_turn_;
   std::vector<InstantSums> loads_;  // of particles, then of shapes
-  std::size_t particle_loads_ = 0;  // of these
+  std::size_t particle_loads_ = 0;  // number of the particles' sums in loads_
   std::vector<StepSums> steps_;
   ShapeLosses losses_;
 };

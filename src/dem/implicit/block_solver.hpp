@@ -1,6 +1,6 @@
-// Linear solve of the particles' Newton matrix, matrix-free over the touching pairs and free of reductions
-// other than maxima: Chebyshev iteration (Golub and Varga, Numer. Math. 3, 1961) with the 3x3 diagonal blocks
-// D.
+// Linear solver for the particles' Newton matrix: Chebyshev iteration (Golub and Varga, Numer. Math. 3, 1961)
+// preconditioned with the 3x3 diagonal blocks D. It is matrix-free over the contacts, and its only reductions
+// are maxima.
 #pragma once
 
 #include <algorithm>
@@ -35,23 +35,23 @@ class ChebyshevWeights {
   Real half_width_, sigma_, rho_;
 };
 
-// Bounds for the particles' matrix; see BlockSolver.
+// Weights with the eigenvalue bounds of the particles' matrix; see `BlockSolver`.
 inline ChebyshevWeights solver_weights(Real largest_stiffening) {
   return ChebyshevWeights(1 / (1 + largest_stiffening), 2);
 }
 
-// The largest |residual| [N] that the solve for one Newton correction may leave. A tenth of what the Newton
-// iteration asks for, so that what is left does not keep it from ending; but no less than a hundredth of the
-// right-hand side, because the matrix is that of the contacts before the correction, and the iteration has to
-// correct what changes in any case.
+// Tolerance on the largest |residual| of the linear solve for one Newton correction [N]: a tenth of the
+// Newton tolerance, so that the remainder does not prevent convergence; but at least a hundredth of the
+// right-hand side, because the matrix is that of the contacts before the correction, and the Newton iteration
+// corrects the change anyway.
 inline Real solver_tolerance(Real residual_tolerance, Real force_scale, Real right_hand_side) {
   return std::max(Real(0.1) * residual_tolerance * force_scale, Real(0.01) * right_hand_side);
 }
 
-// The same where contacts rub. consistent: the matrix is the derivative but for small terms. What a
-// correction leaves is then as small as what the linear solve leaves, once the contacts have found whether
-// they stick, and the more the last one has gained, the further the solve goes (Eisenstat and Walker, SIAM J.
-// Sci. Comput. 17, 1996, choice 2 with the exponent 3/2). Of one step.
+// Tolerance of the linear solves of one step with friction. consistent: the matrix is the derivative but for
+// small terms. Once the contacts have settled into sticking or sliding, the Newton residual is then as small
+// as that of the linear solve; the tolerance decreases with the convergence of the last correction (Eisenstat
+// and Walker, SIAM J. Sci. Comput. 17, 1996, choice 2 with the exponent 3/2).
 class RubbingTolerance {
  public:
   Real next(bool consistent, Real residual_tolerance, Real force_scale, Real right_hand_side) {
@@ -66,9 +66,9 @@ class RubbingTolerance {
   Real last_ = 0;  // right-hand side of the last solve [N]
 };
 
-// What directions in single precision, and their sum, are in units of [N]: about the right-hand side, so that
-// they do not vanish where all forces are very small, as of a particle that flies off. A power of two: no
-// bits of a result depend on which.
+// Unit of single-precision directions and of their sum [N]: about the right-hand side, so that they do not
+// underflow where all forces are very small, as for a particle in free flight. It is a power of two, so that
+// no bit of a result depends on it.
 inline Real direction_unit(Real right_hand_side) {
   return std::ldexp(1.0, std::ilogb(std::max(right_hand_side, std::numeric_limits<Real>::min())));
 }
@@ -85,8 +85,8 @@ struct DirectionItem {
 
 inline constexpr int kMostProducts = 2000;  // matrix products of one solve
 
-// The iteration itself: take(weights) finds the next directions and adds them to the solution, and returns
-// the largest |residual| that is left, over all ranks. Returns the number of matrix products.
+// Chebyshev iteration: take(weights) finds the next directions, adds them to the solution and returns the
+// largest |residual| over all ranks. Returns the number of matrix products.
 template <class Take>
 int iterate_chebyshev(Real largest_stiffening, Real tolerance, const Take& take) {
   ChebyshevWeights weights = solver_weights(largest_stiffening);
@@ -99,22 +99,22 @@ int iterate_chebyshev(Real largest_stiffening, Real tolerance, const Take& take)
   return products;
 }
 
-// The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha): each pair term is at
-// most twice its own diagonal, so D^-1 A has no eigenvalue above 2, and none below 1 / (1 + largest
-// stiffening).
+// The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha). Each pair term is at
+// most twice its own diagonal, so that the eigenvalues of D^-1 A lie between 1 / (1 + largest_stiffening) and
+// 2.
 class BlockSolver {
  public:
   struct System {
     SubtractMatrixItem<PackedRows> matrix;  // d and residual are set by the solver
     std::span<const Sym3> inverse_block;
-    std::span<Vec3> residual;  // in: right-hand side; out: what is left of it
+    std::span<Vec3> residual;  // in: right-hand side; out: remaining residual
     const Halo& halo;
     const Ranks& ranks;
     Real largest_stiffening;
     Real tolerance;  // on the largest |residual| [N]
   };
 
-  // Solves A x = residual into `solution` [owned]. d: search directions of all items; the caller has set the
+  // Solves A x = residual into `solution` [owned]. d: search directions of all items; the caller sets the
   // entries of ghosts and shapes. Returns the number of matrix products.
   int solve(const System& system, std::vector<Vec4>& d, std::vector<Vec3>& solution) const;
 };

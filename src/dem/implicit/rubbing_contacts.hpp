@@ -1,5 +1,5 @@
-// Contacts that rub, over an implicit step: what a walk sees of them, what the step solves with, and what
-// they add to the books. One text for the CPU and CUDA.
+// Contacts with friction over an implicit step: kinematics, solution quantities and energy accounting. Shared
+// by the CPU and CUDA backends.
 #pragma once
 
 #include <cstdint>
@@ -11,39 +11,38 @@
 
 namespace scree {
 
-// Limits of the mean force over the step that stay what they are while it is solved, at the list's slots and
-// at the entries of the surfaces [N]; negative: there was no contact. Null: limits follow from the normal
-// forces.
+// Lagged limits of the mean friction force, constant while the step is solved, at the list's slots and at the
+// entries of the surfaces [N]; negative: no contact. Null: the limits follow the normal forces.
 struct FrozenLimits {
   Real *neighbors = nullptr, *surfaces = nullptr;
 };
 
 struct SurfaceRub;
 
-// Where a step started, and how the particles turn within it; all items.
+// State at the start of a step, and mean spins over it; all items.
 struct RubbingStart {
   StepStart step;
   const Vec4* spin;       // at the start
   const Vec4* mean_spin;  // over the step
   FrozenLimits frozen;
-  const SurfaceRub* on_bodies;  // per entry of the surfaces: what those on bodies do, once it was found
+  const SurfaceRub* on_bodies;  // per entry of the surfaces: evaluated contacts with those on bodies
 };
 
-// A contact over an implicit step with all that a law with friction sees of it.
+// A contact over an implicit step, as a law with friction reads it.
 struct RubbingPath : ContactPath {
   static constexpr Index kWall = -1;
   ContactMotion motion;
   Real leverage0;
-  Real curvature = 0;         // how far the normal turns by the way of i's centre across it [1/m]
+  Real curvature = 0;         // rotation of the normal per tangential displacement of i's centre [1/m]
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
-  Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
-  Vec3 slide;                 // velocity of j's surface at the end where that runs along itself [m/s]
+  Vec3 turning;               // R_i times i's rotation over the step, plus the same of j; even [m]
+  Vec3 slide;                 // conveyor velocity of j's surface at the end of the step [m/s]
   Index i, j;                 // items; j: kWall
-  std::int64_t slot;          // of the list, or of the surfaces
+  std::int64_t slot;          // of the list, or entry of the surfaces
   Real frozen_limit = -1;
 };
 
-// The look over an implicit step of laws that move; the pair is a RubbingPath.
+// Kinematics over an implicit step for laws with `kMoves`; the pair is a `RubbingPath`.
 struct OverRubbingStep {
   RubbingStart start;
 
@@ -54,7 +53,7 @@ struct OverRubbingStep {
   SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
     return {OverStep{start.step}.self(in, i), start.mean_spin[i]};
   }
-  // With frozen limits what has parted since then still rubs.
+  // With lagged limits a contact that has opened since then still has friction.
   template <class Rows>
   SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
     return [&in, &self, this](Index j) {
@@ -109,21 +108,21 @@ struct OverRubbingStep {
   }
 };
 
-// What the step solves with, of one contact.
+// Quantities of one contact that the step is solved with.
 struct RubbingContact {
   StepContact normal;
   StepRub rub;
   Vec3 normal0;
   Real leverage0, leverage;
-  Real curvature;  // RubbingPath
+  Real curvature;  // see RubbingPath
   std::int64_t slot;
-  bool acts;   // else nothing above has a meaning
-  bool lasts;  // at the end of the step: the history is that of a contact
+  bool acts;   // else all members above are undefined
+  bool lasts;  // the contact exists at the end of the step, with this history
   ContactHistory history;
 };
 
-// How fast both partners turn at one end of a step, each spin times its arm; even [m/s]. Asked where a law
-// has a dashpot: turning(start), turning(end).
+// Evaluates a contact over the step. turning(at_end): sum of both partners' spins times their arms at one end
+// of the step; even [m/s]; called for laws with a dashpot.
 template <class Law, class Turning>
 SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, const ContactHistory& old,
                                         bool resolve_events, const Turning& turning) {
@@ -159,7 +158,7 @@ SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, co
 
 struct RubbingContactOf {
   RubbingStart start;
-  const Vec4* spin;  // at the end
+  const Vec4* spin;  // at the end of the step
 
   template <class Law>
   SCREE_HD RubbingContact operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
@@ -174,9 +173,9 @@ struct RubbingContactOf {
   SCREE_HD const RubbingContact* stored(const Views&, Index entry) const;
 };
 
-// What it adds to the energy ledger, and the history.
+// Energy accounting of a contact over the step, and its new history.
 struct RubbingBooks : ContactBooks {
-  Real friction;  // of what is dissipated [J]
+  Real friction;  // part of the dissipation [J]
   bool acts, lasts;
   ContactHistory history;
 };
@@ -206,15 +205,17 @@ struct RubbingBooksOf {
   SCREE_HD const RubbingBooks* stored(const Views&, Index entry) const;
 };
 
-// One contact of a particle with a surface on a body over the step; evaluated once, for both.
+// One contact of a particle with a surface on a body over the step; evaluated once for both.
 struct SurfaceRub {
-  bool touches;  // else nothing below has a meaning
+  bool touches;  // else all members below are undefined
   RubbingContact contact;
   RubbingBooks books;
-  Vec3 arm;          // from the body's centre to the surface's, or to where they touch, at the end [m]
-  Real radius;       // of the surface; 0 of all but spheres [m]
-  Vec3 contact_arm;  // from the surface's point to where they touch, at the end; of a sphere zero [m]
-  Vec3 slide;        // RubbingPath
+  Vec3 arm;          // from the body's centre to that of a sphere, or to the contact point, at the end of the
+                     // step [m]
+  Real radius;       // of a sphere; else 0 [m]
+  Vec3 contact_arm;  // from the surface's point to the contact point, at the end of the step; zero for a
+                     // sphere [m]
+  Vec3 slide;        // see RubbingPath
 };
 
 template <class Views>

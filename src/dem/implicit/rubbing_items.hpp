@@ -1,5 +1,5 @@
-// What happens for one particle over an implicit step in which contacts rub: forces and torques, Newton
-// matrix, energy books. One text for the CPU and CUDA.
+// Per-particle kernels of implicit steps with friction: forces and torques, Newton matrix, energy accounting.
+// Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@ namespace scree {
 template <class Laws, class Rows>
 using RubbingWalk = ContactWalk<Laws, Rows, OverRubbingStep>;
 
-// Of the particles' rotation; forces: see StepForces.
+// Contact torques on the particles; for forces see StepForces.
 struct StepTorques {
   Vec3 *start, *step, *end;  // about the centre [N m]
 };
 
-// What contacts add to the forces on one of their particles; moments over its radius.
+// Sums over the contacts of one particle; moments over its radius.
 struct RubbingSums {
   Vec3 step_force, end_force;            // [N]
   Vec3 start_turn, step_turn, end_turn;  // [N]
@@ -32,7 +32,7 @@ struct RubbingSums {
             cross(n, c.rub.end),
             std::abs(c.normal.step.force) + norm(c.rub.step)};
   }
-  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  // No contact: adding it changes no bit, not even the sign of a zero.
   SCREE_HD static RubbingSums nothing() {
     constexpr Real z = -0.0;
     constexpr Vec3 zero{z, z, z};
@@ -46,7 +46,7 @@ struct RubbingSums {
   }
 };
 
-// Force, torque and Newton matrix row of particle i.
+// Force, torque and row of the Newton matrix of particle i.
 template <class Laws, class Rows>
 struct RubbingSystemItem {
   RubbingWalk<Laws, Rows> walk;
@@ -55,8 +55,8 @@ struct RubbingSystemItem {
   StepForces out;
   StepTorques torques;
   RubbingMatrix matrix;
-  // Largest 2 K h^2 / m of the contacts that item i has evaluated, with shared rows those of other particles:
-  // what counts is the largest of all.
+  // Largest 2 K h^2 / m of the contacts that item i has evaluated; with shared rows these may be other
+  // particles' contacts. Only the maximum over all items is used.
   Real* sharpness;
 
   using Self = typename RubbingWalk<Laws, Rows>::Self;
@@ -73,7 +73,7 @@ struct RubbingSystemItem {
     finish(self, total);
   }
 
-  // Its parts, in this order.
+  // The parts of the kernel, in this order.
   SCREE_HD Total weight(const Self& self) const {
     const Vec3 force = walk.in.velocity[self.i].w * gravity;
     return {{force, force, {}, {}, {}, norm(force)}};
@@ -108,7 +108,7 @@ struct RubbingSystemItem {
   }
 
  private:
-  // Evaluates contacts of any row; k: counts those of the row.
+  // Evaluates contacts of any row; k: index of the contact in its row.
   struct SharedContact {
     const RubbingSystemItem& item;
     Real& sharpest;
@@ -120,7 +120,7 @@ struct RubbingSystemItem {
   };
 
   SCREE_HD RubbingContactOf contact_of() const { return {walk.look.start, walk.in.spin}; }
-  // The k-th contact found in row i becomes an entry of the matrix. Returns what it adds.
+  // Stores the k-th contact of row i as an entry of the matrix. Returns its contribution to the sums.
   SCREE_HD RubbingSums take(const RubbingContact& c, Index i, Index j, Index k, Real& sharpest) const {
     const std::int64_t slot = walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride();
     if (!c.acts) {
@@ -137,19 +137,19 @@ struct RubbingSystemItem {
   }
 };
 
-// Where the books of an implicit step in which contacts rub go; friction: of contact [J].
+// Outputs of the energy accounting; friction: part of contact [J].
 struct RubbingBooksTo {
   Real *contact, *integrator, *friction;
 };
 
-// What contacts add to them, for a particle's share of each.
+// Sums of the energy accounting over a particle's share of its contacts.
 struct RubbingBookSums {
   Real dissipated = 0, integrator = 0, friction = 0;  // [J]
 
   SCREE_HD static RubbingBookSums of(const RubbingBooks& one, Real share) {
     return {share * one.dissipated, share * one.integrator, share * one.friction};
   }
-  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  // No contact: adding it changes no bit, not even the sign of a zero.
   SCREE_HD static RubbingBookSums nothing() { return {-0.0, -0.0, -0.0}; }
   SCREE_HD RubbingBookSums& operator+=(const RubbingBookSums& part) {
     dissipated += part.dissipated, integrator += part.integrator, friction += part.friction;
@@ -157,7 +157,8 @@ struct RubbingBookSums {
   }
 };
 
-// Books particle i's share of its contacts over an accepted step, and stores what they remember.
+// Accounts for particle i's share of the energies of its contacts over an accepted step, and stores their
+// history.
 template <class Laws, class Rows>
 struct RubbingBooksItem {
   RubbingWalk<Laws, Rows> walk;
@@ -172,7 +173,7 @@ struct RubbingBooksItem {
     finish(self, sum);
   }
 
-  // Its parts, in this order.
+  // The parts of the kernel, in this order.
   SCREE_HD_CALLER
   SCREE_HD void add_neighbors(const Self& self, RubbingBookSums& sum) const {
     if constexpr (kShared<Rows>) {
@@ -191,7 +192,7 @@ struct RubbingBooksItem {
   }
 
  private:
-  // Books contacts of any row.
+  // Accounts for contacts of any row.
   struct SharedBooks {
     const RubbingBooksItem& item;
 
@@ -207,7 +208,8 @@ struct RubbingBooksItem {
   SCREE_HD RubbingBooksOf books_of() const { return {{walk.look.start, walk.in.spin}}; }
 };
 
-// Keeps the limits of particle i's contacts at the iterate, those that are frozen already included.
+// Stores the friction limits of particle i's contacts at the iterate, including limits that are already
+// lagged.
 template <class Laws, class Rows>
 struct FreezeItem {
   RubbingWalk<Laws, Rows> walk;

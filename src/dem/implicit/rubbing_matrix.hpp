@@ -1,4 +1,4 @@
-// The Newton matrix of contacts that rub. One text for the CPU and CUDA.
+// Newton matrix of contacts with friction. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <cstddef>
@@ -9,26 +9,27 @@
 
 namespace scree {
 
-// One contact in the Newton matrix. In single precision, as ContactEntry.
+// One contact in the Newton matrix, in single precision like `ContactEntry`.
 struct RubbingEntry {
   struct alignas(16) Normal {
     float x, y, z;
-    Index neighbor;  // j; of a placed surface its entry; RubbingPath::kWall of a plane at rest
+    Index neighbor;  // j; entry of a placed surface; RubbingPath::kWall for a static plane
   };
   struct alignas(16) Slide {
-    float x, y, z;  // its direction, or zero
-    float along;    // of the overlap [kg]
+    float x, y, z;  // unit vector of sliding, or zero
+    float along;    // derivative with respect to the overlap [kg]
   };
   struct alignas(16) Shear {
-    float x, y, z;  // the growth of the force across the normal with the overlap; along the normal, which is
-                    // free, minus what the normal's turn makes of its force by the way across it [kg]
-    float across;   // of the slip across the direction [kg]
+    float x, y, z;  // tangential part: derivative of the friction force with respect to the overlap; normal
+                    // part, otherwise unused: minus the change of the normal force by rotation of the normal
+                    // per tangential displacement [kg]
+    float across;   // derivative with respect to the slip perpendicular to the direction of sliding [kg]
   };
   Normal normal;
   Slide slide;
   Shear shear;
 
-  // j: as `neighbor`.
+  // j: see `neighbor`.
   SCREE_HD static RubbingEntry of(const RubbingContact& c, const NewtonWeights& weights, Index j) {
     const auto single = [](Real x) { return static_cast<float>(x); };
     const Vec3 n = c.normal.normal, t = c.rub.direction;
@@ -41,14 +42,15 @@ struct RubbingEntry {
         {single(growth.x), single(growth.y), single(growth.z), single(weights.stiffness * c.rub.stiffness)}};
   }
 
-  // What was found for an entry turned out to be no contact.
+  // Marks an entry without contact.
   static constexpr Index kNone = -2;
   SCREE_HD bool is_contact() const { return normal.neighbor != kNone; }
 
-  // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
-  // consistent: with the growth, too, for which the matrix is neither symmetric nor quite positive, and the
-  // derivative but for terms of the order of overlap over radius and of the turn in a step. Vector: Vec3, or
-  // Vec3f in a solve, whose directions have units of their own.
+  // Product of the entry with relative displacement `apart` and summed rotations `turning` of the partners:
+  // force on i, and its torque over the radius. consistent: includes the derivatives with respect to the
+  // overlap, with which the matrix is neither symmetric nor strictly positive, but equals the derivative up
+  // to terms of the order of overlap over radius and of the rotation in a step. Vector: Vec3, or Vec3f in a
+  // solve, whose directions have their own unit.
   template <class Vector>
   SCREE_HD TwistOf<Vector> pull(Vector apart, Vector turning, bool consistent) const {
     const Vector n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
@@ -62,12 +64,12 @@ struct RubbingEntry {
     }
     return {along + force, -cross(n, force)};
   }
-  // Its symmetric part in the block of i.
+  // Adds the symmetric part to the block of i.
   SCREE_HD void add_to(Block6& block) const {
     const Vec3 n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z}, c = cross(n, t);
     const Real k = shear.across, slides = dot(t, t);
     block.move += outer(slide.along, n);
-    if (slides > Real(0.5)) {  // one direction is left: c, and the turn about t goes with it
+    if (slides > Real(0.5)) {  // only the direction c is left, together with the rotation about t
       block.move += outer(k, c), block.turn += outer(k, t), block.mixed += outer(k, c, t);
       return;
     }
@@ -78,7 +80,7 @@ struct RubbingEntry {
   }
 };
 
-// Entries with their parts in arrays of their own: a warp reads whole lines.
+// Entries as a structure of arrays: a warp reads whole cache lines.
 struct RubbingEntries {
   RubbingEntry::Normal* normal;
   RubbingEntry::Slide* slide;
@@ -93,7 +95,7 @@ struct RubbingEntries {
   SCREE_HD void put_none(std::int64_t slot) const { normal[slot].neighbor = RubbingEntry::kNone; }
 };
 
-// Array: std::vector, or its like on a device.
+// Array: std::vector, or DeviceArray.
 template <template <class...> class Array>
 struct RubbingEntryArrays {
   Array<RubbingEntry::Normal> normal;
@@ -104,14 +106,14 @@ struct RubbingEntryArrays {
   RubbingEntries views() { return {normal.data(), slide.data(), shear.data()}; }
 };
 
-// Entries of contacts with neighbours stand at the list's slots, packed to the front of a row, with some that
-// are none among them; those with surfaces at their entries, likewise, contacts all of them.
+// Entries of contacts with neighbours are at the list's slots, packed to the front of a row; some of them may
+// be marked as no contact. Those with surfaces are packed likewise at the surfaces' entries.
 struct RubbingMatrix {
   Index *count, *surface_count;
   RubbingEntries entries;
   RubbingEntry* surface_entries;
 
-  // take(entry) of particle i's contacts with neighbours; the next one is under way meanwhile.
+  // Calls take(entry) for particle i's contacts with neighbours; the next entry is loaded meanwhile.
   template <class Rows, class Take>
   SCREE_HD void for_each_entry(const Rows& rows, Index i, const Take& take) const {
     std::int64_t slot = rows.first(i);
@@ -127,7 +129,8 @@ struct RubbingMatrix {
   }
 };
 
-// A block per particle, each number of 32 of them side by side: a warp reads and writes whole lines.
+// A 6x6 block per particle, in slices of 32 with each number contiguous: a warp reads and writes whole cache
+// lines.
 struct BlockSlices {
   static constexpr Index kRows = 32;
   float* numbers;
@@ -150,7 +153,7 @@ struct BlockSlices {
   }
 };
 
-// Inertia in the Newton matrix, with hht_inertia_weight: mass, and moment of inertia over R^2 [kg].
+// Inertia in the Newton matrix, times hht_inertia_weight: mass, and moment of inertia over R^2 [kg].
 struct ScaledMass {
   Real move, turn;
 };

@@ -1,4 +1,4 @@
-// What happens for one particle in the stages of the step that need no neighbours.
+// Per-particle kernels of the stages of a step that need no neighbours.
 #pragma once
 
 #include "base/hd.hpp"
@@ -12,7 +12,8 @@
 
 namespace scree {
 
-// Unknowns of an implicit step: iterate in position, velocity, acceleration; start of the step beside them.
+// Unknowns of an implicit step: position, velocity and acceleration at the iterate, and the state at the
+// start of the step.
 struct StepViews {
   Vec4 *position, *velocity;  // iterate at t_{n+1}
   Vec3* acceleration;         // iterate a_{n+1} [m/s^2]
@@ -32,7 +33,7 @@ struct StartAccelerationItem {
   SCREE_HD void operator()(Index i) const { acceleration[i] = (1 / velocity[i].w) * force[i]; }
 };
 
-// Newmark's position and velocity from the current a_{n+1}.
+// Newmark's position and velocity from the current iterate of the acceleration.
 struct NewmarkItem {
   StepViews step;
 
@@ -45,14 +46,14 @@ struct NewmarkItem {
   }
 };
 
-// Minus the residual of Eq. 16, the block of the Newton matrix's diagonal and its inverse.
+// Minus the residual of Eq. 16, and the inverse of the diagonal block of the Newton matrix.
 struct ResidualItem {
   StepViews step;
   const Vec3* force;  // at the iterate [N]
   ContactMatrix matrix;
   Vec3* residual;  // [N]
   Sym3* inverse_block;
-  Real* stiffening;  // norm of the contacts' part of the block over the mass part
+  Real* stiffening;  // norm of the block's contact part over its mass part
 
   SCREE_HD void operator()(Index i) const {
     const Real mass = step.velocity[i].w, scaled_mass = mass / (1 + step.hht.hht_alpha);
@@ -69,15 +70,16 @@ struct ResidualItem {
   }
 };
 
-// What one particle adds to the norms of a Newton iteration; all of them are maxima over the particles.
+// Norms of a Newton iteration for one particle; the norms of the iteration are their maxima.
 struct StepNorms {
   Real residual;          // [N]
-  Real correction_bound;  // of the position correction that the residual can still cause, over the radius
+  Real correction_bound;  // bound of the position correction that the residual can still cause, over the
+                          // radius
   Real force;             // at the iterate and at the start of the step [N]
-  Real stiffening;        // ResidualItem::stiffening
+  Real stiffening;        // see ResidualItem
 };
 
-// The largest residual over the largest force, from the maxima over all particles.
+// Largest residual over the largest force, from the maxima over all particles.
 inline Real scaled_residual(const StepNorms& largest) {
   return largest.residual == 0 ? 0 : largest.residual / largest.force;
 }
@@ -96,8 +98,8 @@ struct StepNormsItem {
   }
 };
 
-// Applies a share of a correction to the accelerations. Returns the size of the whole position correction
-// over the particle's radius.
+// Applies a fraction of a correction to the accelerations. Returns the full position correction over the
+// particle's radius.
 struct CorrectItem {
   Vec3* acceleration;
   const Vec3* correction;
@@ -121,7 +123,7 @@ struct StepErrorItem {
   }
 };
 
-// Square of the distance between two places of an item [m^2].
+// Squared distance between two positions of an item [m^2].
 struct DisplacementItem {
   const Vec4 *from, *to;
 
@@ -131,7 +133,7 @@ struct DisplacementItem {
   }
 };
 
-// The part of (residual, correction) in the slope of the potential along a correction [N m/s^2].
+// Term of (residual, correction) in the slope of the potential along a correction [N m/s^2].
 struct SlopeTerm {
   Real value[1];
 };
@@ -170,8 +172,8 @@ struct NormItem {
   SCREE_HD Real operator()(Index i) const { return norm(vector[i]); }
 };
 
-// Closes an implicit step: what the integrator takes out of the particle's motion, from the step's forces;
-// force and acceleration at its end are what the next step starts from.
+// Closes an implicit step: adds the integrator's energy loss, and sets force and acceleration for the start
+// of the next step.
 struct AcceptItem {
   StepViews step;
   StepForces forces;
@@ -188,23 +190,24 @@ struct AcceptItem {
   }
 };
 
-// Particle state of a velocity-Verlet step as the items below read and write it.
+// Particle state of a velocity-Verlet step for the items below.
 struct VerletViews {
-  Vec4 *position, *velocity;  // velocity within a step: what the contact law sees, v + h a_n; or see `spin`
+  Vec4 *position, *velocity;  // velocity within a step: the predicted v + h a_n, which the contact law uses;
+                              // or see `spin`
   Vec3* acceleration;
   Real* contact_loss;  // [J]
   Real* loss_power;    // at the last time level [W]
   Real h;              // [s]
   Vec3 snap;           // Subdomain::snap_constant
-  // Null unless particles rotate. Then what the law sees within a step, angular velocities and velocities, is
-  // of the middle of the step, and loss_power is that of a whole step, booked when it is closed.
+  // Null unless particles rotate. Then the velocities and angular velocities within a step are those of
+  // mid-step, and loss_power is the mean over a whole step, accumulated when it is closed.
   Vec4* spin = nullptr;  // angular velocity, moment of inertia
   Vec3* angular_acceleration = nullptr;
   Quaternion* orientation = nullptr;
-  Real* losses[kLossKinds] = {};  // parts of contact_loss by LossKind, of laws that tell these apart [J]
+  Real* losses[kLossKinds] = {};  // parts of contact_loss by LossKind, for laws that distinguish these [J]
 };
 
-// The motion of a particle at an instant, as the next step starts from it.
+// State of a rotating particle at an instant, from which the next step starts.
 struct TurningState {
   Vec4 position, velocity;
   Vec3 acceleration;
@@ -212,7 +215,7 @@ struct TurningState {
   Vec3 angular_acceleration;
 };
 
-// verlet_open() of a particle that rotates.
+// Opens a step of a rotating particle. Returns the square of the displacement.
 SCREE_HD Real verlet_open(const VerletViews& out, Index i, const TurningState& s) {
   const Vec3 velocity = verlet_half_kick(out.h, xyz(s.velocity), s.acceleration);
   const Vec3 spin = verlet_half_kick(out.h, xyz(s.spin), s.angular_acceleration);
@@ -223,8 +226,8 @@ SCREE_HD Real verlet_open(const VerletViews& out, Index i, const TurningState& s
   return dot(dx, dx);
 }
 
-// Position at the end of a step and the velocity that the contact law sees there, to second order. Returns
-// the square of the displacement.
+// Opens a step: position at its end, and the velocity that the contact law uses there, to second order.
+// Returns the square of the displacement.
 SCREE_HD Real verlet_open(const VerletViews& out, Index i, Vec4 x, Vec4 v, Vec3 a) {
   const Vec3 dx = snap(verlet_displacement(out.h, xyz(v), a), out.snap);
   out.position[i] = vec4(xyz(x) + dx, x.w);
@@ -232,7 +235,7 @@ SCREE_HD Real verlet_open(const VerletViews& out, Index i, Vec4 x, Vec4 v, Vec3 
   return dot(dx, dx);
 }
 
-// Opens a step from the state.
+// Opens a step from the committed state.
 struct VerletStartItem {
   VerletViews state;
 
@@ -246,14 +249,14 @@ struct VerletStartItem {
   }
 };
 
-// Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array
-// that the contacts read: other particles need the velocities as they were.
+// Closes a step: velocity and acceleration at its end from the force there. state.velocity is not the array
+// that the contacts read, because other particles need the old velocities.
 template <class Laws, class Rows>
 struct VerletFinishItem {
   ContactForceItem<Laws, Rows, true> forces;
   VerletViews state;
 
-  // Returns |a|^2, so that a force that is not finite does not pass unseen.
+  // Returns |a|^2, which reveals a force that is not finite.
   SCREE_HD Real operator()(Index i) const {
     const auto total = forces.total(i);
     forces.store(i, total);
@@ -275,8 +278,8 @@ struct VerletFinishItem {
   }
 };
 
-// Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for
-// bit.
+// Closes a step and opens the next of the same length: VerletFinishItem and VerletStartItem in one pass over
+// memory, bit for bit.
 template <class Laws, class Rows>
 struct VerletAdvanceItem {
   ContactForceItem<Laws, Rows, true> forces;
@@ -284,7 +287,7 @@ struct VerletAdvanceItem {
 
   SCREE_HD Real operator()(Index i) const { return advance(i, forces.total(i)); }
 
-  // With the force that forces.total(i) has returned.
+  // Continues with the result of forces.total(i).
   using Total = typename ContactForceItem<Laws, Rows, true>::Total;
   SCREE_HD Real advance(Index i, const Total& total) const {
     const Vec4 v = forces.walk.in.velocity[i];

@@ -1,6 +1,5 @@
-// What happens for one particle in an implicit step in which particles turn, in the stages that look at no
-// contacts: rotation, residual, linear solve. Beside step_items.hpp, whose items do the same for the motion
-// alone.
+// Per-particle kernels of implicit steps with rotation, in the stages without contact evaluation: rotation,
+// residual, linear solve. step_items.hpp has those without rotation.
 #pragma once
 
 #include "dem/implicit/rubbing_items.hpp"
@@ -9,16 +8,16 @@
 
 namespace scree {
 
-// Unknowns of the rotation, beside StepViews.
+// Unknowns of the rotation, beside `StepViews`.
 struct TurningViews {
-  Vec4 *spin, *mean_spin;  // iterate at t_{n+1} and over the step; moment of inertia
+  Vec4 *spin, *mean_spin;  // iterate at t_{n+1} and mean over the step; w: moment of inertia
   Vec3* acceleration;      // iterate [rad/s^2]
   const Vec4* start_spin;
   const Vec3* start_acceleration;
 };
 
-// Spin at the end and over the step from the current acceleration: as NewmarkItem, with the turn over the
-// step in place of the displacement.
+// Newmark's spin at the end of the step and mean spin over it from the current iterate of the acceleration;
+// the rotation over the step takes the role of the displacement.
 struct TurnItem {
   StepViews step;
   TurningViews turning;
@@ -32,8 +31,8 @@ struct TurnItem {
   }
 };
 
-// Minus the residuals of Eq. 16 for motion and rotation, the latter over the radius; masses of the Newton
-// matrix and the inverse of its block.
+// Minus the residuals of Eq. 16 for translation and rotation, the latter over the radius; masses of the
+// Newton matrix and the inverse of its block.
 struct RubbingResidualItem {
   StepViews step;
   TurningViews turning;
@@ -42,7 +41,7 @@ struct RubbingResidualItem {
   Twist* residual;  // [N]
   ScaledMass* mass;
   BlockSlices inverse_block;
-  Real* stiffening;  // bound of the contacts' part of the block over the mass part
+  Real* stiffening;  // bound of the block's contact part over its mass part
 
   template <class Rows>
   SCREE_HD void operator()(Index i, const RubbingMatrix& matrix, const Rows& rows,
@@ -68,7 +67,7 @@ struct RubbingResidualItem {
 };
 
 struct RubbingNorms : StepNorms {
-  Real sharpness;  // RubbingSystemItem::sharpness
+  Real sharpness;  // see RubbingSystemItem
 };
 
 struct RubbingNormsItem {
@@ -97,8 +96,8 @@ struct TwistSizeItem {
   SCREE_HD Real operator()(Index i) const { return largest_part(twist[i]); }
 };
 
-// Applies a share of a correction of both accelerations, that of the rotation times the radius. Returns the
-// size of the whole correction of position or turn over the radius.
+// Applies a fraction of a correction of both accelerations, that of the rotation times the radius. Returns
+// the full correction of position or rotation over the radius.
 struct RubbingCorrectItem {
   Vec3 *acceleration, *angular_acceleration;
   const Twistf* correction;
@@ -116,15 +115,15 @@ struct RubbingCorrectItem {
   }
 };
 
-// residual_i -= (A d)_i for the Newton matrix A = masses + contacts. Directions and what contacts make of
-// them are in single precision: they are most of what a product reads beside the entries.
+// residual_i -= (A d)_i for the Newton matrix A = masses + contacts. Directions and their products with
+// contact entries are in single precision, because they are most of the memory traffic beside the entries.
 template <class Rows>
 struct SubtractRubbingItem {
   RubbingMatrix matrix;
   Rows rows;
   const Index* surface_offsets;
   const ScaledMass* mass;
-  bool consistent;  // RubbingEntry::pull
+  bool consistent;  // see RubbingEntry
   const Twistf* d;  // of all items
   Real unit;        // of d, direction_unit [N]
   Twist* residual;
@@ -143,7 +142,7 @@ struct SubtractRubbingItem {
   }
 };
 
-// Whether the Newton matrix takes in how friction grows with the overlap, from the largest 2 K h^2 / m:
+// Whether the Newton matrix includes the change of friction with the overlap, from the largest 2 K h^2 / m:
 // Newton's method then needs hardly more iterations than without friction. But the matrix is not symmetric,
 // and where contacts are much shorter than the step the linear iteration would not converge.
 SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(2.5) * Real(2.5); }
@@ -158,7 +157,7 @@ struct TwistDirectionItem {
   }
 };
 
-// Local error of position or turn of an implicit step over the radius.
+// Local error of position or rotation of an implicit step over the radius.
 struct TurningErrorItem {
   StepViews step;
   TurningViews turning;
@@ -171,9 +170,9 @@ struct TurningErrorItem {
   }
 };
 
-// The accelerations at the end of a step that balance its forces in full: the next step, which starts from
-// them, does not leave over again what the iteration has left over. Else a residual too small to be corrected
-// would act on and on, and a pile that nothing keeps from rolling would creep.
+// Accelerations at the end of a step that balance its forces exactly: the next step, which starts from them,
+// does not inherit the residual of the iteration. Otherwise a residual too small to be corrected would act
+// permanently, and a pile without rolling resistance would creep.
 struct BalanceItem {
   StepViews step;
   TurningViews turning;
@@ -188,7 +187,7 @@ struct BalanceItem {
   }
 };
 
-// Closes the rotation of an implicit step, as AcceptItem the motion.
+// Closes the rotation of an implicit step, see `AcceptItem`.
 struct AcceptTurnItem {
   StepViews step;
   TurningViews turning;

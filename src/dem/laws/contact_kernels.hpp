@@ -1,4 +1,4 @@
-// The contact stages for the law of this run, chosen once: loops over items are monomorphic inside.
+// Contact stages for the law of a run, which is chosen once: the loops inside are monomorphic.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace scree {
 
-// Force, torque and Newton matrix of particles over an implicit step in which contacts rub.
+// Forces, torques and Newton matrix of the particles over an implicit step with friction.
 struct RubbingRequest {
   Vec3 gravity;
   NewtonWeights weights;
@@ -34,49 +34,48 @@ struct RubbingRequest {
 class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
-  virtual int history() const = 0;  // how many numbers the law remembers of a contact
+  virtual int history() const = 0;  // numbers of history per contact
   virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
-  // Of all n owned particles; pairs: of the list, where the law moves, with what they remember. The square of
-  // the largest acceleration; a NaN if one is not finite.
+  // Closes an explicit step of all n owned particles; pairs: of the list, with their history, for laws with
+  // `kMoves`. Returns the square of the largest acceleration; a NaN if one is not finite.
   virtual Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
                              const VerletViews& state, Vec3* force) = 0;
-  // The square of the largest displacement.
+  // Closes an explicit step and opens the next. Returns the square of the largest displacement.
   virtual Real verlet_advance(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
                               const VerletViews& state) = 0;
-  // Where the law moves: what the pairs keep goes back to the slots.
+  // Writes the pairs' history back to the slots, for laws with `kMoves`.
   virtual void leave_records(PairList& pairs, const HistoryViews& history) const = 0;
   virtual void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
                       const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
-  // n entries of particles with surfaces on bodies, at an instant and over an implicit step.
+  // Contacts of n entries of particles with surfaces on bodies, at an instant and over an implicit step.
   virtual void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const = 0;
   virtual void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
                              const PlacedSurface* start_placed, SurfaceStep* steps) const = 0;
-  // The shapes of bodies as items: what n of them get from each other and from surfaces, at an instant or
-  // over an explicit step, and over an implicit one, without friction and with it. A step is accepted.
+  // Contacts of n shapes of bodies with each other and with surfaces: at an instant or over an explicit step,
+  // and over an implicit one, without friction and with it. The history of a step is stored.
   virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
                           BodyLoad* out) const = 0;
   virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                           const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
   virtual void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
                          const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
-  // Of the first n items of WallContactItem, over all ranks.
+  // Sums of the first n `WallContactItem`, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
-  // An output field that reads contacts.
+  // Output field that reads contacts.
   virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;
-  // Of n entries of particles with placed surfaces what is shown of the contacts, which are in `loads`; and
-  // the first n items of ContactLineItem.
+  // Output of the contacts in `loads` of n entries with placed surfaces; and the first n `ContactLineItem`.
   virtual void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                               ShownContact* shown) const = 0;
   virtual void contact_lines(const ContactViews<PackedRows>& in, Index n,
                              const LineRequest& request) const = 0;
-  // What the contacts of the particles add to the ledger over an accepted implicit step.
+  // Energy accounting of the particles' contacts over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
-  // The same where contacts rub, for laws of which kFrictionAlone holds; and the limits at an iterate. rubs:
-  // per entry, of which n are with surfaces on bodies.
+  // Implicit steps with friction, for laws with `kFrictionAlone`: contacts of n entries with surfaces on
+  // bodies, system, energy accounting, and the friction limits at an iterate. rubs: per entry.
   virtual void surface_rubs(const SurfaceViews& in, Index n, const RubbingStart& start,
                             const PlacedSurface* start_placed, SurfaceRub* rubs) const = 0;
   virtual void rubbing_system(const ContactViews<PackedRows>& in, Index n,
@@ -85,22 +84,22 @@ class ContactKernels {
                              const RubbingBooksTo& to) const = 0;
   virtual void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
                       const FrozenLimits& to) const = 0;
-  // n particles that leave, and what they leave to all others: see the items.
+  // n escaped particles, and the removal of their contacts from all others: see the items.
   virtual void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;
   virtual void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
                           const StartViews& start) const = 0;
 };
 
-// The stages of one type of law, on the CPU, for the laws of all pairs of `materials`: each type is compiled
-// in a source file of its own, laws/*.cpp.
+// Contact stages of one type of law on the CPU, for the laws of all pairs of `materials`. Each type is
+// compiled in a source file of its own, laws/*.cpp.
 template <class Law>
 std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<Law>& laws, int materials);
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 
-// The lines of the first items, one item after the other: as many as counts has places, whose lines it
-// counts. to: without where lines go.
+// Contact lines of the first counts.size() items, one item after the other; counts: receives the number of
+// each. to: a request without output pointers.
 std::vector<ContactLine> contact_lines(const ContactKernels& kernels, const ContactViews<PackedRows>& in,
                                        LineRequest to, std::vector<Index>& counts);
 

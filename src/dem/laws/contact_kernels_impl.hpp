@@ -1,4 +1,4 @@
-// The contact stages of one law; included where they are compiled.
+// Contact stages of one law; included where they are instantiated.
 #pragma once
 
 #include <stdexcept>
@@ -33,7 +33,7 @@ class CpuContactKernels : public ContactKernels {
                                           state.loss_power, state.angular_acceleration},
                                          state});
   }
-  // One function, so that what is summed stays in registers.
+  // Flattened into one function, so that the sums stay in registers.
   [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity,
                                        Index n, const VerletViews& state) override {
     return max_over(Serial{}, n,
@@ -134,7 +134,7 @@ class CpuContactKernels : public ContactKernels {
   }
 
  private:
-  // use(walk): compiled for laws that have steps in which they rub.
+  // Calls use(walk), compiled only for laws that have implicit steps with friction.
   template <class Use>
   void over_rubbing_step(const ContactViews<PackedRows>& in, const RubbingStart& start,
                          const Use& use) const {
@@ -147,10 +147,10 @@ class CpuContactKernels : public ContactKernels {
     throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
   }
 
-  // A contact that is a function of the instant takes less than to keep what it does.
+  // Evaluating a contact twice is faster than storing its result for laws without `kMoves`.
   static constexpr bool kPaired = LawOf<Laws>::kMoves;
   using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;
-  // Of an explicit step.
+  // Views for an explicit step.
   ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, PairList& pairs) {
     if constexpr (kPaired) {
       sweep_.begin(pairs);
@@ -164,7 +164,7 @@ class CpuContactKernels : public ContactKernels {
   std::conditional_t<kPaired, PairSweep<Laws>, std::monostate> sweep_;
 };
 
-// With the table that the kernels of several laws refer to.
+// Owns the table of laws that the kernels refer to.
 template <class Law>
 class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
  public:

@@ -1,6 +1,6 @@
-// The fields of a particle, each declared once. Arrays on either machine, a particle by itself and the loops
-// over both follow from the table: load, sort, migration, ghosts, checkpoint, hash and memory estimates are
-// such loops.
+// Fields of a particle, each declared once. The arrays on either machine, the record of a single particle,
+// and all loops over fields follow from the table: load, sort, migration, ghosts, checkpoint, hash and memory
+// estimates.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 #include "partition/subdomain.hpp"
 #include "physics/orientation.hpp"
 
-// One line per field, with its FieldParts. A checkpoint has all of them; the hash takes those of the state,
-// in this order.
+// One line per field, with its FieldParts. A checkpoint contains all fields; the hash those of the state, in
+// this order.
 //
-// FIELD(name, type, unit, sentence, parts): an array of its own.
+// FIELD(name, type, unit, sentence, parts): a separate array.
 //
 // PACKED(name, unit, sentence, parts, scalar, unit, sentence, parts): a vector and a scalar in one Vec4, so
-// that a neighbour costs two loads, three where particles rotate. All items have these, and ghosts get them
-// with each update_halo.
+// that a neighbour costs two loads, three where particles rotate. All items have these, and ghosts receive
+// them with each update_halo.
 // clang-format off
 #define SCREE_PARTICLE_FIELDS(FIELD, PACKED)                                                                 \
   PACKED(position, "m", "centre, within the periodic sides unless the particle drifts", kState,              \
@@ -54,27 +54,28 @@ namespace scree {
 enum FieldParts : unsigned {
   kState = 1,      // changes in time
   kConstant = 2,   // given by the deck: take_constants()
-  kGhost = 4,      // a FIELD that ghosts have, too: copied when a list is built
+  kGhost = 4,      // a FIELD that ghosts also have, copied when a list is built
   kOutput = 8,     // offered to snapshots (output.fields)
-  kRotation = 16,  // there where particles rotate (Model::rotates), else an empty array and no state
-  kRolling = 32,   // of these, there where contacts resist rolling or twisting, too (Model::rolls)
+  kRotation = 16,  // exists where particles rotate (Model::rotates), else an empty array and not part of the
+                   // state
+  kRolling = 32,   // exists where contacts also resist rolling or twisting (Model::rolls)
 };
 
-// Which fields there are beside those of every run.
+// Optional fields of a run.
 struct FieldsThere {
-  bool rotates = false, rolls = false;  // those with kRotation; of these those with kRolling
+  bool rotates = false, rolls = false;  // fields with kRotation; fields with kRolling among these
 
   bool has(unsigned parts) const {
     return ((parts & kRotation) == 0 || rotates) && ((parts & kRolling) == 0 || rolls);
   }
 };
 
-// Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
-// are.
+// Key that orders the entries of a neighbour list's row, by global id and then by image, independent of local
+// indices.
 SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image = kNoShift) { return id * 27 + image; }
 SCREE_HD GlobalId id_of(std::int64_t row_key) { return row_key / 27; }
 
-// One Array per FIELD and PACKED, and the items' names. Array: of memory on one machine, or a plain pointer.
+// One Array per FIELD and PACKED, and the items' keys. Array: device or host memory, or a plain pointer.
 template <template <class> class Array>
 struct FieldArrays {
 #define SCREE_FIELD(name, type, unit, sentence, parts) Array<type> name{};
@@ -89,7 +90,7 @@ template <class T>
 using Pointer = T*;
 using ParticleViews = FieldArrays<Pointer>;
 
-// A particle by itself, complete.
+// Record of a single particle with all fields.
 struct Particle {
   GlobalId global_id = 0;
 #define SCREE_FIELD(name, type, unit, sentence, parts) type name{};
@@ -101,15 +102,15 @@ struct Particle {
 #undef SCREE_PACKED
 };
 
-// Which arrays a loop visits.
+// Kinds of arrays for loops.
 enum FieldArrayKind : unsigned {
   kNames = 1,                                     // row_key
   kMotion = 2,                                    // PACKED
   kGhostCopies = 4,                               // FIELD with kGhost
-  kOwnedArrays = 8,                               // other FIELD: owned particles alone
+  kOwnedArrays = 8,                               // other FIELD: owned particles only
   kSpins = 16,                                    // PACKED with kRotation
-  kOwnedSpins = 32,                               // FIELD with kRotation: owned particles alone
-  kOwnedRolling = 64,                             // likewise, with kRolling
+  kOwnedSpins = 32,                               // FIELD with kRotation: owned particles only
+  kOwnedRolling = 64,                             // FIELD with kRolling: owned particles only
   kItemArrays = kNames | kMotion | kGhostCopies,  // all items
   kAllArrays = kItemArrays | kOwnedArrays,
   kRotationArrays = kSpins | kOwnedSpins,
@@ -124,7 +125,7 @@ constexpr unsigned kind_of_field(unsigned parts) {
 }
 constexpr unsigned kind_of_packed(unsigned parts) { return (parts & kRotation) != 0 ? kSpins : kMotion; }
 
-// Calls visit(a.name, b.name, ...) with the arrays of these kinds of each of the sets.
+// Calls visit(a.name, b.name, ...) with the arrays of these kinds of all sets.
 SCREE_HD_CALLER template <unsigned kinds, class Visit, class... Sets>
 constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
 #define SCREE_FIELD(name, type, unit, sentence, parts)                                                   \
@@ -138,7 +139,7 @@ constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
   if constexpr ((kinds & kNames) != 0) visit(sets.row_key...);
 }
 
-// With those of the same items that are there beside them.
+// Includes the optional arrays of the same items that exist in the run.
 template <unsigned kinds, class Visit, class... Sets>
 void for_each_array(const FieldsThere& there, const Visit& visit, Sets&... sets) {
   constexpr unsigned kSpinsToo =
@@ -148,7 +149,7 @@ void for_each_array(const FieldsThere& there, const Visit& visit, Sets&... sets)
   if (there.rolls) for_each_array<kRollingToo>(visit, sets...);
 }
 
-// Whether an array has any values.
+// Whether an array has values.
 template <class T>
 SCREE_HD bool is_there(T* const& array) {
   return array != nullptr;
@@ -158,7 +159,7 @@ bool is_there(const Array& array) {
   return array.size() > 0;
 }
 
-// Bytes that an item takes in the arrays of these kinds, and how many there are.
+// Bytes per item in the arrays of these kinds, and the number of these arrays.
 template <unsigned kinds>
 constexpr std::size_t bytes_in_arrays() {
   std::size_t bytes = 0;
@@ -174,7 +175,7 @@ constexpr std::size_t count_arrays() {
   return count;
 }
 
-// What the arrays hold of item i, and its place among them; an owned particle has all that are there.
+// Record of item i; an owned particle has all fields that exist.
 template <class Arrays>
 SCREE_HD Particle particle_at(const Arrays& arrays, Index i) {
   Particle p;
@@ -204,7 +205,7 @@ SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
 #undef SCREE_PACKED
 }
 
-// The arrays as plain pointers, for items.
+// Plain pointers to the arrays, for kernels.
 template <class Arrays>
 ParticleViews views_of(Arrays& arrays) {
   ParticleViews views;
@@ -213,13 +214,13 @@ ParticleViews views_of(Arrays& arrays) {
   return views;
 }
 
-// What the table says of a field.
+// Declaration of a field in the table.
 struct ParticleField {
   const char *name, *unit, *description;
   unsigned parts;
 };
 
-// Calls visit(field, member) for each field; member: that of Particle, as a pointer to it.
+// Calls visit(field, member) for each field; member: pointer to the member of Particle.
 template <class Visit>
 void for_each_field(const Visit& visit) {
 #define SCREE_FIELD(name, type, unit, sentence, parts)                                               \
@@ -233,14 +234,14 @@ void for_each_field(const Visit& visit) {
 #undef SCREE_PACKED
 }
 
-// The numbers that a value is made of: what checkpoints hold and hashes are taken of. Reals, or integers.
+// The numbers of a value in checkpoints and hashes: Reals, or integers.
 inline std::array<Real, 1> numbers_of(Real value) { return {value}; }
 inline std::array<Real, 3> numbers_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline std::array<Real, 4> numbers_of(const Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
 inline std::array<std::int64_t, 1> numbers_of(std::integral auto value) { return {value}; }
 inline std::array<std::int64_t, 3> numbers_of(const ImageCount& n) { return {n.x, n.y, n.z}; }
 
-// The value back; integers that it cannot hold come out as others.
+// Sets the value from its numbers; integers out of range are converted silently.
 inline void set_value(Real& value, const Real* from) { value = *from; }
 inline void set_value(Vec3& v, const Real* from) { v = {from[0], from[1], from[2]}; }
 inline void set_value(Quaternion& q, const Real* from) { q = {from[0], from[1], from[2], from[3]}; }

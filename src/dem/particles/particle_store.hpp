@@ -17,27 +17,27 @@ using HostArray = std::vector<T>;
 inline FieldsThere fields_there(const Model& model) { return {model.rotates(), model.rolls()}; }
 
 // Items: owned particles [0, owned), ghosts [owned, owned + ghosts), shapes of bodies after them. Owned
-// particles in the pair search come first; those that drift outside stand at the end of the owned. Which
-// arrays hold all items and which the owned particles, their kinds say.
+// particles in the search come first, escaped ones last. FieldArrayKind says which arrays cover all items and
+// which the owned particles only.
 struct ParticleStore : FieldArrays<HostArray>, FieldsThere {
   Index owned = 0;
-  Index active = 0;  // owned particles in the pair search
+  Index active = 0;  // owned particles in the search
 
   void load(std::span<const Particle> records);
   std::vector<Particle> records() const;  // of the owned particles, ordered by global id
-  void add(const Particle& particle);     // behind the owned; the store holds owned particles alone then
-  // Puts the owned particles into the order of `from`: new i was old from[i].
+  void add(const Particle& particle);     // after the owned particles, without ghosts in the store
+  // Reorders the owned particles: new i was old from[i].
   void reorder(const std::vector<Index>& from);
-  // Makes room for so many items, in the arrays of all items.
+  // Resizes the arrays of all items.
   void resize_items(Index items);
 };
 
-// The number of one rank's particles. Throws InputError where it is no Index. of_all: counted.
+// Number of particles of one rank. Throws InputError where it exceeds Index. of_all: counted totals.
 Index count_on_rank(std::size_t particles, const ParticleTotals& of_all);
 
-// Start of the simulation: positions, velocities and constants of the model, the rest zero.
+// Initial state: positions, velocities and constants of the model; all other fields are zero.
 std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& subdomain);
-// Gives particles that are in the set the constants that they have there.
+// Sets the constants of particles from the set.
 void take_constants(const ParticleSet& set, std::span<Particle> records);
 
 }  // namespace scree

@@ -1,5 +1,4 @@
-// Contacts as snapshots show them: for each a line from the centre of a particle. One text for the CPU and
-// CUDA.
+// Contacts in snapshots: each is a line from the centre of a particle. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +11,22 @@
 
 namespace scree {
 
-// What is shown of a contact at an instant.
+// Output of a contact at an instant.
 struct ShownContact {
-  Vec3 branch;        // from the particle's centre to the other one's, or to where it touches a surface [m]
+  Vec3 branch;        // from the particle's centre to the other one's, or to the contact point on a surface
+                      // [m]
   Vec3 force;         // on the particle [N]
-  Real normal_force;  // of that, along the normal; above 0 where it pushes [N]
-  Real tangential_force;  // size of the rest [N]
+  Real normal_force;  // normal component; positive if repulsive [N]
+  Real tangential_force;  // magnitude of the tangential component [N]
   Real overlap;           // [m]
-  Real slip;              // how far the spring of friction is stretched [m]
+  Real slip;              // elongation of the tangential spring [m]
 };
 
-// A contact with the particle whose line it is, of two particles that with the lower id; or with the shape of
-// a body, of two shapes that with the lower number.
+// A contact, stored with the particle of the lower id; or with the shape of a body, of two shapes with that
+// of the lower number.
 struct ContactLine {
-  GlobalId first;   // a particle, or of a shape its surface_id()
-  GlobalId second;  // the other particle, or a surface_id()
+  GlobalId first;   // a particle, or `surface_id()` of a shape
+  GlobalId second;  // the other particle, or a `surface_id()`
   Vec3 start;       // the first one's centre, inside the periodic box [m]
   ShownContact contact;
 };
@@ -47,13 +47,13 @@ SCREE_HD Real slip_of(const Law& law, const PairState& pair, const History& hist
     return 0;
 }
 
-// For the k-th of the entries by_surface, whose contacts `loads` has as they are at this instant.
+// Output of the contact at the k-th of the entries by_surface, whose load at this instant is in `loads`.
 template <class Laws>
 struct ShownSurfaceItem {
   SurfaceViews in;
   Laws laws;
   const SurfaceLoad* loads;  // per entry
-  ShownContact* shown;       // per entry; of those that touch
+  ShownContact* shown;       // per entry; of those in contact
 
   using Law = LawOf<Laws>;
 
@@ -75,7 +75,7 @@ struct ShownSurfaceItem {
 };
 
 struct ShownContactOf {
-  const ShownContact* of_surfaces;  // of ShownSurfaceItem
+  const ShownContact* of_surfaces;  // from `ShownSurfaceItem`
 
   template <class Law>
   SCREE_HD ShownContact operator()(const Law& law, const PairState& pair) const {
@@ -93,20 +93,20 @@ struct ShownContactOf {
   SCREE_HD static Vec3 branch(const PairState& pair) { return pair.geometry.along(-pair.geometry.distance); }
 };
 
-// What ContactLineItem reads beside the walk, and where its lines go.
+// Input of `ContactLineItem` beside the walk, and where its lines go.
 struct LineRequest {
   const std::int64_t* row_key;      // of all items
   const ShownContact* of_surfaces;  // per entry of the surfaces
-  Vec3 box_min, period;             // of the space [m]
-  // Null: the lines of each particle are counted alone.
+  Vec3 box_min, period;             // of the domain [m]
+  // Null: the lines of each particle are only counted.
   ContactLine* lines = nullptr;
-  const Index* offsets = nullptr;  // where those of each particle begin
+  const Index* offsets = nullptr;  // where the lines of each particle begin
   Index first_line = 0;            // where `lines` begins
   Index* counts = nullptr;
 };
 
-// The contacts of particle i that are its own to show: with particles of a higher id or, of images of its
-// own, every other one, and with all surfaces.
+// Lines of the contacts that belong to particle i: with particles of a higher id, every other one with its
+// own images, and all with surfaces.
 template <class Laws, class Rows>
 struct ContactLineItem {
   ContactWalk<Laws, Rows> walk;

@@ -1,5 +1,5 @@
-// What happens when particles leave the space: what they take along, and what they leave behind. One text for
-// the CPU and CUDA.
+// Escape of particles from the domain: energies of the escaped particles, and the removal of their contacts.
+// Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "base/hd.hpp"
@@ -11,21 +11,21 @@
 
 namespace scree {
 
-// A particle outside the space.
+// A particle that has escaped from the domain.
 struct Leaver {
   GlobalId global_id;
   Index local_index;                   // on its rank
   Vec3 position;                       // [m]
-  bool lost;                           // beyond a side that is a wall, which no particle can leave through
+  bool lost;                           // beyond a wall side, through which no particle may leave
   Real energy;                         // kinetic and gravitational [J]
-  Real contact_loss, integrator_loss;  // booked on it so far [J]
-  RubbingLosses losses;                // of contact_loss
-  Real elastic = 0;                    // of its contacts, which end with it [J]
-  int rank = 0;                        // that owns it
+  Real contact_loss, integrator_loss;  // losses of the particle so far [J]
+  RubbingLosses losses;                // parts of contact_loss
+  Real elastic = 0;                    // elastic energy of its contacts, which end [J]
+  int rank = 0;                        // rank that owns it
 };
 
-// Which items leave, where all particles in the rows are in the search: those outside. The ranks agree,
-// because ghosts are where their particles are.
+// Whether an item is outside the domain, while all particles of the rows are in the search. All ranks agree,
+// because ghosts have their particles' positions.
 template <class Rows>
 struct Leaves {
   const ContactViews<Rows>& in;
@@ -33,8 +33,8 @@ struct Leaves {
   SCREE_HD bool operator()(Index j) const { return !box.inside(xyz(in.position[j])); }
 };
 
-// The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
-// well.
+// Elastic energy of the contacts of an escaped particle, which end with it: half of those with another
+// escaped one, all of the others.
 template <class Laws, class Rows>
 struct LeaverEnergyItem {
   ContactWalk<Laws, Rows> walk;
@@ -48,7 +48,7 @@ struct LeaverEnergyItem {
   }
 };
 
-// What the next step starts from.
+// State from which the next step starts.
 struct StartViews {
   Vec3 *force, *acceleration;  // [N], [m/s^2]
   Real* loss_power;            // [W]; null for HHT
@@ -59,10 +59,10 @@ struct StartViews {
   Vec3* angular_acceleration = nullptr;  // null where particles do not rotate [rad/s^2]
 };
 
-// Takes the contacts that end out of what the next step starts from: out of the start of a particle that
-// stays those with particles that leave, out of one that leaves all. Else the step would do half a step's
+// Removes the contacts of escaped particles from the state that the next step starts from: for a remaining
+// particle those with escaped ones, for an escaped one all. Otherwise the next step would do half a step's
 // work with a force that has no elastic energy any more. in: as the forces were computed, with the velocities
-// that the law saw.
+// that the law used.
 template <class Laws, class Rows>
 struct DepartureItem {
   ContactWalk<Laws, Rows> walk;
@@ -106,7 +106,8 @@ struct DepartureItem {
     const Vec3 a1 = a0 + hht_event_acceleration(start.hht, mass, start.force[i], force);
     start.force[i] = force, start.acceleration[i] = a1;
     if (start.loss_power == nullptr) return;
-    // The energy of the motion is counted with this function of the acceleration: it has not changed.
+    // The accounting of kinetic energy contains this function of the acceleration, while the kinetic energy
+    // has not changed.
     start.integrator_loss[i] +=
         verlet_energy_shift(start.verlet_step, mass, a1) - verlet_energy_shift(start.verlet_step, mass, a0);
   }

@@ -1,4 +1,4 @@
-// What one particle adds to the sums over all particles. One text for the CPU and CUDA.
+// Contributions of one particle to the sums over all particles. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "base/hd.hpp"
@@ -12,12 +12,12 @@
 
 namespace scree {
 
-// Position without the periodic box [m].
+// Position without periodic wrapping [m].
 SCREE_HD Vec3 unwrapped(Vec4 position, const ImageCount& image, Vec3 period) {
   return moved_by_periods(xyz(position), image, period);
 }
 
-// Of a particle's motion, its rotation included [J].
+// Kinetic energy of a particle, rotation included [J].
 SCREE_HD Real kinetic_energy(const ParticleViews& in, Index i) {
   const Vec4 v = in.velocity[i];
   const Real energy = kinetic_energy(v.w, xyz(v));
@@ -32,7 +32,7 @@ SCREE_HD Real energy_of_motion(const ParticleViews& in, Index i, Vec3 gravity, V
          gravitational_energy(in.velocity[i].w, gravity, unwrapped(in.position[i], in.image[i], period));
 }
 
-// Of a particle's motion, its rotation included [J].
+// Energy shift of velocity Verlet for a particle, rotation included [J].
 SCREE_HD Real verlet_energy_shift(Real h, const ParticleViews& in, Index i) {
   const Real shift = verlet_energy_shift(h, in.velocity[i].w, in.acceleration[i]);
   if (in.angular_velocity == nullptr) return shift;
@@ -40,7 +40,7 @@ SCREE_HD Real verlet_energy_shift(Real h, const ParticleViews& in, Index i) {
 }
 
 enum LedgerTerm {
-  kKinetic,                          // of motion and rotation [J]
+  kKinetic,                          // translation and rotation [J]
   kGravitational,                    // [J]
   kContactElastic,                   // [J]
   kContactLoss,                      // [J]
@@ -57,7 +57,7 @@ struct LedgerTerms {
 
 struct LedgerItem {
   ParticleViews in;
-  const Real *elastic, *pairs;  // of ContactEnergyItem
+  const Real *elastic, *pairs;  // from `ContactEnergyItem`
   Vec3 gravity, period;
   Real verlet_step;  // 0 for HHT, else the substep [s]
 
@@ -73,7 +73,7 @@ struct LedgerItem {
   }
 };
 
-// Sums over the particles that have not left the space, for InsideEnergies.
+// Sums over the particles inside the domain, for InsideEnergies.
 enum InsideTerm {
   kInsideKinetic,         // [J]
   kInsideGravitational,   // [J]
@@ -85,8 +85,8 @@ struct InsideTerms {
   Real value[kInsideTerms];
 };
 
-// Where none has left, each is the sum of LedgerItem, bit for bit. gravity, period, verlet_step: as
-// LedgerItem's.
+// Sums of the particles inside; without escaped ones they equal those of LedgerItem bit for bit. gravity,
+// period, verlet_step: as in LedgerItem.
 struct InsideItem {
   ParticleViews in;
   Vec3 gravity, period;
@@ -100,7 +100,7 @@ struct InsideItem {
   }
 };
 
-// The first of these alone.
+// Kinetic energy of the particles inside.
 struct InsideKineticItem {
   ParticleViews in;
   struct Term {
@@ -110,9 +110,9 @@ struct InsideKineticItem {
   SCREE_HD Term operator()(Index i) const { return {{in.drifting[i] == 0 ? kinetic_energy(in, i) : 0}}; }
 };
 
-// Where contacts attract, a sum of its own, too.
+// Adhesive part of the elastic energy, where contacts have adhesion.
 struct CohesionItem {
-  const Real* cohesion;  // of ContactEnergyItem [J]
+  const Real* cohesion;  // from `ContactEnergyItem` [J]
   struct Term {
     Real value[1];
   };
@@ -120,13 +120,13 @@ struct CohesionItem {
   SCREE_HD Term operator()(Index i) const { return {{cohesion[i]}}; }
 };
 
-// What friction and resistance to rolling and twisting took of the particle's share of its contacts.
+// Dissipation of friction, rolling and twisting in the particle's share of its contacts.
 SCREE_HD RubbingLosses losses_of(const ParticleViews& in, Index i) {
   const auto value = [i](const Real* losses) { return losses != nullptr ? losses[i] : 0; };
   return {{value(in.friction_loss), value(in.rolling_loss), value(in.twisting_loss)}};
 }
 
-// Where particles rotate, sums of their own: those of other runs stay as they are.
+// Sums where particles rotate; separate from LedgerTerm, so that other runs are unaffected.
 enum RotationTerm {
   kRotational,       // kinetic energy [J]
   kFrictionSprings,  // elastic energies [J]
@@ -141,7 +141,7 @@ struct RotationTerms {
 
 struct RotationItem {
   ParticleViews in;
-  const SpringEnergies* springs;  // of ContactEnergyItem
+  const SpringEnergies* springs;  // from `ContactEnergyItem`
 
   SCREE_HD RotationTerms operator()(Index i) const {
     const Vec4 w = in.angular_velocity[i];

@@ -17,7 +17,7 @@ const OutputField* find_field(std::string_view name) {
   return found == output_fields().end() ? nullptr : &*found;
 }
 
-// Whether the table of particle_fields.hpp says that it never changes.
+// Whether the table of particle_fields.hpp declares the field as constant.
 bool is_constant(std::string_view field) {
 #define SCREE_FIELD(name, type, unit, sentence, parts) \
   if (field == #name) return ((parts)&kConstant) != 0;

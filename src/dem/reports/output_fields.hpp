@@ -1,5 +1,5 @@
-// What a snapshot may hold of a particle (output.fields): fields of the table in particle_fields.hpp, and
-// what is derived from them or from contacts. Each is declared once; one text for the CPU and CUDA.
+// Particle fields of snapshots (output.fields): those of the table in particle_fields.hpp, and fields derived
+// from them or from contacts. Each is declared once. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include <string_view>
@@ -18,14 +18,14 @@
 
 namespace scree {
 
-// What an output field is computed from.
+// Input of an output field.
 struct OutputSource {
   ParticleViews particles;
   int dimension;         // 2 or 3
   Vec3 gravity;          // [m/s^2]
-  Vec3 box_min, period;  // of the space [m]
+  Vec3 box_min, period;  // of the domain [m]
 
-  // With its position inside the periodic box.
+  // The particle with its position wrapped into the periodic box.
   SCREE_HD Particle particle(Index i) const {
     Particle p = particle_at(particles, i);
     p.position = wrap(box_min, period, p.position, p.image);
@@ -42,16 +42,16 @@ struct OutputHead {
 };
 
 // An output field is a type with a Value and one of
-//   operator()(source, i)         of particle i
-//   operator()(source, walk, i)   of particle i and its contacts, by any ContactWalk at an instant
-// Those that are not of the table have a head, too, and are named in DerivedOutputs.
+//   operator()(source, i)         for particle i
+//   operator()(source, walk, i)   for particle i and its contacts, with any ContactWalk at an instant
+// Fields that are not in the table have a head, too, and are listed in DerivedOutputs.
 
 template <auto kMember>
 struct TableOutput {
   using Value = std::remove_cvref_t<decltype(std::declval<Particle>().*kMember)>;
   SCREE_HD Value operator()(const OutputSource& in, Index i) const { return in.particle(i).*kMember; }
 };
-using PositionOutput = TableOutput<&Particle::position>;  // where the snapshot's point is
+using PositionOutput = TableOutput<&Particle::position>;  // point of the particle in the snapshot
 
 struct ForceOutput {
   static constexpr OutputHead head{"force", "N", "total contact force on the particle"};
@@ -70,15 +70,15 @@ struct ContactsOutput {
   }
 };
 
-// Row by row.
+// Tensor by rows.
 struct Tensor {
   Vec3 x, y, z;
 };
 
-// (1/V) sum over the contacts of F x^T: F the force on the particle, x from its centre to where it acts, V
-// the particle's volume, of discs the area (J. Weber, Bull. Liaison Ponts Chauss. 20, 1966; Christoffersen,
-// Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 1981). Its mean over a volume of particles at rest, times their
-// share of it, is the stress of the granular material.
+// (1/V) sum over the contacts of F x^T: F the force on the particle, x from its centre to the contact point,
+// V the particle's volume, for discs its area (J. Weber, Bull. Liaison Ponts Chauss. 20, 1966;
+// Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 1981). Its mean over a volume of static
+// particles, times their volume fraction, is the stress of the granular material.
 struct StressOutput {
   static constexpr OutputHead head{
       "stress", "Pa (2D: N/m)",
@@ -117,7 +117,8 @@ struct StressOutput {
   }
 };
 
-// Follows from the global id and the deck: added where snapshots are written, no backend knows it.
+// Group of a particle, known from its global id and the deck: added where snapshots are written, not by a
+// backend.
 inline constexpr OutputHead kGroupOutput{
     "group", "1", "group of particles that it belongs to, counted from 0 in the deck's order"};
 
@@ -141,7 +142,7 @@ void for_each_output_field(const Visit& visit) {
 template <class Of>
 inline constexpr bool kReadsContacts = !std::is_invocable_v<const Of&, const OutputSource&, Index>;
 
-// The k-th value is that of particle order[k]; without an order, of particle k.
+// The k-th value belongs to particle order[k]; without an order, to particle k.
 template <class Of>
 struct OwnOutputItem {
   OutputSource in;
@@ -159,7 +160,7 @@ struct ContactOutputItem {
   SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, walk, order != nullptr ? order[k] : k); }
 };
 
-// The values of n particles; out: room for n of the field's type.
+// Request for the values of n particles; out: room for n values of the field's type.
 struct OutputRequest {
   OutputSource in;
   const Index* order;
@@ -168,8 +169,7 @@ struct OutputRequest {
   void* out;
 };
 
-// Calls run(item) with the item of the request's field, if that field reads no contacts; with a walk, if it
-// does.
+// Calls run(item) with the item of the requested field, if it reads no contacts; with a walk, if it does.
 template <class Run>
 void with_own_output(const OutputRequest& r, const Run& run) {
   for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
@@ -187,33 +187,33 @@ void with_contact_output(const OutputRequest& r, const Walk& walk, const Run& ru
   });
 }
 
-// The values of one field, one entry per particle.
+// Values of one field, one entry per particle.
 using OutputValues = std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<Tensor>,
                                   std::vector<Quaternion>, std::vector<int>, std::vector<ImageCount>>;
 
-// What a value consists of, one number after the other.
+// Type of the numbers in a value.
 template <class Value>
 using OutputNumber =
     std::conditional_t<std::is_same_v<Value, int> || std::is_same_v<Value, ImageCount>, int, Real>;
 
-// An output field for the host.
+// Description of an output field for the host.
 struct OutputField {
   OutputHead head;
   std::size_t bytes;  // of a value
   bool reads_contacts;
   bool of_id;                             // kGroupOutput
-  bool is_constant;                       // of a particle it never changes
+  bool is_constant;                       // constant in time for a particle
   OutputValues (*values)(std::size_t n);  // n zeros
 };
 
 const std::vector<OutputField>& output_fields();
-// Those that the deck wants (Output::fields), in its order. Throws std::logic_error for an unknown name.
+// Fields that the deck requests (Output::fields), in its order. Throws std::logic_error for an unknown name.
 std::vector<OutputField> wanted_fields(const Output& output);
-// Those of them that a backend computes.
+// Requested fields that a backend computes.
 std::vector<OutputField> computed_fields(const Output& output);
-// Throws InputError where the deck's output.fields names one that there is not, or one twice.
+// Throws InputError where output.fields of the deck has an unknown or repeated name.
 void check_output_fields(const Deck& deck);
-// A line per field, as `scree keys` prints them; the same as a part of its page in Markdown.
+// Fields with their descriptions, one per line, for `scree keys`; and as a section of its page in Markdown.
 std::string output_fields_text();
 std::string output_fields_markdown();
 

@@ -63,7 +63,7 @@ FixedSum sum_at(const std::vector<std::int64_t>& words, std::size_t first) {
   return sum;
 }
 
-// Of words that were added up one by one.
+// Normalizes limbs that were added one by one.
 void normalize(std::vector<std::int64_t>& words) {
   for (std::size_t at = 0; at < words.size(); at += FixedSum::kWords) {
     FixedSum sum = sum_at(words, at);

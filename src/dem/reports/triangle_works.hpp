@@ -1,7 +1,6 @@
-// What contacts have lost at the triangles of meshes since t = 0: to the damping of their normal forces, to
-// friction, and what of the surface that wears off. Sums at fixed places: the same bits in any order of the
-// contacts, for any split over ranks and after any restart. One text for the CPU and CUDA, but for the last
-// part.
+// Work dissipated at the triangles of meshes since t = 0: by the normal damping, by friction, and the worn
+// volume. Sums in fixed point: they have the same bits for any order of the contacts, any distribution over
+// ranks, and after a restart. Shared by the CPU and CUDA backends, except for the last part.
 #pragma once
 
 #include <cstdint>
@@ -21,32 +20,32 @@ enum TriangleWorkKind {
   kWornVolume,   // [m^3 / kWornScale]
   kTriangleWorks
 };
-// Volumes are small numbers: a power of two brings them to where sums have places for them.
+// Scale of the worn volumes, which are small: a power of two that brings them into the range of the sums.
 inline constexpr Real kWornScale = Real(std::uint64_t{1} << 40);
 
-// Of one triangle.
+// Sums of one triangle.
 struct TriangleWork {
   FixedSum of[kTriangleWorks];
 };
 
-// Where they stand, and what wears; on the machine that books them.
+// Layout of the sums and wear parameters, on the machine that accumulates them.
 struct TriangleWorkTable {
-  const std::int64_t* first;  // per placed surface that is a mesh: its first triangle among those of all
-  const Real* wear;           // [i * materials + j]: volume per work of friction [1/Pa]; null: nothing wears
+  const std::int64_t* first;  // per placed surface that is a mesh: number of its first triangle
+  const Real* wear;           // [i * materials + j]: volume per work of friction [1/Pa]; null: no wear
   int materials;
 };
 
-// Of one contact, over a step [J].
+// Dissipation of one contact over a step [J].
 struct ContactWorks {
   Real impact, sliding;
 };
 
-// Of the contacts with surfaces as they were found last, by the form of the step. The particles' own books
-// are made of the same numbers.
+// Dissipation of the contacts with surfaces from the last evaluation, by type of step; the particles' energy
+// accounting uses the same numbers.
 struct ExplicitWorks {
   const SurfaceLoad* loads;
   Real h;      // [s]
-  bool moves;  // the law tells losses by kind: it books whole steps
+  bool moves;  // the law distinguishes losses by kind, over whole steps
 
   SCREE_HD bool touches(Index entry) const { return loads[entry].touches; }
   SCREE_HD ContactWorks of(Index entry) const {
@@ -74,8 +73,8 @@ struct ImplicitRubbingWorks {
   }
 };
 
-// Books what the contacts of the g-th group have lost over a step that is closed. Add: adds a whole number to
-// a word, which others may add to, too.
+// Accumulates the dissipation of the contacts of the g-th group over a closed step. Add: adds an integer to a
+// limb, possibly concurrently.
 template <class Works, class Add>
 struct TriangleBookItem {
   SurfaceViews in;
@@ -103,10 +102,10 @@ struct TriangleBookItem {
   }
 };
 
-// How many terms sums may have got since they were normalized.
+// Number of terms added to the sums since they were normalized.
 class TermCount {
  public:
-  // Counts so many more; false: the sums must be normalized before.
+  // Counts more terms; returns false if the sums must be normalized first.
   bool take(std::int64_t more) {
     terms_ += more;
     if (terms_ <= FixedSum::kMostTerms) return true;
@@ -124,10 +123,10 @@ struct NormalizeItem {
   }
 };
 
-// The same on the host: which triangles there are, and their sums as a state keeps them.
+// Triangles of a model and the conversion of their sums to and from a state; on the host.
 class TriangleWorks {
  public:
-  // Of a model whose output asks for none all below is empty.
+  // Empty for a model whose output needs no works.
   explicit TriangleWorks(const Model& model);
   bool exist() const { return triangles_ > 0; }
   std::size_t triangles() const { return triangles_; }
@@ -135,31 +134,31 @@ class TriangleWorks {
   const std::vector<Real>& wear() const { return wear_; }
   int materials() const { return materials_; }
 
-  // Words of a state, [triangles][kTriangleWorks][FixedSum::kWords], triangles as in their files or shapes,
-  // mesh after mesh in the order of SurfaceSet; and the sums in the order in which they are booked. No words:
-  // nothing was lost yet.
+  // Limbs of a state, [triangles][kTriangleWorks][FixedSum::kWords], with triangles in the order of their
+  // files or shapes and meshes in the order of SurfaceSet; and the sums in the order of accumulation. Without
+  // limbs the sums are zero.
   std::vector<std::int64_t> words(const std::vector<TriangleWork>& sums) const;
   std::vector<TriangleWork> sums(const std::vector<std::int64_t>& words) const;
 
  private:
-  // Calls visit(row in the words, row in the sums) for all triangles.
+  // Calls visit(row in the limbs, row in the sums) for all triangles.
   template <class Visit>
   void for_each_row(const Visit& visit) const;
 
   std::vector<std::int64_t> first_;
-  std::vector<const SurfaceMesh*> meshes_;  // per placed surface; null: it is none
-  std::vector<Real> wear_;                  // empty: nothing wears
+  std::vector<const SurfaceMesh*> meshes_;  // per placed surface; null if not a mesh
+  std::vector<Real> wear_;                  // empty: no wear
   int materials_ = 0;
   std::size_t triangles_ = 0;
 };
 
-// How many words the state of a model has whose output asks for them.
+// Number of limbs per triangle in a state.
 inline constexpr std::size_t kWordsPerTriangle = std::size_t{kTriangleWorks} * FixedSum::kWords;
-// The ranks' words added up. Collective.
+// Sum of the limbs of all ranks. Collective.
 std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks);
-// Adds the words of other contacts at the same triangles.
+// Adds the limbs of other contacts at the same triangles.
 void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& words);
-// What their sums are, each rounded once.
+// Values of the sums, each rounded once.
 struct TriangleWorkValues {
   Real impact, sliding;  // [J]
   Real worn;             // [m^3]

@@ -17,7 +17,7 @@ NeighborBuilder::NeighborBuilder(const Model& model)
 
 namespace {
 
-// Cells for so many items, countable by an Index.
+// Upper bound of the number of cells for this many items, representable as Index.
 Index most_cells(std::int64_t items) {
   return static_cast<Index>(std::min<std::int64_t>(4 * items + 4096, std::numeric_limits<Index>::max() / 2));
 }

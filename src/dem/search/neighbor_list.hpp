@@ -15,15 +15,15 @@
 
 namespace scree {
 
-// Row i holds every item that can touch particle i before the list expires; rows of particles outside the
-// search are empty. Beside it the surfaces that it is near.
+// Row i holds every item that can touch particle i before the list expires, and the surfaces near it. Rows of
+// particles outside the search are empty.
 struct NeighborList {
   std::vector<Index> offsets, neighbors;  // [owned + 1], [entries]
   SurfaceRows surfaces;
-  Real skin = 0;  // what this list covers past contacts [m]
+  Real skin = 0;  // search distance beyond contact [m]
 };
 
-// Where items stand in the store: owned particles, of which the first `active` are in the search, then
+// Layout of the items in the store: owned particles, of which the first `active` are in the search, then
 // ghosts.
 struct ItemLayout {
   Index owned = 0, active = 0, items = 0;
@@ -31,13 +31,13 @@ struct ItemLayout {
 
 // Cells that items are sorted into.
 struct SearchCells {
-  CellGrid space;  // the items in one of its cells are searched, on any number of ranks the same
-  CellGrid own;    // over the box of this rank; with one rank the same
+  CellGrid space;  // items in one of its cells are searched, for any number of ranks
+  CellGrid own;    // cells over the box of this rank; the same with one rank
   bool same = true;
   DomainBox box{};  // of this rank, unless same
-  Real reach = 0;   // of the list past the box [m]
+  Real reach = 0;   // of the list beyond the box [m]
 
-  // In `own`; x is -1 for items that are not searched.
+  // Cell index in `own`; x is -1 for items that are not searched.
   SCREE_HD CellPlace place(Vec3 p) const {
     const CellPlace c = space.place(p);
     return c.x < 0 || same ? c : own.nearest_place(p);
@@ -48,7 +48,7 @@ struct SearchCells {
   }
 };
 
-// The surfaces that a list is to see.
+// Surfaces for the build of a list.
 struct ListedSurfaces {
   SurfacePlaces places;
   RememberedCount remembered{};
@@ -58,33 +58,32 @@ class NeighborBuilder {
  public:
   explicit NeighborBuilder(const Model& model);
 
-  // The grid whose cells are at least a cutoff wide.
+  // Grid with cells at least one cutoff wide.
   CellGrid grid(Real skin, Index items) const;
-  // particles, items: of all ranks and of this one, for the number of cells.
+  // particles: of all ranks; items: of this rank. They bound the number of cells.
   SearchCells cells(Real skin, std::int64_t particles) const;
   SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
-  // Largest distance of centres that the list must see: largest diameter, what contacts reach beyond touch,
-  // and skin [m].
+  // Largest distance of centres in the list: largest diameter, interaction range and skin [m].
   Real cutoff(Real skin) const { return 2 * largest_radius_ + past_touch(skin); }
-  // How far past touching the list must see [m].
+  // Search distance beyond touch [m].
   Real past_touch(Real skin) const { return skin + model_.contact.reach; }
   // Largest radius of a particle [m].
   Real largest_radius() const { return largest_radius_; }
-  // Fills the list from the positions of all items, and of the placed surfaces.
+  // Fills the list from the positions of all items and the poses of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
              const ListedSurfaces& surfaces, Real skin, NeighborList& list);
-  // The rows of surfaces alone.
+  // Fills the rows of surfaces only.
   void build_surfaces(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
                       const ListedSurfaces& surfaces, Real skin, SurfaceRows& rows);
 
  private:
-  // Items in the order of their cells.
+  // Items sorted by cell.
   struct SortedItems {
     CellGrid grid;
     std::vector<Index> start, items;  // [cells + 1], [searched]
     std::vector<Index> cell_of;       // [all items]; -1 for those that are not searched
 
-    // cell(item): where it belongs, or -1.
+    // cell(item): its cell, or -1.
     template <class Cell>
     void sort(const CellGrid& cells, Index count, const Cell& cell);
   };
@@ -95,7 +94,7 @@ class NeighborBuilder {
   void collect_row(const ParticleStore& store, Index i, NeighborList& list) const;
 
   const Model& model_;
-  Vec3 period_;  // of the space [m]
+  Vec3 period_;  // of the domain [m]
   SurfaceSet surfaces_;
   std::vector<WallPlane> planes_;
   Real largest_radius_ = 0;

@@ -5,7 +5,7 @@
 namespace scree {
 namespace {
 
-// Rows are ordered by key.
+// Slot of an item in a row, which is ordered by key.
 Index slot_in_row(const NeighborList& list, const ParticleStore& store, Index row, Index item) {
   const auto begin = list.neighbors.begin();
   const auto at =

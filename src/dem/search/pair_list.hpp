@@ -10,30 +10,30 @@
 
 namespace scree {
 
-// An item in the row of an owned particle; with another owned one in the row of that which comes first.
+// An entry of an owned particle's row; a pair of owned particles belongs to the row that comes first.
 struct ListedPair {
   Index j;
   Index slot;    // in the particle's row
-  Index mirror;  // in the row of j; a ghost has none
+  Index mirror;  // in the row of j; none for a ghost
 
   static constexpr Index kNone = -1;
   bool has_mirror() const { return mirror != kNone; }
 };
 
 struct PairList {
-  bool is_current = false;     // whether it is of the list as it is
+  bool is_current = false;     // whether it matches the current list
   std::vector<Index> offsets;  // [owned + 1], into the pairs
   std::vector<ListedPair> pairs;
   std::size_t slots = 0;  // of the list
-  // What the contacts remember, per pair, while it is kept here and not at the slots (HistoryViews): of the
-  // side of the row. The other side's is its mirror image, but for what stands at the mirror slot of the last
+  // History per pair, while it is stored here and not at the slots (`HistoryViews`), as the particle of the
+  // row has it. The other particle's is its mirror image, unless the mirror slot has a record of the last
   // step.
   std::vector<Vec4> records;
   bool keeps_records = false;
 
   Index rows() const { return static_cast<Index>(offsets.size()) - 1; }
   void match(const NeighborList& list, const ParticleStore& store);
-  // From the slots; count: of the records of a contact.
+  // Copies the history from the slots; count: records per contact.
   void take_records(const Vec4* at_slots, Index count);
 };
 

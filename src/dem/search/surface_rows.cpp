@@ -26,7 +26,7 @@ void for_each_in(const SortedParticles& sorted, const CellRange& range, const Vi
         if (const Index i = sorted.items[k]; i < sorted.active) visit(i);
 }
 
-// The entries with placed surfaces of one rank, surface by surface.
+// Finds the entries with placed surfaces of one rank, surface by surface.
 class EntryFinder {
  public:
   EntryFinder(const SortedParticles& sorted, const SurfaceSearch& search)
@@ -49,7 +49,7 @@ class EntryFinder {
   }
 
  private:
-  // Along which it has images [m].
+  // Periods along which the surface has images [m].
   Vec3 images_of(Index s) const {
     if (placed(s).kind == SurfaceKind::sphere) return search_.period;
     return search_.period - search_.places.frames[static_cast<std::size_t>(placed(s).frame)].spanned;
@@ -62,7 +62,7 @@ class EntryFinder {
       if (pair.geometry.overlap > -search_.skin && may_touch(i, s)) add(entry, i, 1);
     });
   }
-  // A plane has no images: it cannot be periodic along its normal.
+  // A plane has no images, because it cannot be periodic along its normal.
   void add_near_plane(Index s, Vec3 shift, Entry entry) {
     if (entry.image != kNoShift) return;
     for (Index i = 0; i < sorted_.active; ++i)
@@ -100,7 +100,7 @@ class EntryFinder {
   std::vector<Index> triangles_;
 };
 
-// Orders the entries of a row by surface and image; those that are alike are neighbours already.
+// Sorts the entries of a row by surface and image; equal ones are already adjacent.
 void order_row(SurfaceRows& rows, Index first, Index end) {
   for (Index k = first + 1; k < end; ++k)
     for (Index at = k; at > first && std::pair(rows.surfaces[at - 1], rows.images[at - 1]) >
@@ -122,7 +122,7 @@ void group_by_surface(const SurfaceNumbers& numbers, Index placed, SurfaceRows& 
       rows.by_surface[next[numbers.placed(rows.surfaces[entry])]++] = entry;
 }
 
-// The triangles of every particle and mesh near each other.
+// Finds the triangles of all pairs of particles and meshes near each other.
 void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, const SurfaceNumbers& numbers,
                  SurfaceRows& rows) {
   rows.groups.clear(), rows.triangles.clear();
@@ -152,7 +152,7 @@ Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; 
 }  // namespace
 
 Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin) {
-  constexpr Real kRoundOff = 1e-9;  // of turning the box, with plenty to spare
+  constexpr Real kRoundOff = 1e-9;  // of the rotated box, with a wide margin
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
@@ -181,7 +181,7 @@ void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch&
   std::vector<Index> counts(static_cast<std::size_t>(owned));
   for (const Entry& entry : placed) ++counts[entry.particle];
   rows.offsets.assign(1, 0), rows.surfaces.clear();
-  std::vector<Index> next;  // of the placed ones
+  std::vector<Index> next;  // next free entry of each row
   for (Index i = 0; i < owned; ++i) {
     for (Index w = 0; i < sorted.active && w < numbers.ground; ++w)
       if (numbers.at_rest(w) &&

@@ -1,4 +1,4 @@
-// Which surfaces each particle of a rank is near: for surfaces what the neighbour list is for particles.
+// Neighbour lists of particles and surfaces for one rank.
 #pragma once
 
 #include <functional>
@@ -16,8 +16,8 @@
 
 namespace scree {
 
-// Row i has every surface that can touch particle i before the list expires, by number and image; a mesh as
-// often as the particle may have contacts with it, or remembers them.
+// Row i has every surface that can touch particle i before the list expires, by number and image; a mesh once
+// for every contact that is possible or in the history.
 struct SurfaceRows {
   std::vector<Index> offsets;       // [particles + 1]
   std::vector<Index> surfaces;      // [entries]
@@ -26,27 +26,26 @@ struct SurfaceRows {
   std::vector<Index> by_surface;    // [entries with placed surfaces], surface by surface
   std::vector<MeshGroup> groups;
   std::vector<Index> triangles;     // of the groups
-  std::vector<Standing> standings;  // per group: of those who looked at it; the rows do not depend on it
+  std::vector<Standing> standings;  // per group, from previous queries; the rows do not depend on it
 
   SurfaceEntries entries() const {
     return {surfaces.data(), images.data(), particles.data(), by_surface.data()};
   }
-  // Whether two entries of a row are of the same group.
+  // Whether two entries of a row belong to the same group.
   bool alike(Index a, Index b) const { return surfaces[a] == surfaces[b] && images[a] == images[b]; }
 };
 
-// Particles in the order of their cells.
+// Particles sorted by cell.
 struct SortedParticles {
   const CellGrid& grid;
   const std::vector<Index>& start;  // [cells + 1] into items
-  const std::vector<Index>& items;  // particles, and ghosts, which count from `active` on
+  const std::vector<Index>& items;  // particles, and ghosts, which are numbered from `active` on
   std::span<const Vec4> position;   // x, y, z, radius
   Index active;                     // particles in the search
-  Real largest_radius;              // of one [m]
+  Real largest_radius;              // of a particle [m]
 };
 
-// The cells that particles can be in which touch a sphere at p within the reach: lower, and upper one
-// included.
+// Range of cells with the centres of particles that come within `reach` of p; upper is included.
 struct CellRange {
   CellPlace lower, upper;
 };
@@ -54,34 +53,34 @@ SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real reach) {
   return {grid.nearest_place(p - Vec3{reach, reach, reach}),
           grid.nearest_place(p + Vec3{reach, reach, reach})};
 }
-// The same of particles in a box.
+// Range of cells of a box.
 inline CellRange cells_near(const CellGrid& grid, const Box& box) {
   return {grid.nearest_place(box.min), grid.nearest_place(box.max)};
 }
 
-// In which the centres are of particles no larger than `radius` that come within `skin` of the mesh of the
-// placed surface s, moved by the shift [m]. Along periods that the mesh spans it has no ends.
+// Box with the centres of all particles of at most `radius` that come within `skin` of the mesh of the placed
+// surface s, shifted by `shift` [m]. It is infinite along periods that the mesh spans.
 Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin);
 
-// How many contacts with the surface of a number a particle remembers; none: no contact remembers.
+// Number of contacts of a particle with a surface in the history; empty: no history.
 using RememberedCount = std::function<Index(Index particle, Index surface)>;
 
-// What a row may hold.
+// Input of the search.
 struct SurfaceSearch {
   const SurfaceSet& surfaces;
   std::span<const WallPlane> planes;
   SurfacePlaces places;
   Vec3 period;  // [m]
-  Real skin;    // how far past touch surfaces are looked for [m]
+  Real skin;    // search distance beyond touch [m]
   RememberedCount remembered{};
-  // Whether a particle may touch a placed surface; none: it may touch all.
+  // Whether a particle may touch a placed surface; empty: it may touch all.
   std::function<bool(Index particle, Index placed)> may_touch{};
 };
 
-// Of a particle at p (x, y, z, radius) and the mesh of the placed surface s, which is looked for within skin.
+// A particle at p (x, y, z, radius) and the mesh of the placed surface s, for the search within skin.
 MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin);
 
-// owned: particles that have a row, of which the first `active` are in the search.
+// owned: particles with a row, of which the first `active` are in the search.
 void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// What the shape of a body gets from those of other bodies and from surfaces: the small pass of rank 0, in
-// which shapes are what particles are elsewhere.
+// Contacts of the shapes of bodies with each other and with surfaces: a small pass on rank 0 with shapes as
+// items.
 #pragma once
 
 #include <type_traits>
@@ -11,40 +11,40 @@
 
 namespace scree {
 
-// Contacts of one shape at an instant, or over the explicit step that ends there, and its share of what is
-// booked of them: half with another body's shape.
+// Contacts of one shape at an instant, or over the explicit step that ends there, with its share of their
+// energies: half of a contact with another body's shape.
 struct BodyLoad {
   InstantSums sums;
   Real loss = 0;           // dissipation [W]
   Real energy = 0;         // elastic [J]
-  Real pairs = 0;          // number
-  SpringEnergies springs;  // of the energy, where contacts rub
-  RubbingLosses losses{};  // of the dissipation, over the step [J]
+  Real pairs = 0;          // number of contacts
+  SpringEnergies springs;  // parts of the energy, with friction
+  RubbingLosses losses{};  // parts of the dissipation, over the step [J]
 };
 
-// Over an implicit step.
+// Contacts of one shape over an implicit step.
 struct BodyStep {
   StepSums sums;
   ContactBooks books;
-  Real friction = 0;   // of what they dissipate [J]
-  Index partners = 0;  // shapes of other bodies that it touches
+  Real friction = 0;   // part of the dissipation [J]
+  Index partners = 0;  // shapes of other bodies in contact
 };
 
-// How the force of a contact changes with the motion of its partners, over an implicit step.
+// Derivatives of a contact force with respect to the motion of its partners, over an implicit step.
 struct ContactSlopes {
-  Vec3 normal, direction;   // unit; direction: in which they slide, else zero
-  Real stiffness, damping;  // along the normal [N/m], [N s/m]
-  Real shear;               // across it, but along `direction` [N/m]
+  Vec3 normal, direction;   // unit vectors; direction: of sliding, else zero
+  Real stiffness, damping;  // normal [N/m], [N s/m]
+  Real shear;               // tangential, perpendicular to `direction` [N/m]
 };
 
-// Of a shape with that of another body, an item.
+// Contact of a shape with that of another body. other: item.
 struct ShapeContact {
   Index other;
   ContactSlopes slopes;
 };
 
-// Where the walk of the shapes writes their contacts with each other: the partners of i from the place on
-// where i's row begins.
+// Where the walk over the shapes writes their contacts with each other: those of item i begin where its row
+// begins.
 struct ShapeContactsTo {
   const Index* offsets;
   ShapeContact* contacts;
@@ -59,13 +59,13 @@ SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
   return {c.normal, {}, c.step.stiffness, c.step.damping, 0};
 }
 
-// The shapes as they are looked at.
+// Input of the evaluation of shapes.
 struct BodyLook {
-  const Vec3* arm;  // of their centres from those of their bodies [m]
-  Real h;           // of the explicit step that ends now, for laws that move [s]; 0: an instant
+  const Vec3* arm;  // of their centres from the bodies' centres [m]
+  Real h;           // length of the explicit step that ends now, for laws with `kMoves` [s]; 0: an instant
 };
 
-// From the side of the body: the other one is where the particle is in SurfaceLoad.
+// Load on the body of a shape. In `SurfaceLoad` the other partner takes the role of the particle.
 struct BodyLoadOf {
   struct Found {
     SurfaceLoad contact;
@@ -84,14 +84,14 @@ struct BodyLoadOf {
              pair.geometry.normal()},
             outcome.history};
   }
-  // Of a surface that was evaluated before, as it lies to the shape.
+  // A contact with a surface that was evaluated before, from the surface's side.
   template <class Views>
   SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
     return in.loads[entry].touches ? &in.loads[entry] : nullptr;
   }
 };
 
-// Accepts the step, if it is one.
+// Loads of the shapes; over a step the history is stored.
 template <class Laws, class Rows, class Look>
 struct BodyLoadItem {
   ContactWalk<Laws, Rows, Look> walk;
@@ -116,7 +116,8 @@ struct BodyLoadItem {
   }
 
  private:
-  // Where the force acts, from the body's centre: that of a law that moves comes with a couple.
+  // Application point of the force, from the body's centre; laws with `kMoves` act at the shape's centre with
+  // a couple.
   SCREE_HD Vec3 place_of(Index i, Real radius, Vec3 normal) const {
     return LawOf<Laws>::kMoves ? arm[i] : arm[i] - radius * normal;
   }
@@ -165,7 +166,7 @@ SCREE_HD ContactSlopes slopes_of(const RubbingContact& c) {
   return slopes;
 }
 
-// A contact over an implicit step in which it rubs.
+// Friction of a contact over an implicit step, with its energy accounting.
 struct BodyRubOf {
   RubbingContactOf contact;
 
@@ -213,7 +214,7 @@ struct BodyRubItem {
   }
 
  private:
-  // As the surface sees it: what is odd under exchange of the partners.
+  // The contact from the surface's side: quantities that are odd under exchange change sign.
   SCREE_HD static RubbingContact turned(RubbingContact c) {
     c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
     c.rub.start = -c.rub.start, c.rub.step = -c.rub.step, c.rub.end = -c.rub.end;

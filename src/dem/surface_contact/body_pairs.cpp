@@ -4,10 +4,10 @@
 
 namespace scree {
 
-// What both give way to at the contact is the difference of their motions there: the blocks are those of
-// sum_term(SurfaceRub), with the other one's motion and its sign.
+// The relative motion of both bodies at the contact point determines the force: the blocks are those of
+// `sum_term(SurfaceRub)`, with the other body's motion and the opposite sign.
 void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const ContactSlopes& slopes) {
-  if (other.body < one.body) return add(other, one, slopes);  // both are even in the normal
+  if (other.body < one.body) return add(other, one, slopes);  // the blocks are even in the normal
   PairStiffness& sum = blocks_[{one.body, other.body}];
   sum.first = one.body, sum.second = other.body;
   const Vec3 n = slopes.normal, t = slopes.direction;

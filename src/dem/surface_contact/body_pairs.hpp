@@ -1,4 +1,4 @@
-// What the Newton matrix has of two bodies that touch each other, over an implicit step.
+// Off-diagonal blocks of the Newton matrix for two bodies in contact, over an implicit step.
 #pragma once
 
 #include <map>
@@ -12,19 +12,19 @@
 
 namespace scree {
 
-// A body at a contact: `place` is where they touch, from its centre of mass [m].
+// A body at a contact. place: contact point relative to its centre of mass [m].
 struct TouchedBody {
   int body;
   Vec3 place;
 };
 
-// Sums over contacts, in the order in which they are added.
+// Blocks summed over contacts, in the order in which they are added.
 class BodyPairs {
  public:
   void clear() { blocks_.clear(); }
-  // slopes: as `one` sees them.
+  // slopes: from the side of `one`.
   void add(const TouchedBody& one, const TouchedBody& other, const ContactSlopes& slopes);
-  // By bodies, the first one of a pair before the second.
+  // Blocks ordered by bodies, the lower number of a pair first.
   std::vector<PairStiffness> blocks() const;
 
  private:

@@ -1,18 +1,18 @@
-// Where particles touch meshes over an implicit step. One text for the CPU and CUDA.
+// Contacts of particles with meshes over an implicit step. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "dem/surface_contact/mesh_touches.hpp"
 
 namespace scree {
 
-// For the g-th group: the contacts at either end of the step, those at both matched.
+// Contacts of the g-th group at both ends of the step; those at the start are matched with those at the end.
 template <bool kSheets>
 struct MeshStepTouchItem {
   SurfaceViews in;
   const Vec4* start_position;
   const PlacedSurface* start_placed;
-  MeshTouch* touches;       // per entry; `touches`: at either end
-  MeshTouchBefore* before;  // likewise
+  MeshTouch* touches;       // per entry; touches: a contact at either end
+  MeshTouchBefore* before;  // per entry
 
   SCREE_HD void operator()(Index g) const {
     const MeshGroup group = in.meshes.groups[g];
@@ -33,7 +33,7 @@ struct MeshStepTouchItem {
     if (is_sheet<kSheets>(mesh)) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
     for (int k = 0; k < old.count; ++k)
       old.entry[k] = remembering(group, remembered_feature<kSheets>(mesh, old.contact[k]));
-    // Those that are there at the end come first, whether they were at the start or not.
+    // The contacts at the end of the step come first, whether they existed at the start or not.
     bool matched[kMeshSlots] = {};
     for (const Kinship kin : {Kinship::same, Kinship::same_patch})
       for (int k = 0; k < count && k < group.entries; ++k) {
@@ -43,7 +43,7 @@ struct MeshStepTouchItem {
         put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
         matched[k] = true, old.take_out(at);
       }
-    Overlaps gone{}, come{};  // of the nearest contacts that only one end has
+    Overlaps gone{}, come{};  // of the nearest contacts that exist at one end only
     for (int k = 0; k < count && k < group.entries; ++k) {
       if (matched[k]) continue;
       const MeshContact was = mesh_feature_at(mesh, now[k].feature, start.c, now[k].normal);
@@ -68,7 +68,7 @@ struct MeshStepTouchItem {
   }
 
  private:
-  // How a sphere lies in the frame of a mesh.
+  // A sphere in the frame of a mesh.
   struct Sight {
     const Mat3& axes;
     Vec3 c;
@@ -77,13 +77,13 @@ struct MeshStepTouchItem {
   struct Sights {
     const Sight &end, &start;
   };
-  // The centre in the frame of a sheet, at both ends.
+  // Sphere centre in the frame of an open surface, at both ends of the step.
   struct Passage {
     const MeshView& mesh;
     Vec3 c, c0;
   };
   SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
-  // Of the contacts at the start, then of those at the end, which go on from them.
+  // Tracks the sides of the contacts at the start, then of those at the end, which continue them.
   SCREE_HD int keep_sides(const MeshGroup& group, const Passage& of, MeshContact* now, int count,
                           RememberedTouches& old) const {
     old.count = SideKeeper(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
@@ -106,17 +106,16 @@ struct MeshStepTouchItem {
                       from};
     before[entry] = {pair0.geometry, pair0.contact};
   }
-  // Overlaps of a contact at both ends of the step, from how its feature lies to the centre; zero: no
-  // contact.
+  // Overlaps of a contact with its feature at both ends of the step; zero: no contact.
   struct Overlaps {
     Real at_start, at_end;
   };
   SCREE_HD Overlaps overlaps_at(Index entry) const {
     return {before[entry].geometry.overlap, touches[entry].geometry.overlap};
   }
-  // A centre inside a closed mesh, that is an overlap above the radius, touches the nearest face alone. Where
-  // that becomes another one within the step the contact has neither ended nor begun from touch: it changes
-  // over where both are equally near, on the straight lines between their overlaps.
+  // A sphere whose centre is inside a closed mesh (overlap above its radius) touches the nearest face only.
+  // Where that face changes within the step, the contact does not begin or end at touch: it changes over
+  // where both faces are equally near, with linear interpolation of their overlaps.
   SCREE_HD void change_over(Index ends, const Overlaps& gone, Index begins, const Overlaps& come) const {
     const Real nearer0 = come.at_start - gone.at_start, nearer1 = gone.at_end - come.at_end;
     if (!(nearer0 > 0 && nearer1 > 0 && gone.at_start > 0 && come.at_end > 0)) return;
@@ -126,11 +125,11 @@ struct MeshStepTouchItem {
     before[ends].change = {Changeover::Kind::ends, overlap, share};
     before[begins].change = {Changeover::Kind::begins, overlap, 1 - share};
   }
-  // Of a contact that is only at the other end of the step.
+  // Sets the overlap at the end of the step at which the contact does not exist.
   SCREE_HD static void open(ContactGeometry& geometry) {
     if (geometry.overlap > 0) geometry.overlap = 0;
   }
-  // The entry that remembers the contact with a feature.
+  // Entry with the history of the contact with a feature; -1: none.
   SCREE_HD Index remembering(const MeshGroup& group, Index feature) const {
     if (in.history.bodies != nullptr)
       for (Index e = group.entry; e < group.entry + group.entries; ++e)

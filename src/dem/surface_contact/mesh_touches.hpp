@@ -1,5 +1,5 @@
-// Where particles touch meshes: found once for each particle and mesh near each other, before a law is asked.
-// One text for the CPU and CUDA.
+// Narrow phase of particles and meshes: found once for each particle and mesh near each other, before a law
+// is evaluated. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "dem/surface_contact/surface_items.hpp"
@@ -11,19 +11,20 @@
 
 namespace scree {
 
-// A sphere as it lies to a feature that it touches.
+// Geometry of a sphere and a feature in contact.
 struct FeaturePair {
-  ContactGeometry geometry;  // its direction in the global frame
-  Vec3 contact;              // as in MeshTouch
+  ContactGeometry geometry;  // direction in the global frame
+  Vec3 contact;              // see `MeshTouch`
 };
 
 SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
-// Whether a mesh has two sides. kSheets: whether any of the model's has, so that others take nothing for it.
+// Whether a mesh is an open (two-sided) surface. kSheets: whether the model has any, so that other models pay
+// nothing for it.
 template <bool kSheets>
 SCREE_HD bool is_sheet(const MeshView& mesh) {
   return kSheets && mesh.sheet;
 }
-// An edge or a vertex of a sheet that the centre is past acts as the plane across the normal there.
+// An edge or a vertex of an open surface that the centre has penetrated acts as the tangent plane there.
 template <bool kSheets>
 SCREE_HD bool acts_as_face(const MeshView& mesh, const MeshContact& found) {
   return is_face(mesh, found.feature) || (is_sheet<kSheets>(mesh) && found.distance < 0);
@@ -33,8 +34,8 @@ SCREE_HD Index remembered_feature(const MeshView& mesh, const MeshContact& conta
   return is_sheet<kSheets>(mesh) ? sided_feature(mesh, contact) : contact.feature;
 }
 
-// c: the sphere's centre in the mesh's frame. A face acts through the same function as an analytic plane, at
-// the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
+// c: the sphere's centre in the mesh's frame. A face uses the same function as an analytic plane, with the
+// contact one radius below the centre; an edge or a vertex acts as a sphere of zero radius.
 template <bool kSheets>
 SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
                                   Real radius) {
@@ -47,8 +48,8 @@ SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found
   return {{radius - found.distance, found.distance, normal, 1}, axes * found.point};
 }
 
-// The sides of the contacts of a group with a sheet, as they are remembered and, by a step that may be
-// accepted, kept. Laws that remember do both with their own records.
+// Sides of the contacts of a group with an open surface: read from the history and, in a step that may be
+// accepted, stored. Laws with a history store the sides in their own records.
 struct SideMemory {
   const HistoryViews& history;
   int records;
@@ -69,10 +70,10 @@ struct SideMemory {
   }
 };
 
-// Contacts of the particle now that were remembered, each with the entry that did.
+// Previous contacts of the particle, each with its entry.
 struct RememberedTouches {
   Index entry[kMeshSlots];
-  MeshContact contact[kMeshSlots];  // as the particle lay when the step began
+  MeshContact contact[kMeshSlots];  // at the position of the particle at the start of the step
   int count = 0;
 
   SCREE_HD void take_out(int k) {
@@ -81,9 +82,10 @@ struct RememberedTouches {
   }
 };
 
-// Which of them a contact goes on from, -1: none. First the same feature; then, of those on the same smooth
-// patch in about the same direction, the one of the lowest number; then, over a sharp edge, one on a
-// neighbouring patch that acted close by. No order of entries matters.
+// Index of the previous contact that a contact continues; -1: none. First the one with the same feature;
+// then, of those on the same smooth patch in about the same direction, the one with the lowest feature
+// number; then, over a sharp edge, one on a neighbouring patch that acted close by. The result does not
+// depend on the order of entries.
 enum class Kinship { same, same_patch, neighbour };
 SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old, Kinship kin,
                       Real contact_radius) {
@@ -102,22 +104,22 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
   return best;
 }
 
-// For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
-// the explicit step that ends there. kReaches: also what lies within in.reach of touch, of which the law says
-// whether it is a contact. What the particle touches is the same by either, unless its centre is deeper than
-// its radius inside a closed mesh.
+// Contacts of the g-th group, a particle and a mesh, at an instant or, with in.h above 0, over the explicit
+// step that ends there. kReaches: also pairs within in.reach beyond touch, for which the law decides whether
+// they are in contact. The contacts found are the same either way, unless the centre is deeper than its
+// radius inside a closed mesh.
 template <bool kReaches, bool kSheets>
 struct MeshTouchItem {
   SurfaceViews in;
   MeshTouch* touches;   // per entry
-  Standing* standings;  // per group; since the list was built
+  Standing* standings;  // per group; valid for this list
 
   SCREE_HD void operator()(Index g) const {
     if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g, Alone{});
   }
 
-  // Where the particle has not moved so far that its triangles must be looked at: writes its contact to
-  // `first`, for the first of the group's entries. Unclear: it must.
+  // Uses the cached contact where the particle has moved so little that no triangle needs to be tested:
+  // writes the contact to `first`, the first entry of the group. Unclear: the cache is invalid.
   SCREE_HD Nearest stay(Index g, MeshTouch& first) const {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
@@ -129,7 +131,7 @@ struct MeshTouchItem {
     return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
   }
 
-  // Of any group, at its triangles.
+  // Narrow-phase query of a group over its triangles.
   SCREE_HD_CALLER template <class Team>
   SCREE_HD void look(Index g, const Team& team) const {
     const MeshGroup group = in.meshes.groups[g];
@@ -157,19 +159,19 @@ struct MeshTouchItem {
   }
 
  private:
-  // What a look has found; the contact has a meaning where it is one.
+  // Result of a query; `contact` is defined for exactly one contact.
   struct Seen {
     Nearest found;
     MeshContact contact;
   };
-  // How it lies in the frame of the mesh, now and where the step began.
+  // The sphere in the frame of the mesh, now and at the start of the step.
   struct Sphere {
     const MeshView& mesh;
     const Mat3 &axes, &axes0;
     Vec3 c, c0;
     Real radius;
 
-    // Of a contact with this feature where the step began; side: as in mesh_feature_at().
+    // Contact normal of this feature at the start of the step; side: as in mesh_feature_at().
     SCREE_HD Vec3 normal0_of(Index feature, Vec3 side) const {
       return normal0_of(mesh_feature_at(mesh, feature, c0, side));
     }
@@ -190,7 +192,7 @@ struct MeshTouchItem {
   }
   SCREE_HD void put(MeshTouch& to, const Sphere& of, const MeshContact& found) const {
     const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
-    // One by one: what is stored piecemeal and loaded whole at once waits for the stores.
+    // Member by member: a whole load right after partial stores would stall.
     to.touches = pair.geometry.overlap > (kReaches ? -in.reach : 0);
     to.is_face = acts_as_face<kSheets>(of.mesh, found);
     to.geometry = pair.geometry, to.contact = pair.contact;
@@ -198,7 +200,7 @@ struct MeshTouchItem {
     to.feature = remembered_feature<kSheets>(of.mesh, found), to.triangle = found.triangle;
     to.from = -1;
   }
-  // For several contacts. Where there is one alone: that.
+  // Full search for several contacts; a single one is also returned.
   SCREE_HD Nearest look_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
     const MeshView& mesh = sphere.mesh;
     MeshContact found[kMeshSlots];
@@ -214,7 +216,7 @@ struct MeshTouchItem {
     if (count == 1) only_one = found[0];
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
   }
-  // The contact with the plane of the triangle that c is over, if that is within reach.
+  // Contact with the plane of the cached triangle. Returns whether it is within range.
   SCREE_HD bool is_over_within(const Sphere& sphere, const Standing& on, MeshContact& face) const {
     const MeshPart& part = sphere.mesh.parts[on.part];
     const Real height = dot(sphere.c - part.point, part.normal);
@@ -222,8 +224,8 @@ struct MeshTouchItem {
             height >= 0 ? part.normal : opposite(part.normal)};
     return face.distance < searched(sphere.radius);
   }
-  // That this contact, or none, is all of a group. False: it goes on from others than itself, and nothing was
-  // written.
+  // Writes this contact, or none, as the result of a group. Returns false, without writing, if the contact
+  // continues other history than its own.
   SCREE_HD bool write(const MeshGroup& group, const Sphere& sphere, Nearest found, MeshContact contact,
                       MeshTouch& first) const {
     const MeshView& mesh = sphere.mesh;
@@ -245,12 +247,12 @@ struct MeshTouchItem {
     for (Index k = 0; k < group.entries; ++k)
       memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
-  // How far from its centre a sphere of this radius may have contacts [m].
+  // Search radius for contacts of a sphere of this radius [m].
   SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
   SCREE_HD bool remembers(Index entry) const {
     return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
   }
-  // What the contacts of a group remember: in how many entries, and what in the last of these.
+  // Previous contacts of a group: their number, and the last one's entry and feature.
   struct Before {
     Index entries = 0, entry = -1, feature = kNoFeature;
   };
@@ -260,7 +262,8 @@ struct MeshTouchItem {
       if (memory().remembers(e)) ++before.entries, before.entry = e, before.feature = in.history.features[e];
     return before;
   }
-  // False: another feature is remembered. Gives a contact with a sheet the side on which it began.
+  // Whether the contact continues its own history, or none exists. Sets the side on which a contact with an
+  // open surface began.
   SCREE_HD static bool continues(const MeshView& mesh, const Before& before, MeshContact& contact) {
     if (before.entries == 0) return true;
     if (!is_sheet<kSheets>(mesh)) return before.feature == contact.feature;
@@ -279,8 +282,7 @@ struct MeshTouchItem {
     const MeshContact* contacts;
     int count;
   };
-  // Finds what the contacts go on from; of those that do, and of the others, the normals where the step
-  // began.
+  // Finds the history that the contacts continue, and the normals of all contacts at the start of the step.
   SCREE_HD void go_on(const MeshGroup& group, const Sphere& sphere, const Found& found) const {
     const MeshView& mesh = sphere.mesh;
     RememberedTouches old;
@@ -310,7 +312,7 @@ struct MeshTouchItem {
       if (out.from < 0) out.normal0 = sphere.normal0_of(found.contacts[k].feature, found.contacts[k].normal);
     }
   }
-  // What a remembered feature of a sheet is seen along where that has no sides.
+  // Direction in which a previous feature without sides is evaluated.
   SCREE_HD static Vec3 side_of(const Found& found, const MeshView& mesh, Index feature) {
     for (int k = 0; k < found.count; ++k)
       if (found.contacts[k].feature == feature) return found.contacts[k].normal;

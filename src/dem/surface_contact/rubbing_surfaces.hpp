@@ -1,5 +1,5 @@
-// What happens for one particle and one surface on a body over an implicit step in which contacts rub; beside
-// surface_items.hpp. One text for the CPU and CUDA.
+// Friction of one particle and one surface on a body over an implicit step; see surface_items.hpp. Shared by
+// the CPU and CUDA backends.
 #pragma once
 
 #include "dem/implicit/rubbing_items.hpp"
@@ -7,18 +7,18 @@
 
 namespace scree {
 
-// How the place on the body at `place` from its centre moves where the body takes a unit step along its k-th
-// coordinate (x, y, z, rx, ry, rz).
+// Displacement of the point `place` of a body, relative to its centre, for a unit displacement along the
+// body's k-th coordinate (x, y, z, rx, ry, rz).
 SCREE_HD Vec3 moved_by_unit(Vec3 place, int k) {
   const Vec3 axis{k % 3 == 0 ? Real(1) : Real(0), k % 3 == 1 ? Real(1) : Real(0),
                   k % 3 == 2 ? Real(1) : Real(0)};
   return k < 3 ? axis : cross(axis, place);
 }
 
-// On a sphere the force of friction acts at its centre with a couple about that, as between two spheres, on
-// other surfaces where they touch. Its part of the blocks is that of the Newton matrix of the particles
-// (RubbingEntry): the slip is minus the motion of the place of contact across the normal, one direction of
-// which is left in a slide.
+// Terms of the wrench and its blocks. The friction force acts at the centre of a sphere with a couple, as
+// between two spheres, and at the contact point of other surfaces. Its part of the blocks equals that in the
+// particles' Newton matrix (`RubbingEntry`): the slip is minus the tangential displacement of the contact
+// point, of which one direction is left while sliding.
 SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
   const StepContact& normal = c.contact.normal;
   const Vec3 n = normal.normal;
@@ -39,7 +39,7 @@ SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
          c.contact.rub.stiffness * (dot(a, b) - along - dot(t, a) * dot(t, b));
 }
 
-// Contacts over the step, for the k-th of the entries by_surface. in.spin: at the end.
+// Contact over the step, for the k-th of the entries by_surface. in.spin: at the end of the step.
 template <class Laws>
 struct SurfaceRubItem {
   SurfaceViews in;
@@ -84,21 +84,21 @@ struct SurfaceRubItem {
   }
 
  private:
-  // What the surface's own motion adds to what friction sees.
+  // Adds the conveyor velocity of the surface to the kinematics of the contact.
   SCREE_HD static void run_along(const SurfaceFrame& frame, RubbingPath& path) {
     add_slide(path.motion, frame.middle_slide());
     const Vec3 slide = frame.axes * frame.slide;
     path.velocity0 -= frame.before * frame.slide, path.velocity1 -= slide;
     path.slide = across(slide, path.normal1);
   }
-  // CarrierExcess::work() of all forces.
+  // Correction of the work on the parent, `CarrierExcess::work()`, for all forces.
   SCREE_HD static Real carrier_work(const Law& law, const RubbingPath& path, const RubbingContact& contact,
                                     const CarrierExcess& excess) {
     const Real force0 = start_force(law.normal.of_pair(path.size), path.step);
     return excess.work(force0 * path.normal0 - contact.leverage0 * contact.rub.start,
                        contact.normal.step.force * path.normal1 - contact.leverage * contact.rub.step);
   }
-  // Excess work of a surface that runs along itself [J]: its accounting takes at the start the velocity
+  // Correction of the belt work [J]: the accounting of the belt uses its velocity at the start for the force
   // there.
   SCREE_HD Real slide_work(const PlacedSurface& surface, const RubbingPath& path,
                            const RubbingContact& contact) const {
@@ -137,7 +137,8 @@ struct SurfaceRubItem {
   }
 };
 
-// As SurfaceShiftItem. rubs, surfaces, numbers: of the entries.
+// Right-hand side for the bodies' correction, see `SurfaceShiftItem`. rubs, surfaces, numbers: of the
+// entries.
 struct RubbingShiftItem {
   RubbingMatrix matrix;
   const Index *surface_offsets, *surfaces;

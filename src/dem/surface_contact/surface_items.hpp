@@ -1,5 +1,5 @@
-// What happens for one particle and one surface on a body: the contact is evaluated once, for the particle's
-// force and for the body's wrench. One text for the CPU and CUDA.
+// Contact of one particle and one surface on a body: evaluated once for the particle's force and the body's
+// wrench. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "dem/contact/contact_items.hpp"
@@ -11,14 +11,14 @@
 
 namespace scree {
 
-// Particles as contacts with bodies are looked at.
+// State of the particles for an evaluation of contacts with surfaces.
 struct SurfaceLook {
   const Vec4 *position, *velocity, *spin;  // spin: null where particles do not rotate
   HistoryViews history;
-  Real h = 0;  // of the explicit step that ends there [s]; 0: an instant
+  Real h = 0;  // length of the explicit step that ends there [s]; 0: an instant
 };
 
-// The particles, the placed surfaces and the list of those that are near each other.
+// The particles, the placed surfaces, and the list of pairs that are near each other.
 struct SurfaceViews {
   const Vec4 *position, *velocity;  // x, y, z, radius; x, y, z, mass
   const int* material;
@@ -27,18 +27,17 @@ struct SurfaceViews {
   const SurfaceFrame* frames;
   SurfaceNumbers numbers;
   MeshRows meshes;
-  const MeshTouch* touches;  // per entry with a mesh, as they are now
+  const MeshTouch* touches;  // per entry with a mesh, current
   const MeshTouchBefore* before;
   PeriodicBox box;
   HistoryViews history{};
-  int records = 0;             // per contact that is remembered
-  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
-  Real h = 0;                  // SurfaceLook
+  int records = 0;             // history records per contact
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws with `kMoves`
+  Real h = 0;                  // see SurfaceLook
   Real reach = 0;              // Contact::reach [m]
-  // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
-  // [kg]
+  // Mass of each placed surface's parent for damping laws; null: all parents are immovable [kg]
   const Real* masses = nullptr;
-  // Radii [m] that laws take instead of the particles' own; null: the particles' own.
+  // Radii [m] that laws use instead of the particles' own; null: the particles' own.
   const Real* law_radius = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
@@ -46,7 +45,7 @@ struct SurfaceViews {
   SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
     return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
   }
-  // What the contact remembers if the step is accepted.
+  // Stores the history of the contact for the case that the step is accepted.
   template <class Law, class History>
   SCREE_HD void remember(const PlacedSurface& surface, Index entry, const History& of_contact) const {
     if (history.ahead == nullptr) return;
@@ -59,15 +58,15 @@ struct SurfaceViews {
   }
 };
 
-// How a particle lies to a placed surface.
+// Geometry of a particle and a placed surface.
 struct SurfaceTouch {
   SurfacePair pair;
-  bool is_sphere;  // contacts act at its centre; else at pair.contact
+  bool is_sphere;  // contacts act at the sphere's centre; else at pair.contact
   bool is_face;
   bool touches;
 };
 
-// reach: how far beyond touch the two may have a contact, in.reach or 0 [m].
+// reach: interaction range beyond touch, in.reach or 0 [m].
 SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry, Vec4 p,
                                     Real reach) {
   if (surface.kind == SurfaceKind::mesh) {
@@ -76,11 +75,11 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
     return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
   }
   const bool is_sphere = surface.kind == SurfaceKind::sphere;
-  // A plane has no images: where it is touched must not depend on when the particle was last wrapped.
+  // Planes have no images: the contact point must not depend on when the particle was last wrapped.
   const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
   return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
-// Walls, edges and corners have no curvature that Hertz's law knows. p, u: of the entry's particle.
+// Walls, edges and vertices count as planes in Hertz's law. p, u: of the entry's particle.
 SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4 u) {
   const Index surface = in.surface_of(entry);
   const PlacedSurface& placed = in.placed[surface];
@@ -89,7 +88,7 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
           in.masses != nullptr ? in.masses[surface] : kInfinity};
 }
 
-// Position of a contact with a plane or a mesh when the step began, from the surface's point then [m].
+// Position of a contact with a plane or a mesh at the start of the step, from the surface's point then [m].
 // normal0: the contact's normal then; apart: displacement of the sphere's centre relative to the surface's
 // point since. On a face and an edge the contact is below the centre; at a vertex it is the vertex.
 SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
@@ -100,16 +99,16 @@ SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame
   const Vec3 material = frame.before * transposed_times(frame.axes, place);
   return material + across(centre - material, normal0);
 }
-// A velocity of the middle of a step, changed along the contact's normal at the end of the step: its rate
-// there becomes the rate along the normal of the middle, where the surface had turned by half.
+// Corrects a mid-step velocity along the contact's normal at the end of the step, so that its normal
+// component there equals that along the mid-step normal, with the surface rotated by half.
 SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 velocity) {
   const Vec3 normal = touch.pair.geometry.normal();
   return velocity - Real(0.5) * dot(cross(surface.turn, normal), velocity) * normal;
 }
-// Motion of a sphere i over a plane or a mesh j in a step; travel: relative to the material of j halfway
-// along the path of the contact [m]. face_motion() takes the part across the normal at the end for slip.
-// Where a face has turned, the part along the normal of the middle of the step must not count as slip: else a
-// contact that opens or closes slips.
+// Motion of a sphere i over a plane or a mesh j in a step; displacement: relative to the material of j
+// halfway along the contact's path [m]. face_motion() uses the tangential part at the end of the step as
+// slip. Where a face has rotated, the normal part at mid-step is excluded from the slip; otherwise a contact
+// that opens or closes would slip.
 SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 normal0,
                                    Vec3 travel, const TurningPartner& i, const TurningPartner& j, Real h) {
   const ContactGeometry& geometry = touch.pair.geometry;
@@ -119,8 +118,8 @@ SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTo
   return face_motion(geometry, normal0, travel, i, j, h);
 }
 
-// Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
-// entries by_surface.
+// Loads at one instant or, for laws with `kMoves`, over the explicit step that ends there; for the k-th of
+// the entries by_surface.
 template <class Laws>
 struct SurfaceLoadItem {
   SurfaceViews in;
@@ -172,7 +171,7 @@ struct SurfaceLoadItem {
     return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
   }
 
-  // Of those in reach of each other the law says which have a contact.
+  // Whether a pair within the interaction range is in contact.
   SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
     if constexpr (kReaches<Law>)
       return law.closed(state, before);
@@ -185,7 +184,8 @@ struct SurfaceLoadItem {
     const bool closed = is_closed(law, state, before);
     if (!closed) {
       in.template remember_none<Law>(entry);
-      loads[entry].touches = in.h > 0 && Law::breaks(before);  // for what the step that parts the two loses
+      loads[entry].touches = in.h > 0 && Law::breaks(before);  // the step that opens the contact may
+                                                               // dissipate energy
       if (!loads[entry].touches) return;
     }
     MovingPair pair = moving_pair(state, touch, surface, entry);
@@ -204,9 +204,9 @@ struct SurfaceLoadItem {
       loads[entry].energy = EnergyOf{}(law, at, before);
     }
   }
-  // A sphere of a body moves as another particle does: its force acts at its centre, with a couple about
-  // that. A face acts at the particle's radius below its centre, so that the two turn together without slip;
-  // an edge or a corner where it is.
+  // Kinematics of a contact. A sphere of a body is treated like another particle: its force acts at its
+  // centre, with a couple. A face acts one radius below the particle's centre, so that both rotate together
+  // without slip; an edge or a vertex acts at its position.
   SCREE_HD MovingPair moving_pair(PairState state, const SurfaceTouch& touch, const PlacedSurface& surface,
                                   Index entry) const {
     const Index i = in.entries.particles[entry];
@@ -230,11 +230,11 @@ struct SurfaceLoadItem {
     }
     const ContactMotion motion =
         motion_over(surface, touch, normal0, in.h * state.velocity, one, {turning}, in.h);
-    // A dashpot along the normal acts on the rate of the overlap.
+    // The normal dashpot acts on the overlap rate.
     if (!at_rest && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
     return {state, motion};
   }
-  // Velocity of a surface that runs along itself, where they touch [m/s].
+  // Conveyor velocity of a surface at the contact [m/s].
   SCREE_HD Vec3 slide_at(const SurfaceTouch& touch, const PlacedSurface& surface) const {
     const SurfaceFrame& frame = in.frames[surface.frame];
     return across(frame.axes * frame.slide, touch.pair.geometry.normal());
@@ -248,11 +248,11 @@ struct SurfaceLoadItem {
   }
 };
 
-// How a particle lies to a placed surface at both ends of an implicit step.
+// Geometry of a particle and a placed surface at both ends of an implicit step.
 struct SurfacePath {
   SurfaceTouch now, start;
-  // Displacements [m]: travel of the particle's centre relative to the surface's material halfway along the
-  // contact's path, turned of that material about the surface's point.
+  // Displacements [m]. travel: of the particle's centre relative to the surface's material halfway along the
+  // contact's path; turned: of that material relative to the surface's point, by rotation.
   Vec3 travel, turned;
   Changeover change{};
 };
@@ -262,7 +262,7 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
   SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}, {}};
   if (surface.kind == SurfaceKind::mesh) {
     out.start = out.now;
-    if (!out.now.touches) return out;  // at neither end
+    if (!out.now.touches) return out;  // no contact at either end
     const MeshTouchBefore& at = in.before[entry];
     out.start.pair = {at.geometry, at.contact}, out.change = at.change;
     out.start.touches = at.geometry.overlap > 0, out.now.touches = out.now.pair.geometry.overlap > 0;
@@ -279,13 +279,13 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
   return out;
 }
 
-// The energy ledger of a carrier takes the work of a force at `arm` from its centre along the carrier's
-// displacement and turn, d + turn x arm. By how much the travel of a SurfacePath is more than the particle's
-// displacement less that, for the forces at the start and the end of an implicit step [m].
+// Difference between two displacements of the particle relative to the surface, for the forces at the start
+// and the end of an implicit step [m]: that of a SurfacePath, and that of the parent's energy ledger, which
+// moves a point at `arm` from the parent's centre by d + rotation x arm.
 struct CarrierExcess {
   Vec3 start, end;
 
-  // The work that the energy accounting of the contact must leave out [J]; forces: on the particle.
+  // Work that the energy accounting of the contact must leave out [J]; forces: on the particle.
   SCREE_HD Real work(Vec3 start_force, Vec3 end_force) const {
     return Real(0.5) * (dot(start_force, start) + dot(end_force, end));
   }
@@ -335,14 +335,13 @@ struct SurfaceStepItem {
   }
 };
 
-// How the placed surfaces have moved by the bodies' last correction: their points [m], and about these, of
-// spheres times the radius [m], of others [rad].
+// Displacements of the placed surfaces by the bodies' last correction: of their points [m], and rotations; of
+// spheres times the radius [m], else [rad].
 struct SurfaceMoves {
   const Vec3 *move, *turn;
 };
 
-// The bodies have taken their correction: as a known part of the solution it moves to the right-hand side of
-// the particles' system.
+// Right-hand side for the bodies' correction, which is a known part of the solution of the particles' system.
 template <class Rows>
 struct SurfaceShiftItem {
   ContactViews<Rows> in;

@@ -1,4 +1,4 @@
-// What one particle does to a wall. One text for the CPU and CUDA.
+// Loads of one particle on a wall. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "dem/contact/contact_items.hpp"
@@ -6,7 +6,7 @@
 
 namespace scree {
 
-// Sums over what touches a wall, at one instant.
+// Sums over the contacts of a wall at one instant.
 enum WallTerm {
   kWallForce,                    // three terms, on the wall [N]
   kWallTorque = kWallForce + 3,  // three terms, about the wall's point [N m]
@@ -18,14 +18,13 @@ struct WallTerms {
   Real value[kWallTerms];
 };
 
-// The wall in question, and what brings positions into the periodic box: torques must not depend on when a
-// particle was last wrapped.
+// Selected wall and periodic box: torques must not depend on when a particle was last wrapped.
 struct WallChoice {
   Index wall;        // index into Model::walls
-  Vec3 min, period;  // of the space [m]
+  Vec3 min, period;  // of the domain [m]
 };
 
-// What a wall sees of a contact: the force on the item, and from where its centre touches.
+// A contact from the side of the wall: force on the item, and its contact point.
 struct WallLoad {
   Vec3 force;    // [N]
   Vec3 to_wall;  // from the item's centre to the point of contact [m]
@@ -40,7 +39,7 @@ struct WallLoadOf {
   SCREE_HD WallLoad operator()(const Law& law, const Pair& pair, const History& old) const {
     return {law.load(pair, old).load.force, -pair.geometry.distance * pair.geometry.direction};
   }
-  // Bodies book what they do to walls themselves.
+  // Bodies account for their loads on walls themselves.
   template <class Views>
   SCREE_HD const WallLoad* stored(const Views&, Index) const {
     return nullptr;

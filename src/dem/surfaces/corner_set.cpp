@@ -72,8 +72,8 @@ Contact CornerSet::with_own_materials(Contact contact) const {
   return contact;
 }
 
-// Along periodic axes positions are multiples of the space's quantum, so that they do not depend on the side
-// on which the mesh was brought into the box.
+// Along periodic axes positions are multiples of the domain's quantum, so that they do not depend on the
+// image of the mesh in the periodic box.
 PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 place, bool at_start,
                            Vec3 snap_constant) {
   const Vec3 before = frame.before * place, turned = at_start ? before : frame.axes * place;

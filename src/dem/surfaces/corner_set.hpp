@@ -1,4 +1,4 @@
-// The corners of bodies' meshes as items of the pass in which bodies meet planes.
+// Vertices of bodies' meshes as items of the pass that finds contacts of bodies with planes.
 #pragma once
 
 #include <span>
@@ -10,45 +10,44 @@
 
 namespace scree {
 
-// Corners are numbered behind the placed surfaces, mesh by mesh.
+// Vertices are numbered after the placed surfaces, mesh by mesh.
 class CornerSet {
  public:
   struct OfMesh {
     Index surface;  // number of the placed mesh
-    Index first;    // number of its first corner
+    Index first;    // number of its first vertex
     const HullCorners* hull;
   };
 
   CornerSet(const Model& model, const SurfaceSet& surfaces);
   bool empty() const { return meshes_.empty(); }
   bool has(Index item) const { return item >= surfaces_; }
-  // The placed surface that an item is, or whose corner it is.
+  // The placed surface that is the item, or to which the vertex belongs.
   Index surface_of(Index item) const { return has(item) ? mesh_of(item).surface : item; }
   const OfMesh& mesh_of(Index corner) const;
-  // Position of a corner in the frame of its mesh [m].
+  // Position of a vertex in the frame of its mesh [m].
   Vec3 position_of(Index corner) const {
     const OfMesh& mesh = mesh_of(corner);
     return mesh.hull->corners[static_cast<std::size_t>(corner - mesh.first)];
   }
-  // Adds the corners that are less than the margin [m] over one of the planes, or below it, by number: a mesh
-  // that is far from all of them costs one test.
+  // Adds the vertices that are less than the margin [m] above one of the planes, or below it, by number. A
+  // mesh that is far from all planes costs one test.
   void add_near_planes(const SurfacePlaces& places, std::span<const WallPlane> planes, Real margin,
                        std::vector<Index>& to) const;
-  // A corner neither rolls nor resists twisting: where the deck has laws for that, the materials stand twice
-  // in what comes out, behind the others without these laws.
+  // Contact parameters with every material twice. Vertices have neither rolling nor twisting resistance: they
+  // use the second set of materials, without these laws. Unchanged where the deck has none.
   Contact with_own_materials(Contact contact) const;
 
  private:
-  Index surfaces_;  // how many are placed
+  Index surfaces_;  // number of placed surfaces
   std::vector<OfMesh> meshes_;
 };
 
-// A corner at one instant, with the members that PlacedSurface has for spheres.
+// A vertex at one instant, with the members that `PlacedSurface` has for spheres.
 struct PlacedCorner {
   Vec3 point, arm, velocity, travel;
 };
-// snap_constant: of the Subdomain. at_start: the corner is where the step began, with the mesh as it was
-// there.
+// snap_constant: of the Subdomain. at_start: at the start of the step.
 PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 place, bool at_start,
                            Vec3 snap_constant);
 

@@ -1,5 +1,4 @@
-// Particles near meshes, and where they touch them: what the search and the look leave to the contacts'
-// items.
+// Particles near meshes and their contacts with them: output of the search and of the narrow phase.
 #pragma once
 
 #include "base/types.hpp"
@@ -13,21 +12,22 @@
 
 namespace scree {
 
-// A particle and a placed mesh that is moved by `shift`, when a list is built.
+// A particle and a placed mesh shifted by `shift`, when a list is built.
 struct MeshSight {
   const PlacedSurface& surface;
   const SurfaceFrame& frame;
   const MeshView& mesh;
   Vec4 p;  // x, y, z, radius
   Vec3 shift;
-  Real past;  // how far past touch triangles are looked for, and as far as the two may move [m]
+  Real past;  // search margin beyond touch, which also bounds the relative motion until the next list [m]
 
-  // Calls visit(triangle) for those of the row.
+  // Calls visit(triangle) for the triangles of the row.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_triangle(const Visit& visit) const {
     for_each_centre([&](Vec3 c) { for_each_triangle_near(mesh, c, p.w + past, visit); });
   }
-  // How many entries the row needs for the mesh, of whose contacts the particle remembers so many.
+  // Number of entries that the row needs for the mesh. remembered: contacts of the particle with it in the
+  // history.
   SCREE_HD Index entries(RowKind kind, const Index* triangles, Index count, Index remembered) const {
     bool one_sided = mesh.sheet && kind == RowKind::smooth;
     if (one_sided)
@@ -38,7 +38,7 @@ struct MeshSight {
   }
 
  private:
-  // In the frame of the mesh.
+  // Centres in the frame of the mesh.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_centre(const Visit& visit) const {
     for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
@@ -47,8 +47,8 @@ struct MeshSight {
   }
 };
 
-// A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
-// have there or remembers, and the triangles that it may touch.
+// A particle near a mesh: its entries for that mesh, one for each contact that is possible or in the history,
+// and the triangles in range.
 struct MeshGroup {
   Index entry, entries;
   Index first_triangle, triangles;
@@ -64,21 +64,21 @@ struct MeshRows {
 
 // A contact with a mesh, per entry.
 struct MeshTouch {
-  bool touches;  // else nothing below has a meaning
-  bool is_face;  // or acts as one
+  bool touches;  // else all members below are undefined
+  bool is_face;  // a face, or acting as one
   ContactGeometry geometry;
-  Vec3 contact;    // where forces act, from the surface's point [m]
-  Vec3 normal0;    // where the step began
-  Index feature;   // on a sheet with the side (mesh/sheet_sides.hpp)
-  Index triangle;  // over a step, a contact that ended in it has the triangle of its start
-  Index from;      // entry whose memory the contact goes on from; -1: none
+  Vec3 contact;    // application point of forces, from the surface's point [m]
+  Vec3 normal0;    // normal at the start of the step
+  Index feature;   // on open surfaces with the side (mesh/sheet_sides.hpp)
+  Index triangle;  // over a step: of a contact that ended, the triangle at its start
+  Index from;      // entry whose history the contact continues; -1: none
 
-  // Both flags: they are read at once.
+  // Resets both flags, because they are read together.
   SCREE_HD void set_none() { touches = is_face = false; }
 };
 
-// The same contact where an implicit step began. One that was open then, or is open at the end, has no
-// overlap there, unless it changes over.
+// A mesh contact at the start of an implicit step. A contact that exists at only one end of the step has an
+// overlap of zero at the other, unless it changes over.
 struct MeshTouchBefore {
   ContactGeometry geometry;
   Vec3 contact;

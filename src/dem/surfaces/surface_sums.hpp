@@ -1,6 +1,6 @@
-// What the contacts of a surface sum to: forces and torques on the body that carries it, and for implicit
-// steps their derivatives. Exact sums: the same bits in any order of the contacts and for any split over
-// ranks.
+// Sums over the contacts of a surface: forces and torques on its parent, and for implicit steps their
+// derivatives. The sums are exact: they have the same bits for any order of the contacts and any distribution
+// over ranks.
 #pragma once
 
 #include <algorithm>
@@ -17,37 +17,37 @@
 
 namespace scree {
 
-// What the step solves with, of one contact.
+// Quantities of one contact that an implicit step is solved with.
 struct StepContact {
-  StepContactForce step;  // what the step's end must hold for the step to be right: see step_contact_force
-  Real end_force;         // at the end itself [N]
-  Vec3 normal;            // there
+  StepContactForce step;  // force for the end of the step, see step_contact_force
+  Real end_force;         // force of the law at the end of the step [N]
+  Vec3 normal;            // at the end of the step
 };
 
-// One contact of a particle with a surface on a body at an instant; evaluated once, for both.
+// One contact of a particle with a surface on a body at an instant; evaluated once for both.
 struct SurfaceLoad {
-  bool touches;                    // else nothing below has a meaning
+  bool touches;                    // else all members below are undefined
   ContactLoadOf<Real, Vec3> load;  // on the particle
   ContactEnergy energy;
-  Vec3 arm;                // from the body's centre to where they touch [m]
-  Vec3 particle_arm;       // contact_arm() of the particle
-  RubbingLosses losses{};  // of laws that move
-  Real slide_power = 0;    // of the force on a surface that runs along itself [W]
+  Vec3 arm;                // from the body's centre to the contact point [m]
+  Vec3 particle_arm;       // contact_arm() on the particle's side [m]
+  RubbingLosses losses{};  // for laws with `kMoves`
+  Real slide_power = 0;    // power of the force on a conveyor surface [W]
 };
 
-// The same over an implicit step.
+// One contact of a particle with a surface on a body over an implicit step.
 struct SurfaceStep {
   bool touches;
   StepContact contact;
   ContactBooks books;
-  Vec3 arm;               // at the end
-  Vec3 contact_arm{};     // from the surface's point to where they touch, at the end [m]
-  bool is_sphere = true;  // the surface
+  Vec3 arm;               // at the end of the step [m]
+  Vec3 contact_arm{};     // from the surface's point to the contact point, at the end of the step [m]
+  bool is_sphere = true;  // whether the surface is a sphere
 };
 
-// Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre,
-// and slide_power; kStepTerms: at the end of the step, for the step, and the packed 6 x 6 blocks of stiffness
-// and damping.
+// Terms of one contact in the sums of its surface. kWrenchTerms: force and torque on the body about its
+// centre, and belt power; kStepTerms: these at the end of the step and for the step, and the packed 6 x 6
+// blocks of stiffness and damping.
 inline constexpr int kBlockRows = 6, kWrenchTerms = kBlockRows + 1, kBlockTerms = 21;
 inline constexpr int kStepTerms = 2 * kWrenchTerms + 2 * kBlockTerms;
 
@@ -66,7 +66,7 @@ SCREE_HD Real sum_term(const SurfaceLoad& c, int k) {
   return component(force, cross(c.arm, force) + c.load.torque_j, k);
 }
 
-// Place of the k-th of kStepTerms in the blocks, from 2 kWrenchTerms on.
+// Row and column of the k-th of kStepTerms in the blocks, which begin at 2 kWrenchTerms.
 struct BlockPlace {
   bool is_stiffness;
   int row, column;
@@ -78,10 +78,12 @@ SCREE_HD BlockPlace block_place(int k) {
   return {is_stiffness, row, row + column};
 }
 
-// The wrench is -F w with w = (n, arm x n), along which the overlap grows with the body's motion.
+// The wrench is -F w with w = (n, arm x n), the derivative of the overlap with respect to the body's motion.
 SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
   const Vec3 n = c.contact.normal, moment = cross(c.arm, n);
-  if (k == kBlockRows || k == kWrenchTerms + kBlockRows) return 0;  // a surface's own motion only rubs
+  if (k == kBlockRows || k == kWrenchTerms + kBlockRows)
+    return 0;  // conveyor motion acts through friction
+               // only
   if (k < kWrenchTerms) return -c.contact.end_force * component(n, moment, k);
   if (k < 2 * kWrenchTerms) return -c.contact.step.force * component(n, moment, k - kWrenchTerms);
   const BlockPlace at = block_place(k);
@@ -89,10 +91,10 @@ SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
   return slope * component(n, moment, at.row) * component(n, moment, at.column);
 }
 
-// Of the contacts of one surface.
+// Sums over the contacts of one surface.
 template <int kTerms>
 struct SurfaceSums {
-  Index surface = 0;  // of the placed ones
+  Index surface = 0;  // number among the placed surfaces
   Index contacts = 0;
   ExactSum sum[kTerms];
 
@@ -114,7 +116,7 @@ struct SurfaceSums {
 using InstantSums = SurfaceSums<kWrenchTerms>;
 using StepSums = SurfaceSums<kStepTerms>;
 
-// Ordered by place(), one entry each.
+// Sums ordered by place(), with equal ones merged.
 template <class Sums>
 std::vector<Sums> merged_by_place(std::vector<Sums> sums) {
   std::stable_sort(sums.begin(), sums.end(),

@@ -1,4 +1,4 @@
-// Surfaces that particles touch, in the frame of what carries them: the ground or a body.
+// Surfaces in contact with particles, in the frame of their parent: the ground or a body.
 #pragma once
 
 #include <span>
@@ -16,60 +16,60 @@
 
 namespace scree {
 
-enum class SurfaceKind : int { plane, sphere, mesh };  // discs are spheres: their centres lie in one plane
+enum class SurfaceKind : int { plane, sphere, mesh };  // discs are spheres with centres in one plane
 
-// A surface that is not a plane at rest; constant.
+// Constant description of a surface other than a static plane.
 struct Surface {
   SurfaceKind kind;
-  int carrier;  // index into Model::bodies; past these the walls of SurfaceSet, one after the other
+  int carrier;  // parent: index into Model::bodies; after these the walls of SurfaceSet, one after the other
   int material;
-  Vec3 point;    // of a plane, a sphere's centre, the origin of a mesh; in the carrier's frame [m]
-  Vec3 normal;   // of a plane: unit, into its free side
+  Vec3 point;    // of a plane, centre of a sphere, origin of a mesh; in the parent's frame [m]
+  Vec3 normal;   // of a plane: unit vector into its free side
   Real radius;   // of a sphere [m]
   int mesh = 0;  // of a mesh: index into Model::meshes
   bool moves = true;
 };
 
-// Meshes that move are looked for so many times as far past touch as other surfaces: corners of theirs go far
-// while particles hardly do, and rows of triangles are cheap beside a new list.
+// Search distance beyond touch of moving meshes over that of other surfaces: vertices of a mesh may move far
+// while particles hardly move, and rows of triangles are cheap compared with a new list.
 inline constexpr Real kMeshSkins = 2;
-// What a list must cover of their motion, as that of a particle: which has half a skin, and they all beyond.
+// Weight of their displacement in that of the list: a particle may move by half a skin, a mesh by the rest.
 inline constexpr Real kMeshWear = 1 / (2 * kMeshSkins - 1);
 
-// A wall in the form the items read. Of a plane at rest that is all; `placed`: of another wall its number
-// among the placed surfaces, else -1.
+// A wall for the kernels; complete for a static plane. placed: number of another wall among the placed
+// surfaces, else -1.
 struct WallPlane {
   Vec3 point, normal;
   int material;
   Index placed = -1;
 };
 std::vector<WallPlane> wall_planes(const Model& model);
-// Whether a mesh of the model has two sides.
+// Whether the model has open (two-sided) meshes.
 bool has_sheets(const Model& model);
 
-// The surfaces of a model are numbered: the walls in the deck's order, then the shapes of the bodies, then
-// their meshes. All but the planes at rest are placed anew as time goes on; these have a second number, first
-// those on bodies, then the walls.
+// Numbering of a model's surfaces: the walls in the deck's order, then the shapes of the bodies, then their
+// meshes. All but static planes are placed surfaces, whose poses may change; these have a second number,
+// first those on bodies, then the walls.
 class SurfaceSet {
  public:
   explicit SurfaceSet(const Model& model);
-  Index ground() const { return ground_; }  // how many are walls
+  Index ground() const { return ground_; }  // number of walls
   Index placed() const { return static_cast<Index>(surfaces_.size()); }
   const Surface& at(Index placed) const { return surfaces_[static_cast<std::size_t>(placed)]; }
   Index number_of(Index placed) const {
     return placed < on_bodies_ ? ground_ + placed : walls_[static_cast<std::size_t>(placed - on_bodies_)];
   }
-  // Of the mesh-th of a body's meshes: they stand behind the shapes of all bodies.
+  // Number among the placed surfaces of a body's mesh; meshes come after the shapes of all bodies.
   static Index placed_mesh(const Model& model, int body, int mesh);
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
-  // How far past touch it is looked for where planes at rest are by `skin` [m].
+  // Search distance beyond touch of a placed surface; skin: that of static planes [m].
   Real skin_of(Index placed, Real skin) const {
     const Surface& surface = at(placed);
     return surface.kind == SurfaceKind::mesh && surface.moves ? kMeshSkins * skin : skin;
   }
-  // Bodies, and walls that are placed.
+  // Number of bodies and placed walls.
   std::size_t carriers() const { return carriers_; }
-  // Whether nothing that carries them ever moves, nor do surfaces run along themselves.
+  // Whether no placed surface ever moves or is a conveyor.
   bool at_rest() const { return at_rest_; }
 
  private:
@@ -80,10 +80,10 @@ class SurfaceSet {
   std::vector<Index> walls_;
 };
 
-// Which surface an entry of a row is about.
+// Maps the surface number of an entry to a plane or a placed surface.
 struct SurfaceNumbers {
   const WallPlane* planes;
-  Index ground;  // how many are walls
+  Index ground;  // number of walls
 
   SCREE_HD bool at_rest(Index number) const { return number < ground && planes[number].placed < 0; }
   SCREE_HD Index placed(Index number) const {
@@ -91,52 +91,52 @@ struct SurfaceNumbers {
   }
 };
 
-// A placed surface where it is at one instant, as the items read it.
+// Pose and motion of a placed surface at one instant, for the kernels.
 struct PlacedSurface {
   SurfaceKind kind;
   int material;
   Real radius;          // of a sphere [m]
-  Vec3 point, normal;   // as in Surface, in the global frame
-  Vec3 arm;             // of the point, from the body's centre [m]
+  Vec3 point, normal;   // as in `Surface`, in the global frame
+  Vec3 arm;             // from the body's centre to the point [m]
   Vec3 velocity, spin;  // of the body [m/s], [rad/s]
-  // Since the step began, where something asks for it: of the point [m], and of the body about its centre
-  // [rad]. The point's is exact, so that nothing is left over of a surface that comes back.
+  // Since the start of the step, where needed: displacement of the point [m], and rotation of the body about
+  // its centre [rad]. The displacement is exact, so that it cancels for a surface that returns.
   Vec3 travel, turn;
-  Index frame = 0;  // of a plane or a mesh: its SurfaceFrame
+  Index frame = 0;  // of a plane or a mesh: index of its SurfaceFrame
 
-  // Of the place on the body at `from_point` from the point.
+  // Velocity of a point of the body; from_point: relative to the surface's point.
   SCREE_HD Vec3 velocity_at(Vec3 from_point) const { return velocity + cross(spin, arm + from_point); }
-  // A plane or a mesh that has turned since then.
+  // Whether it is a plane or a mesh that has rotated since the start of the step.
   SCREE_HD bool turns() const { return kind != SurfaceKind::sphere && !(turn == Vec3{}); }
 };
 
-// How a placed plane or mesh is turned. Spheres have none.
+// Orientation of a placed plane or mesh. Spheres have none.
 struct SurfaceFrame {
-  Mat3 axes;    // from the carrier's frame to the global one, now
-  Mat3 before;  // the same where the step began
-  Vec3 normal;  // of a plane, in the carrier's frame
+  Mat3 axes;    // rotation from the parent's frame to the global one, now
+  Mat3 before;  // the rotation at the start of the step
+  Vec3 normal;  // of a plane, in the parent's frame
   Index mesh;   // index into the meshes
-  // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
-  // and particles are where they are beside its middle.
-  Vec3 spanned{}, middle{};  // [m], the latter in the carrier's frame
-  // From the surface's point to its middle, on the space's quanta: what is beside what is told by the middle,
-  // as the point may be anywhere [m].
+  // spanned: periods that a mesh spans, through whose sides it continues. Along these it has no images, and
+  // the particles' images nearest to its middle are used.
+  Vec3 spanned{}, middle{};  // [m]; middle: in the parent's frame
+  // From the surface's point to the mesh's middle, in quanta of the domain [m]. Images are chosen by the
+  // middle, because the point may be anywhere.
   Vec3 to_middle{};
-  Vec3 slide{};  // velocity of a surface that runs along itself, in the carrier's frame [m/s]
+  Vec3 slide{};  // conveyor velocity, in the parent's frame [m/s]
 
-  // How far the surface's material halfway along the path of a contact has come since, beside its point; the
-  // contact's positions now and where the step began, each from the point then [m]. README.md, "Surfaces that
-  // turn", says why. Exactly zero where nothing turns.
+  // Displacement, relative to the surface's point, of the material halfway along the path of a contact since
+  // the start of the step [m]; arguments: the contact's positions now and then, each from the point at that
+  // time. Exactly zero without rotation. See dem/README.md.
   SCREE_HD Vec3 travel_under(Vec3 now, Vec3 at_start) const {
     const Vec3 local = Real(0.5) * (transposed_times(axes, now) + transposed_times(before, at_start));
     return axes * local - before * local;
   }
   SCREE_HD bool runs() const { return !(slide == Vec3{}); }
-  // The surface's own velocity in the middle of the step [m/s].
+  // Conveyor velocity at mid-step [m/s].
   SCREE_HD Vec3 middle_slide() const { return Real(0.5) * (axes * slide + before * slide); }
 };
 
-// A particle's place beside the mesh [m].
+// Image of a particle's position nearest to the mesh's middle, along the periods that it spans [m].
 SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p) {
   const Vec3 period = frame.spanned;
   if (period == Vec3{}) return p;
@@ -144,7 +144,8 @@ SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& fra
   return wrap(surface.point + frame.to_middle - Real(0.5) * period, period, p, unused);
 }
 
-// Calls visit(place) for all that this may be while the particle moves by less than the margin [m].
+// Calls visit(position) for all images that may become the nearest while the particle moves by less than the
+// margin [m].
 SCREE_HD_CALLER template <class Visit>
 SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p,
                                     Real margin, const Visit& visit) {
@@ -167,14 +168,14 @@ struct SurfacePlaces {
   std::span<const PlacedSurface> placed;
   std::span<const SurfaceFrame> frames;
   std::span<const MeshView> meshes;
-  std::span<const PlacedSurface> start{};  // where an implicit step began
+  std::span<const PlacedSurface> start{};  // at the start of an implicit step
 };
 
-// A sphere at p (x, y, z, radius) as it lies to a plane or sphere that is moved by `shift`.
+// A sphere at p (x, y, z, radius) and a plane or sphere shifted by `shift`.
 struct SurfacePair {
   ContactGeometry geometry;
-  // Where they touch, from the surface's point: on a sphere; at the particle's radius below its centre at a
-  // plane, whose material there turns with a particle that sticks to it without slip [m].
+  // Contact point from the surface's point [m]: on a sphere; at a plane one particle radius below the centre,
+  // where its material rotates with a particle that sticks to it without slip.
   Vec3 contact;
 };
 
@@ -188,13 +189,13 @@ SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4
   return {g, surface.radius * g.normal()};
 }
 
-// Near which surfaces each particle is: a list of the same reach as the neighbour list. An entry stands in
-// the row of its particle, ordered by surface and image.
+// Neighbour list of particles and surfaces, with the range of the particles' list. Entries are grouped by
+// particle, and ordered by surface and image within a row.
 struct SurfaceEntries {
   const Index* surfaces;      // per entry
-  const std::int8_t* images;  // number of the shift of the surface, 13 for none
-  const Index* particles;     // whose row it stands in
-  const Index* by_surface;    // the entries with placed surfaces, surface by surface
+  const std::int8_t* images;  // number of the surface's shift, 13 for none
+  const Index* particles;     // particle of the entry's row
+  const Index* by_surface;    // entries with placed surfaces, ordered by surface
 };
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// What presses on the triangles of meshes and drags them along, at one instant. Exact sums: the same bits in
-// any order of the contacts and for any split over ranks.
+// Normal and tangential loads on the triangles of meshes at one instant. The sums are exact: they have the
+// same bits for any order of the contacts and any distribution over ranks.
 #pragma once
 
 #include <span>
@@ -15,33 +15,33 @@
 
 namespace scree {
 
-// Of one triangle's contacts.
+// Sums over the contacts of one triangle.
 struct TriangleSums {
-  Index surface = 0, triangle = 0;  // of the placed surfaces; in its mesh's SurfaceMesh
+  Index surface = 0, triangle = 0;  // number of the placed surface; index in its SurfaceMesh
   ExactSum normal;                  // force towards the surface, along the contacts' normals [N]
-  ExactSum tangential[3];           // the rest of the force on the surface, global axes [N]
+  ExactSum tangential[3];           // tangential force on the surface, global axes [N]
 
   std::pair<Index, Index> place() const { return {surface, triangle}; }
   void add(const TriangleSums& part);
 };
 
-// The same as numbers.
+// Rounded sums of a triangle.
 struct TriangleLoad {
   Index surface, triangle;
   Real normal;      // [N]
   Vec3 tangential;  // [N]
 };
 
-// Contacts of a rank's particles with meshes as they were found last; on the host.
+// Contacts of a rank's particles with meshes from the last evaluation; on the host.
 struct MeshLoads {
   std::span<const MeshGroup> groups;
   // Per entry.
-  std::span<const Index> surfaces;  // by number
+  std::span<const Index> surfaces;  // by surface number
   std::span<const MeshTouch> touches;
   std::span<const SurfaceLoad> loads;
 };
 
-// Of the triangles that something touches, ordered by place. numbers: with planes on the host.
+// Sums of the triangles in contact, ordered by place(). numbers: with planes on the host.
 std::vector<TriangleSums> triangle_sums(const MeshLoads& contacts, const SurfaceNumbers& numbers);
 
 }  // namespace scree
