@@ -1,4 +1,4 @@
-// The cell grid in the order of a GPU's caches.
+// The cell grid of the neighbour search, numbered for the caches of a GPU.
 #pragma once
 
 #include <algorithm>
@@ -8,22 +8,23 @@
 
 namespace scree {
 
-// Cells are numbered brick by brick, so that the particles of a thread block and most of their neighbours
-// share cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. Bricks are numbered along the axis with the fewest
-// of them first, so that those beside each other are as close in memory as can be. With several ranks the
-// interior comes first: the bricks whose particles meet no ghost and are ghosts nowhere.
+// Cells are numbered block by block, so that the particles of a thread block and most of their neighbours
+// share cache lines: cell blocks of 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. The cell blocks are numbered along
+// the axis with the fewest of them first, which puts neighbouring ones as close in memory as possible. With
+// several ranks the interior comes first: the cell blocks whose particles have no ghost neighbours and are no
+// ghosts on another rank.
 struct BrickGrid {
   SearchCells cells;
-  Index shift[3] = {2, 2, 2};   // sides of a brick as powers of two
-  Index stride[3] = {1, 1, 1};  // from a brick to the next along an axis
+  Index shift[3] = {2, 2, 2};   // log2 of the side of a cell block [cells]
+  Index stride[3] = {1, 1, 1};  // between neighbouring cell blocks along an axis
   Index bricks = 1;
-  // Along the axes from the smallest stride to the largest: the axis, and where the interior begins and how
-  // long it is.
+  // The axes from the smallest stride to the largest, each with the range of the interior's cell blocks on
+  // it.
   struct Along {
     int axis;
     Index first, length;
   } along[3] = {};
-  Index interior = 0;  // bricks in it
+  Index interior = 0;  // of interior cell blocks
 
   Index cells_of(Index number_of_bricks) const {
     return number_of_bricks << (shift[0] + shift[1] + shift[2]);
@@ -36,7 +37,7 @@ struct BrickGrid {
     const auto clipped = [](Index at, Index length) { return at < 0 ? 0 : at < length ? at : length; };
     const Index u = offset(along[0]), v = offset(along[1]), w = offset(along[2]);
     const bool in_w = w >= 0 && w < along[2].length, in_v = v >= 0 && v < along[1].length;
-    // Bricks of the interior that come before this one in the plain order.
+    // Interior cell blocks that precede this one when all are numbered by their strides alone.
     Index before = clipped(w, along[2].length) * along[1].length * along[0].length;
     if (in_w) before += clipped(v, along[1].length) * along[0].length;
     if (in_w && in_v) before += clipped(u, along[0].length);
@@ -48,18 +49,18 @@ struct BrickGrid {
     const auto inside = [this](Index along, int axis) { return along & ((1 << shift[axis]) - 1); };
     return (((brick << shift[2] | inside(z, 2)) << shift[1] | inside(y, 1)) << shift[0]) | inside(x, 0);
   }
-  // The first cell of the brick after that of x.
+  // The first cell in x of the cell block after that of x.
   SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
 };
 
-// First brick along an axis of those that keep more than the list's reach from the sides of the rank's box,
-// and how many.
+// The first of the cell blocks along an axis that are further from the faces of the rank's box than the range
+// of the list, and their number.
 inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis, Index shift, Index bricks) {
   if (cells.own.layer && axis == 2) return {0, bricks};
   const auto of = [&](Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
   const Real edge = 1 / of(cells.own.inverse_size), margin = cells.reach + 1e-6 * edge;
   const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;
-  // What lies beyond the grid belongs to its first and last cells.
+  // Positions outside the grid belong to its outermost cells.
   const auto begins = [&](Index brick) {
     return brick == 0 ? -kInfinity : of(cells.own.origin) + edge * (brick << shift);
   };

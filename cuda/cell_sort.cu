@@ -13,8 +13,7 @@ struct IotaItem {
   SCREE_HD void operator()(Index i) const { out[i] = i; }
 };
 
-// Where the keys change in sorted order, a cell ends and another begins: the difference of the two is its
-// count.
+// A cell starts where the key changes in sorted order; the difference of two starts is its number of items.
 struct CountItem {
   const unsigned* keys;
   Index* counts;

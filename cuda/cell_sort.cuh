@@ -1,4 +1,4 @@
-// Sorting by cell, and the index of ghosts by cell.
+// Sorting of items by cell, and the index of ghosts by cell.
 #pragma once
 
 #include "brick_grid.cuh"
@@ -7,23 +7,24 @@
 
 namespace scree {
 
-// Sorts n items by keys 0 ... last_key. Workspace that keeps its memory from one sort to the next.
+// Sorts n items by keys 0 ... last_key. The workspace keeps its memory from one sort to the next.
 class CellSort {
  public:
-  // Numbers per item that a sort works with.
+  // Scratch values of type `Index` per item.
   static constexpr std::size_t kNumbers = 4;
-  // From now on it works in this room, for so many items, as long as keys and order are needed.
+  // From now on the sort of n items uses this scratch memory, which must stay valid as long as keys and order
+  // are needed.
   void work_in(Index* room, std::size_t n);
   // Keys of the items to sort; written by the caller before sort().
   unsigned* keys(std::size_t n);
-  // Afterwards order()[k] is the item at place k, items of one key in the order that they had; those of a key
-  // stand from starts()[key] to starts()[key + 1], for keys up to last_key.
+  // Afterwards order()[k] is the item at position k; the sort is stable. Items of one key are at
+  // starts()[key] ... starts()[key + 1] - 1, for keys up to last_key.
   void sort(Device device, Index n, unsigned last_key);
   const Index* order() const { return sorted_; }
   const Index* starts() const { return starts_.data(); }
 
  private:
-  DeviceArray<unsigned> keys_[2];  // the sort goes from one to the other and back
+  DeviceArray<unsigned> keys_[2];  // double buffer of the radix sort
   DeviceArray<Index> order_[2];
   const Index* sorted_ = nullptr;
   DeviceArray<Index> starts_;

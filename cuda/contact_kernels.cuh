@@ -1,5 +1,6 @@
-// The contact stages on the device for the law of this run, chosen once. All pointers are the device's;
-// everything is queued and nothing waits. The CPU's counterpart is src/dem/laws/contact_kernels.hpp.
+// The contact stages on the device for the contact law of the run, which is chosen once at its start. All
+// pointers are device pointers; everything is queued on a stream and nothing waits.
+// src/dem/contact_kernels.hpp is the CPU's counterpart.
 #pragma once
 
 #include <algorithm>
@@ -24,14 +25,15 @@ namespace scree {
 using DeviceViews = ContactViews<SlicedRows>;
 using PrunedViews = ContactViews<PrunedRows<0>>;
 
-// For a kernel that evaluates so many entries of a row at once, with the rows that the control names.
+// Views for a kernel that evaluates `kAtOnce` entries of a row at once, with the rows that the control block
+// names.
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
   return with_rows(in, PrunedRows<kAtOnce>{r.rows, r.counts, r.neighbors, use, margin, r.places});
 }
 
-// For a warp that shares out the contacts of its rows.
+// Views for a warp whose lanes share the contacts of its rows.
 template <class Word, int kWords>
 __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const PrunedViews& in, RowUse use, Real margin,
                                                            WarpContacts<Word, kWords>* shared, bool idle) {
@@ -45,7 +47,7 @@ __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const DeviceViews& in
   return with_rows(in, WarpRows<Word, kWords>{{in.rows, nullptr, nullptr, RowUse::all, 0}, shared, idle});
 }
 
-// Force, Newton matrix and residual of the particles [first, end).
+// Force, Newton matrix and residual of the particles first ... end - 1.
 struct SystemRequest {
   DeviceViews in;
   Index first, end;
@@ -58,56 +60,58 @@ struct SystemRequest {
   Vec3* residual;
   Real* stiffening;
   Sym3* inverse_block;
-  StepNorms* largest;  // maxima over these particles and those before
+  StepNorms* largest;  // maxima over all particles so far
 };
 
-// The same where contacts rub: forces and torques alone, of the particles [first, end).
+// The same for laws with friction: forces and torques only, of the particles first ... end - 1.
 struct DeviceRubbingRequest {
   DeviceViews in;
   Index first, end;
   RubbingRequest of;
 };
 
-// Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run
-// see `stop` and change nothing.
+// Progress of a run of explicit steps, kept on the device: kernels that were queued past the end of the run
+// read `stop` and change nothing.
 struct VerletControl {
   static constexpr Real kNoRows = kInfinity;
-  unsigned
-      largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
+  unsigned largest;  // bits of a float >= the largest squared displacement of this step [m^2]
   unsigned finished_blocks;
-  Real bound;         // displacement of any item since the list was built, at most [m]
-  Real half_skin;     // what the list covers [m]
-  Real displacement;  // of any particle when the open step was opened, at most [m]
-  RowUse rows;        // of the open step
+  Real bound;         // upper bound of the displacement of any item since the list was built [m]
+  Real half_skin;     // displacement that the list covers [m]
+  Real displacement;  // upper bound for any particle when the open step was opened [m]
+  RowUse rows;        // that the open step walks
   Real margin;        // of the pruned rows [m]
-  Real moved;    // displacement of any particle since they were pruned, at most [m]; kNoRows: there are none
-  Index closed;  // steps, since the start of the run
-  Index last;    // stop when so many are closed
-  Index substeps;  // steps of the particles per step of the bodies
+  Real moved;      // upper bound of the displacement of any particle since they were pruned [m]; `kNoRows`:
+                   // there are none
+  Index closed;    // closed steps since the start of the run
+  Index last;      // the run stops when this many are closed
+  Index substeps;  // particle steps per step of the bodies
   int parity[2];   // which of the two position and velocity arrays holds the open step
-  int outside;     // whether a particle of a step of this run was outside the space
+  int outside;     // whether a particle was outside the domain in a step of this run
   int stop;
-  int alone;       // one rank: the last block closes the step. Several do so after the ranks have shared:
-  Real shared[2];  // the largest squared displacement of the step [m^2], and outside
-  // What was found when step `closed` was closed and the next opened, for the last steps: a host that looks
-  // while the next step runs sees it unchanged.
+  int alone;       // one rank: the last thread block closes the step. Several ranks do so after their
+                   // reduction, of
+  Real shared[2];  // the largest squared displacement of the step [m^2], and `outside`
+  // Result of closing step `closed` and opening the next, for the last few steps: the host can read it
+  // unchanged while the next step runs.
   struct Closed {
     bool expired;  // the list does not cover the open step
-    bool leaves;   // the open step ends a step of the bodies, and a particle is outside
+    bool leaves;   // the open step is the last of a step of the bodies, and a particle is outside
   };
   static constexpr int kClosedSteps = 4;
   Closed closed_steps[kClosedSteps];
 
-  // Books the displacement with which the open step was opened.
+  // Adds the displacement with which the open step was opened.
   SCREE_HD void move(Real largest) {
     displacement = largest;
     bound += largest, moved += largest;
     choose_rows();
   }
   SCREE_HD void choose_rows() {
-    constexpr Real kPrunedSteps = 32;           // that pruned rows should last
-    constexpr Real kLeastShare = Real(1) / 32;  // of the skin: particles nearly at rest start to move, too
-    constexpr Real kMostShare = Real(1) / 2;    // of the skin: more would save too little
+    constexpr Real kPrunedSteps = 32;           // lifetime aimed at for pruned rows [steps]
+    constexpr Real kLeastShare = Real(1) / 32;  // of the skin: particles nearly at rest will also start to
+                                                // move
+    constexpr Real kMostShare = Real(1) / 2;    // of the skin: with more, pruning saves too little
     if (moved < margin / 2) {
       rows = RowUse::pruned;
       return;
@@ -117,14 +121,14 @@ struct VerletControl {
     rows = margin < kMostShare * 2 * half_skin ? RowUse::prune : RowUse::all;
     moved = rows == RowUse::prune ? 0 : kNoRows;
   }
-  // The step is closed and the next one open.
+  // Closes the step and opens the next.
   SCREE_HD void close(Real largest_squared) {
     move(std::sqrt(largest_squared));
     ++closed;
     parity[0] ^= 1, parity[1] ^= 1;
     judge(outside != 0);
   }
-  // Decides whether the run goes on.
+  // Decides whether the run continues.
   SCREE_HD void judge(bool is_outside) {
     const Closed now{!(bound < half_skin), is_outside && (closed + 1) % substeps == 0};
     closed_steps[closed % kClosedSteps] = now;
@@ -132,18 +136,18 @@ struct VerletControl {
   }
 };
 
-inline constexpr int kStepBlock = 128;  // threads of a block of an explicit step
+inline constexpr int kStepBlock = 128;  // threads per block of an explicit step
 
-// The particles of a launch: one or more blocks of kStepBlock of them.
+// The particles of a launch: one or more blocks of `kStepBlock` particles.
 struct StepRows {
-  const Index* blocks;  // their numbers; null: those from first_block on
+  const Index* blocks;  // numbers of the blocks; null: consecutive from first_block on
   Index first_block;
-  unsigned launched;     // blocks of the launch
-  Index end;             // of all particles
-  bool follows;          // the step before, on the same stream: the launch is all of its step
-  unsigned step_blocks;  // of all launches of the step; the last one to end closes it
+  unsigned launched;     // number of blocks of the launch
+  Index end;             // number of all particles
+  bool follows;          // the previous step on the same stream: this launch is the whole step
+  unsigned step_blocks;  // over all launches of the step; the last one to end closes the step
 
-  // Of this thread; from `end` on there is none.
+  // The particle of this thread; there is none from `end` on.
   __device__ Index particle() const {
     const auto launched_block = static_cast<Index>(blockIdx.x);
     const Index block = blocks != nullptr ? blocks[launched_block] : first_block + launched_block;
@@ -151,22 +155,22 @@ struct StepRows {
   }
 };
 
-// Two arrays each for position, velocity and angular velocity: a step reads one and writes the other.
+// Position, velocity and angular velocity have two arrays each: a step reads one and writes the other.
 struct VerletRequest {
-  PrunedViews in;  // but for position and velocity
+  PrunedViews in;  // all but position and velocity
   StepRows rows;
-  Index active;  // the others drift outside: the list need not cover their motion
+  Index active;  // number of particles that the list covers; the others are outside, drifting
   Vec3 gravity;
   Vec4 *position[2], *velocity[2], *spin[2];  // spin: null where particles do not rotate
-  VerletViews state;                          // likewise
+  VerletViews state;                          // also null where particles do not rotate
   Vec3* force;
   OpenBox box;
   const std::uint8_t* drifting;
   VerletControl* control;
-  const Real* first_step;  // HistoryViews::step when the run began; null where nothing is remembered
+  const Real* first_step;  // `HistoryViews::step` when the run began; null where contacts have no history
 };
 
-// The same in mixed precision. in.position: the double state, as it was converted.
+// The same in mixed precision. in.position: the double state from which the mixed one was converted.
 struct MixedRequest {
   PrunedViews in;
   StepRows rows;
@@ -182,15 +186,15 @@ struct MixedRequest {
   const Real* first_step;
 };
 
-// Contacts with placed surfaces at rest, as the steps of a run see them: the device alone knows which arrays
-// hold the open one.
+// State of the open step for contacts with static surfaces in a run: only the device knows which arrays hold
+// it.
 struct OpenStepLook {
   const VerletControl* control;
   const Real* first_step;  // as in VerletRequest
   const Vec4 *position[2], *velocity[2], *spin[2];
-  HistoryViews history[2];  // they change arrays as the velocities do
+  HistoryViews history[2];  // the double-buffered history, which switches with the velocities
 
-  // `in` as the open step has it; false where the run has stopped.
+  // Points `in` at the open step's arrays; false where the run has stopped.
   __device__ bool open(SurfaceViews& in) const {
     if (control->stop) return false;
     const int p = control->parity[0], v = control->parity[1];
@@ -203,9 +207,9 @@ struct OpenStepLook {
   }
 };
 
-// Entries of one surface on a body, by_surface[first ... end - 1]: what a thread block evaluates and sums up.
+// Entries of one surface on a body, by_surface[first ... end - 1], which one thread block evaluates and sums.
 struct SurfaceChunk {
-  Index surface;  // counts from the first surface on a body
+  Index surface;  // number among the surfaces on bodies
   Index first, end;
 };
 struct SurfaceChunks {
@@ -213,13 +217,13 @@ struct SurfaceChunks {
   Index count;
 };
 
-// Where an implicit step started: particles and surfaces on bodies.
+// State at the start of an implicit step: particles and surfaces on bodies.
 struct SurfaceStart {
   StepStart particles;
   const PlacedSurface* placed;
 };
 
-// The same where contacts rub, and where what is found goes.
+// The same for laws with friction, with the output per entry.
 struct SurfaceRubRequest {
   RubbingStart particles;
   const PlacedSurface* placed;
@@ -229,37 +233,38 @@ struct SurfaceRubRequest {
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
-  virtual int history() const = 0;  // how many numbers the law remembers of a contact
-  // Why steps cannot be in mixed precision with this law; empty if they can.
+  virtual int history() const = 0;  // number of history values of a contact of this law
+  // Why explicit steps cannot be in mixed precision with this law; empty if they can.
   virtual const char* mixed_trouble() const = 0;
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;
-  // Contacts of particles with surfaces on bodies, at an instant and over an implicit step, and what they sum
-  // to in each chunk.
+  // Contacts of particles with surfaces on bodies, at an instant and over an implicit step, and their sums
+  // over each chunk.
   virtual void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              SurfaceLoad* loads, InstantSums* sums) const = 0;
-  // The same, for the first n entries by_surface, of whatever step is open when the kernel runs; nothing is
-  // summed up.
+  // At an instant, for the first n entries by_surface, of the step that is open when the kernel runs; without
+  // sums.
   virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
                                     SurfaceLoad* loads) const = 0;
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
-  // Queues the sums over the first n items of WallContactItem; share: as exact_sums() wants it.
+  // Queues the sums of `WallContactItem` over the first n particles; share: the reduction over the ranks that
+  // `exact_sums` calls.
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
-  // An output field that reads contacts.
+  // A field of the output that depends on contacts.
   virtual void output(Device device, const DeviceViews& in, const OutputRequest& request) const = 0;
-  // See ContactKernels; of the particles [first, end).
+  // As in `ContactKernels`; for the particles first ... end - 1.
   virtual void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                               ShownContact* shown) const = 0;
   virtual void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
                              const LineRequest& request) const = 0;
-  // What the contacts of the particles add to the ledger over an accepted implicit step.
+  // What the contacts of the particles add to the energy balance over an accepted implicit step.
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;
-  // The same where contacts rub: see ContactKernels.
+  // The same for laws with friction, as in `ContactKernels`.
   virtual void surface_rubs(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                             const SurfaceRubRequest& request, StepSums* sums) const = 0;
   virtual void rubbing_system(Device device, const DeviceRubbingRequest& request) const = 0;
@@ -267,19 +272,21 @@ class DeviceContactKernels {
                              const RubbingBooksTo& to) const = 0;
   virtual void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
                       const FrozenLimits& to) const = 0;
-  // n particles that leave, and what they leave to all others: see the items.
+  // Energy that n escaped particles take along, and what their contacts leave with the remaining particles:
+  // `LeaverEnergyItem` and `DepartureItem`.
   virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;
   virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
                           const StartViews& start) const = 0;
-  // One explicit step, closed and the next opened; does nothing once the control says stop.
+  // Closes one explicit step and opens the next; does nothing once the control block says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
   virtual void mixed_advance(Device device, const MixedRequest& request) const = 0;
-  // The last step, closed. *largest: the square of the largest acceleration; a NaN if one is not finite.
+  // Closes the last step. *largest: square of the largest acceleration; NaN if any is not finite.
   virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };
 
-// Of one type of law, each compiled in a source file of its own: contact_kernels_*.cu.
+// Kernels of one type of law. Each type is compiled in a source file of its own, contact_kernels_*.cu,
+// because the kernels of one take long.
 template <class Law>
 std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials);
 

@@ -1,5 +1,4 @@
-// The contact stages of one law as kernels; included where they are compiled, one source file per elastic
-// law.
+// The contact stages of one law as kernels, for the source files that instantiate them: one per law.
 #pragma once
 
 #include <stdexcept>
@@ -58,11 +57,11 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.stiffening, &r.largest->stiffening);
 }
 
-// On a multiprocessor: registers are rationed for so many, though a few spill.
+// Blocks per multiprocessor, which bounds the registers per thread: faster, though a few registers spill.
 inline constexpr int kRubbingSystemBlocks = 3;
 
-// Forces, torques and entries of the Newton matrix; what else a particle has in the solve, items find that
-// read the entries. The walk needs the registers by itself. r.first: a multiple of kSlice.
+// Forces, torques and entries of the Newton matrix. Residual, block and norms are computed from these entries
+// by items of their own, because the contact loop needs all registers. r.first: a multiple of `kSlice`.
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads, kRubbingSystemBlocks)
     rubbing_kernel(const __grid_constant__ DeviceRubbingRequest r, const Laws laws) {
@@ -82,7 +81,7 @@ __global__ void __launch_bounds__(kSystemThreads, kRubbingSystemBlocks)
   if (!idle) item.finish(self, total);
 }
 
-// Books of the particles, and what their contacts remember.
+// Energy losses of the particles, and the new history of their contacts.
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
     rubbing_books_kernel(Index n, const __grid_constant__ DeviceViews in,
@@ -104,8 +103,9 @@ __global__ void __launch_bounds__(kSystemThreads)
 
 inline constexpr int kSurfaceThreads = 64;
 
-// Contacts of a chunk, one per thread and turn, and then their sums: each thread adds one term of the
-// contacts, in groups that take turns. The sums are exact, so that it does not matter which.
+// Evaluates the contacts of a chunk, one per thread at a time, and then sums them: each thread adds one term
+// of the contacts, and groups of threads take every kGroups-th contact. The sums are exact, so the order has
+// no influence.
 template <class Item, class Contact, int kTerms>
 __global__ void __launch_bounds__(kSurfaceThreads)
     surface_kernel(const SurfaceChunk* chunks, const __grid_constant__ Item item, const Contact* contacts,
@@ -138,10 +138,11 @@ __global__ void __launch_bounds__(kSurfaceThreads)
 }
 
 inline constexpr int kLoadThreads = 128;
-inline constexpr int kLoadBlocks = 4;  // on a multiprocessor: with more, registers spill
+inline constexpr int kLoadBlocks = 4;  // blocks per multiprocessor: with more, registers spill
 using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
 
-// Contacts with placed surfaces of whatever explicit step is open; the k-th by_surface.
+// Contacts with static surfaces of the explicit step that is open when the kernel runs, in the order
+// by_surface.
 template <class Laws>
 __global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
     load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepLook look,
@@ -163,7 +164,7 @@ __global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
   records.store(loads, touching);
 }
 
-// From the particle `first` on.
+// Applies the item to the particles from `first` on.
 template <class Item>
 struct FromItem {
   Item item;
@@ -315,7 +316,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   [[noreturn]] static void refuse_rubbing() {
     throw std::logic_error("ContactKernelsOf: the law has no implicit steps with friction");
   }
-  // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
+  // Whether all particles of the step fit on the GPU at once, with this number of blocks per multiprocessor.
   bool several_at_once(const StepRows& rows, int blocks) const {
     const bool fits = rows.launched <= multiprocessors_ * static_cast<unsigned>(blocks);
     return launches().several_at_once.value_or(fits);
@@ -327,7 +328,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   template <class Request>
   void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {
-    // The blocks of a step come while those of the step before leave.
+    // Programmatic dependent launch: blocks of a step start while those of the previous step finish.
     cudaLaunchAttribute overlap{};
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
@@ -348,12 +349,12 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
   Laws laws_;
-  // Kernels compiled for older generations do not wait for the step before.
+  // Kernels compiled for older generations do not wait for the previous step.
   bool overlaps_ = generation_of(verlet_finish_kernel<Laws>) >= 90;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 
-// With the table that the kernels of several laws refer to.
+// For several materials, with the table of laws that the kernels read.
 template <class Law>
 class TableKernels : public ContactKernelsOf<LawTable<Law>> {
  public:

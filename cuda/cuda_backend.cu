@@ -12,7 +12,7 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
   items_.in_mixed = model.integrator.precision == Precision::mixed && double_reason().empty();
 }
 
-// Why a run is in double whatever the deck says.
+// Why a run is in double precision although the deck asks for mixed.
 std::string CudaBackend::double_reason() const {
   return bodies_.have_surfaces() ? "bodies have shapes" : items_.kernels->mixed_trouble();
 }
@@ -67,7 +67,8 @@ std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& rank
     });
   };
   refuse(device_trouble());
-  // All ranks use their GPUs by now: what the driver takes for each is no longer free.
+  // All ranks have initialised their GPUs by now, so that the free memory no longer includes what the driver
+  // takes for each.
   const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
   refuse(device_memory_trouble(claims, ranks.rank(), device_name()));
   return std::make_unique<CudaBackend>(model, ranks);

@@ -1,5 +1,5 @@
-// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu/cpu_backend.hpp as kernels;
-// arithmetic stays in src/physics, items in src/dem.
+// The backend of one GPU, called GMAP in the paper. It follows the schedule of src/dem/cpu_backend.hpp with
+// kernels; the arithmetic is in src/physics, the items of the loops in src/dem.
 #pragma once
 
 #include <memory>

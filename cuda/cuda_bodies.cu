@@ -60,8 +60,8 @@ void CudaBodies::take_loads(Real h) {
   side_.take_loads(items_.surfaces.load_sums(), h);
 }
 
-// The next look of this stream writes where the books are read, and so does the next list, of the particles'
-// stream.
+// The next query on this stream overwrites what the accumulation of works still reads, and so does the next
+// list, on the particles' stream.
 void CudaBodies::book_loads(Real h) {
   if (!items_.surfaces.works().exist()) return;
   items_.surfaces.book_loads({stream_}, *items_.kernels, h);

@@ -1,6 +1,6 @@
-// The bodies beside the particles on the GPU: their surfaces' places and contacts. Few, they are the host's
-// (SurfaceSide); the device gets their places, and what their contacts sum to goes to pinned memory, which
-// the host awaits.
+// Bodies with surfaces beside particles on the GPU. The bodies are few and stay on the host (`SurfaceSide`):
+// the device gets the poses of their surfaces, and the sums of their contacts go to pinned memory, for which
+// the host waits.
 #pragma once
 
 #include <vector>
@@ -17,31 +17,32 @@ class CudaBodies {
   SurfaceSide& side() { return side_; }
   const SurfaceSide& side() const { return side_; }
   bool have_surfaces() const { return side_.size() > 0; }
-  const Stream& stream() const { return stream_; }  // for what goes on beside the particles
+  const Stream& stream() const { return stream_; }  // stream of its own, concurrent with the particles'
 
-  // Brings the surfaces, as they are placed on the host, to the device.
+  // Copies the poses of the surfaces from the host to the device.
   void put();
-  SurfaceMoves upload_moves();  // by the last placement, on the device
+  SurfaceMoves upload_moves();  // on the device, from the last copy
 
-  // Contacts with the state now: what forces and reports read, and the side's sums. Waits.
+  // Contacts in the present state, which forces and reports read, and their sums on the host. Waits.
   void find_loads();
-  // Queued, of these: what is shown of them, per entry.
+  // Queues the output values of these contacts, per entry.
   const ShownContact* find_shown();
-  // Over an implicit step: queued, what the particles' system reads; then the side's sums; waits.
+  // Over an implicit step: queues the contacts, which the particles' system reads; then takes their sums on
+  // the host, and waits.
   void find_steps(const StepStart& start);
-  void find_rubs(const RubbingStart& start);  // where contacts rub
+  void find_rubs(const RubbingStart& start);  // for laws with friction
   void take_steps(Real h);
 
-  // Beside an explicit step, behind `ready`: places the surfaces, and queues the contacts with the particles
-  // as `look` has them. The step's kernel reads them, behind loads_found(); take_loads() waits for
-  // their sums.
+  // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
+  // contacts of particles in the state of `look`. The kernel of the step reads them after loads_found();
+  // take_loads() waits for their sums.
   void queue_loads(const SurfaceLook& look, const Event& ready);
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);
-  // Where the host knows that this step is closed, and its length h: books what its contacts have lost at
+  // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
   void book_loads(Real h);
-  // The same where the step's kernel may still read its own. Waits.
+  // The same as queue_loads() while the step's kernel may still read its own loads. Waits.
   void find_loads_beside(const SurfaceLook& look);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 

@@ -20,7 +20,7 @@ struct RunStartItem {
   }
 };
 
-// What the ranks share of the first step.
+// What the ranks reduce after opening the first step.
 __global__ void started_kernel(VerletControl* c, const Real* largest) {
   c->shared[0] = *largest, c->shared[1] = c->outside;
 }
@@ -31,14 +31,14 @@ __global__ void open_kernel(VerletControl* c) {
   c->judge(c->outside != 0);
 }
 
-// Closes a step once the ranks have shared what it found.
+// Closes a step after the ranks have reduced what each found.
 __global__ void close_kernel(VerletControl* c) {
   if (c->stop) return;
   c->outside = c->shared[1] != 0;
   c->close(c->shared[0]);
 }
 
-// Goes on after a stop: with another end, or another list.
+// Continues after a stop: with another last step, or another list.
 __global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, bool new_list,
                               int position_parity, int velocity_parity) {
   c->last = last, c->half_skin = half_skin;
@@ -67,7 +67,7 @@ void RunControl::start(const VerletRequest& step) {
   items_.lane.halo.max(items_.device(), on_device()->shared, 2);
   open_kernel<<<1, 1, 0, items_.stream>>>(on_device());
   require_cuda(cudaGetLastError(), "explicit step");
-  wait_for(items_.stream);  // the host's copy of the control is free again
+  wait_for(items_.stream);  // until the host's copy of the control block is free again
 }
 
 const VerletControl& RunControl::wait() {

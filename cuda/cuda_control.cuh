@@ -1,4 +1,4 @@
-// The control block of a run of explicit steps: the device keeps it, the host looks at it.
+// The control block of a run of explicit steps: it is kept on the device, and the host reads copies of it.
 #pragma once
 
 #include <limits>
@@ -14,19 +14,19 @@ class RunControl {
   RunControl(CudaItems& items, CudaList& list) : items_(items), list_(list) {}
 
   VerletControl* on_device() { return items_.results.at(&Results::control); }
-  // As last copied to the host.
+  // The last copy on the host.
   const VerletControl& seen() { return items_.results.host().control; }
 
-  // Opens the first step of a run, from the state; step: its request. Waits.
+  // Opens the first step of a run from the state; step: the request of that step. Waits.
   void start(const VerletRequest& step);
-  // Waits for all that is queued and looks.
+  // Waits for everything that is queued and copies the control block.
   const VerletControl& wait();
-  // Queued after a stop: the run goes on until `last` steps are closed, with the list as it is now.
+  // Queued after a stop: continues the run until `last` steps are closed, with the present list.
   void resume(Index last = kEndless);
-  // Queued where there are several ranks, once they have shared what a step found: closes it.
+  // Queued with several ranks after the reduction of what a step found: closes the step.
   void close(Device on);
 
-  // Which arrays hold the open step's position and velocity: 0 the state's, 1 the others.
+  // Which arrays hold the open step's position and velocity: 0 those of the state, 1 the second ones.
   int position_parity() const { return parity_[0]; }
   int velocity_parity() const { return parity_[1]; }
   Vec4* open_position() { return (parity_[0] == 0 ? items_.now.position : items_.other.position).data(); }
@@ -34,14 +34,20 @@ class RunControl {
   Vec4* open_spin() {
     return (parity_[1] == 0 ? items_.now.angular_velocity : items_.other.angular_velocity).data();
   }
-  void turn() { parity_[0] ^= 1, parity_[1] ^= 1; }  // one step further, before the host has looked
-  void at_home() { parity_[0] = parity_[1] = 0; }    // they have been brought into the state's
+  void turn() {
+    parity_[0] ^= 1, parity_[1] ^= 1;
+  }  // one step was queued whose control block has not been
+     // read yet
+  void at_home() {
+    parity_[0] = parity_[1] = 0;
+  }  // the open step has been copied into the arrays of the
+     // state
 
  private:
   CudaItems& items_;
   CudaList& list_;
   int parity_[2] = {0, 0};
-  std::int64_t known_list_ = 0;  // the list that the control was told of last, by its number
+  std::int64_t known_list_ = 0;  // number of the list that the control block was last set for
 };
 
 }  // namespace scree

@@ -1,4 +1,5 @@
-// Explicit steps beside bodies: one at a time, the contacts with their surfaces on a stream of their own.
+// Explicit steps coupled to bodies: one at a time, with the contacts on their surfaces on a stream of their
+// own.
 #include "cuda_explicit.cuh"
 
 namespace scree {
@@ -10,8 +11,8 @@ StepsTaken CudaExplicitRun::take_steps_with_bodies(Index most, bool keep_open, S
   return taken;
 }
 
-// One step with bodies; returns whether the next is open. The host waits for the contacts with bodies
-// only, and solves for the bodies' motion while the particles' kernel runs.
+// One step with bodies; returns whether the next is open. The host waits only for the contacts with bodies,
+// and solves for their motion while the kernel of the particles runs.
 bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   for (;;) {
     if (!list_.current() || !(bodies_.side().list_displacement() < list_.skin() / 2))
@@ -24,7 +25,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     bodies_.take_loads(h_);
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
-    if (before.expired) {  // what was queued has done nothing
+    if (before.expired) {  // the queued step has done nothing
       list_.set_bound(list_.skin());
       renew_list(timers);
       continue;
@@ -44,8 +45,8 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   }
 }
 
-// Queues the open step's contacts with placed surfaces, which its kernel reads; what they sum to goes to the
-// host beside it.
+// Queues the open step's contacts with surfaces, which its kernel reads; their sums are copied to the host
+// concurrently.
 void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
   bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
@@ -53,8 +54,8 @@ void CudaExplicitRun::queue_loads() {
                       workspace_.step_queued);
 }
 
-// Beside the step that was queued last: its kernel reads the same arrays, but contacts of its own. What
-// contacts remember of the step is that of the bodies' last place, from where the next step begins; only this
+// Runs concurrently with the step queued last: its kernel reads the same state arrays but has contacts of its
+// own. The history that results belongs to the last pose of the bodies, where the next step starts; only this
 // stream reads and writes it.
 void CudaExplicitRun::shape_contacts() {
   bodies_.side().reopen_step();

@@ -6,9 +6,9 @@
 namespace scree {
 namespace {
 
-// The most steps queued before the host looks at how far they came: enough to hide the look.
+// The most steps queued before the host reads the control block: enough to hide the latency of reading it.
 constexpr Index kQueuedSteps = 128;
-// A list whose exact displacement is past this share of what it covers is built anew at once.
+// A list is rebuilt at once if the exact displacement exceeds this fraction of what it covers.
 constexpr Real kWornList = 0.9;
 
 }  // namespace
@@ -60,7 +60,7 @@ StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTi
   return {closed + 1, false};
 }
 
-// After a stop: whether the list is the reason and was renewed, or turned out to cover the particles yet.
+// After a stop: whether the list was the reason, and was rebuilt or turned out to cover the particles still.
 bool CudaExplicitRun::renew_list(StageTimers& timers) {
   if (list_.current() && list_.bound() < list_.skin() / 2) return false;
   if (!(list_.displacement() < kWornList)) list_.build(items_.model.contact.skin, timers);
@@ -68,8 +68,8 @@ bool CudaExplicitRun::renew_list(StageTimers& timers) {
   return true;
 }
 
-// Steps to queue before the host looks again: not many more than the list is likely to cover. Those behind a
-// stop do nothing, but take their launches, and on several ranks their halos.
+// Steps to queue before the host reads the control block again: little more than the list is likely to cover.
+// Those after a stop do nothing but still cost their launches and, on several ranks, their halo exchange.
 Index CudaExplicitRun::steps_ahead(const VerletControl& control) const {
   if (items_.lane.halo.waits()) return 1;
   const Real covered = (control.half_skin - control.bound) / control.displacement;
@@ -82,8 +82,8 @@ void CudaExplicitRun::settle() {
   control_.resume();
 }
 
-// Closes the open step without opening another; the state is at rest afterwards. The host knows where the
-// open step is.
+// Closes the open step without opening another, once the host knows which arrays hold it; afterwards the
+// state is synchronous: positions and velocities belong to the same time.
 void CudaExplicitRun::finish() {
   if (queue_.in_mixed()) settle();
   ParticleArrays& now = items_.now;
@@ -96,7 +96,7 @@ void CudaExplicitRun::finish() {
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))
     items_.report_not_finite(now.force.data());
   if (control_.position_parity() == 1) std::swap(now.position, other.position);
-  if (control_.velocity_parity() == 0) {  // velocities changed arrays
+  if (control_.velocity_parity() == 0) {  // the velocity arrays have been swapped
     std::swap(now.velocity, other.velocity);
     std::swap(now.angular_velocity, other.angular_velocity);
     items_.history.take_ahead();

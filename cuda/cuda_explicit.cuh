@@ -1,4 +1,4 @@
-// A run of explicit steps on the GPU. Steps are queued ahead of the host: each reads on the device whether
+// A run of explicit steps on the GPU. Steps are queued ahead of the host: each checks on the device whether
 // the list still covers it, and does nothing if not.
 #pragma once
 
@@ -11,7 +11,7 @@ class CudaExplicitRun : public ExplicitRun {
  public:
   CudaExplicitRun(CudaItems& items, CudaBodies& bodies, CudaList& list, RunWorkspace& workspace, Real h);
   ~CudaExplicitRun() override;
-  CudaExplicitRun(const CudaExplicitRun&) = delete;  // the items know its address
+  CudaExplicitRun(const CudaExplicitRun&) = delete;  // `CudaItems` holds a pointer to it
   CudaExplicitRun& operator=(const CudaExplicitRun&) = delete;
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
@@ -20,7 +20,7 @@ class CudaExplicitRun : public ExplicitRun {
     bodies_.side().reduce(wrench, contacts);
   }
 
-  // Brings the open step into the arrays of the state; the run goes on from there.
+  // Copies the open step into the arrays of the state, from which the run continues.
   void settle();
 
  private:
@@ -28,7 +28,7 @@ class CudaExplicitRun : public ExplicitRun {
   bool renew_list(StageTimers& timers);
   Index steps_ahead(const VerletControl& control) const;
   void finish();
-  // cuda_coupled.cu
+  // Defined in cuda_coupled.cu.
   StepsTaken take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers);
   bool step_with_bodies(bool keep_open, StageTimers& timers);
   void queue_loads();
@@ -40,8 +40,8 @@ class CudaExplicitRun : public ExplicitRun {
   RunControl control_;
   StepQueue queue_;
   const Real h_;
-  Index closed_ = 0;  // with bodies: steps since the start of the run
-  // Where the particles as the last step left them are, with the velocities that the law saw.
+  Index closed_ = 0;  // with bodies: closed steps since the start of the run
+  // Positions as the last closed step left them, with the velocities at which its law was evaluated.
   struct {
     const Vec4 *position, *velocity, *spin;
   } closed_step_{};

@@ -1,4 +1,4 @@
-// The schedule of src/dem/cpu/cpu_implicit.cpp and block_solver.cpp.
+// The same schedule as src/dem/cpu_implicit.cpp and block_solver.cpp, with kernels.
 #include <cmath>
 
 #include "cuda_bodies.cuh"
@@ -29,11 +29,11 @@ struct FirstDirectionItem {
   }
 };
 
-// One step of the solve: takes the direction d into the solution and the residual, and finds the next
+// One step of the solve: adds the direction d to the solution, updates the residual, and computes the next
 // direction.
 struct SolverItem {
   SubtractMatrixItem<SlicedRows> subtract;
-  DirectionItem direction;  // weights of the next one
+  DirectionItem direction;  // weights of the next direction
   Vec4* next;
   Vec3* solution;
 
@@ -60,7 +60,7 @@ void CudaImplicitArrays::resize(const CudaItems& items) {
   matrix_diagonal.resize(owned), inverse_block.resize(owned);
 }
 
-// The state is put aside by a swap.
+// The state at the start of the step is kept by swapping the arrays.
 CudaImplicitStep::CudaImplicitStep(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays, Real h)
     : items_(items), bodies_(bodies), arrays_(arrays), h_(h) {
   std::swap(items.now.position, items.other.position), std::swap(items.now.velocity, items.other.velocity);
@@ -125,7 +125,7 @@ Real CudaImplicitStep::step_displacement() {
   return items_.ranks.max(std::max(particles, bodies_.side().step_displacement()));
 }
 
-// Forces, Newton matrix and residual, with the ghosts refreshed where they must be.
+// Forces, Newton matrix and residual, after a refresh of the ghosts where the iterate has changed.
 void CudaImplicitStep::queue_forces() {
   SystemRequest r;
   r.in = items_.views(), r.gravity = items_.model.gravity;
@@ -147,7 +147,8 @@ void CudaImplicitStep::queue_forces() {
   ghosts_stale_ = false;
 }
 
-// Over the particles of all ranks; waits. Throws as report_not_finite where a residual is not.
+// Maxima over the particles of all ranks; waits. Throws through `report_not_finite` where a residual is not
+// finite.
 StepNorms CudaImplicitStep::largest_norms() {
   StepNorms largest = items_.results.fetch(&Results::norms);
   items_.lane.clock.read(items_.balance.halo);
@@ -198,7 +199,8 @@ void CudaImplicitStep::shorten_correction() {
   ghosts_stale_ = true;
 }
 
-// The bodies have already taken their correction: as a known part of the solution it moves to the right.
+// The bodies have applied their correction already: as a known part of the solution it moves to the
+// right-hand side.
 void CudaImplicitStep::subtract_surface_steps() {
   if (!bodies_.have_surfaces()) return;
   for_each(items_.device(), items_.owned,
@@ -207,12 +209,12 @@ void CudaImplicitStep::subtract_surface_steps() {
   max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()},
            items_.results.at(&Results::largest));
   right_hand_side_norm_ = items_.ranks.max(items_.results.fetch(&Results::largest));
-  // Without a correction the bodies alone would notice.
+  // Without a correction of the particles only the bodies have moved.
   if (!std::isfinite(right_hand_side_norm_)) items_.report_not_finite(arrays_.residual.data());
 }
 
-// Solves for the correction in batches of products, so that the host seldom waits; returns the number of
-// products.
+// Solves for the correction in batches of matrix-vector products, so that the host seldom waits; returns the
+// number of products.
 int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
   Vec3 *residual = arrays_.residual.data(), *correction = arrays_.correction.data();
   DeviceHalo& halo = items_.lane.halo;

@@ -1,4 +1,4 @@
-// The implicit step of the GPU's backend.
+// The implicit step of the GPU backend.
 #pragma once
 
 #include "cuda_solver.cuh"
@@ -10,20 +10,20 @@ namespace scree {
 
 class CudaBodies;
 
-// What they have in addition where contacts rub and particles turn.
+// Additional arrays for laws with friction, where particles rotate.
 struct CudaRubbingArrays {
-  DeviceArray<Vec4> mean_spin;  // iterate, all items
-  // contact_force
+  DeviceArray<Vec4> mean_spin;  // iterate, of all items
+  // written by the contact force stage
   DeviceArray<Vec3> start_torque, step_torque, end_torque;
   DeviceArray<Real> sharpness;
   DeviceArray<Index> surface_count;
   RubbingEntryArrays<DeviceArray> entries;
   DeviceArray<RubbingEntry> surface_entries;
   DeviceArray<ScaledMass> mass;
-  DeviceArray<float> inverse_block;  // BlockSlices
+  DeviceArray<float> inverse_block;  // laid out as `BlockSlices`
   DeviceArray<Twist> residual;
   DeviceArray<Twistf> correction;
-  DeviceArray<Real> neighbor_limits, surface_limits;  // while they are frozen
+  DeviceArray<Real> neighbor_limits, surface_limits;  // while the limits are lagged
   DeviceArray<RubbingNorms> norms{1};
   PinnedArray<RubbingNorms> h_norms{1};
   DeviceArray<Twistf> direction[2];  // all items
@@ -33,19 +33,19 @@ struct CudaRubbingArrays {
 
 // Workspace of implicit steps, kept from one to the next.
 struct CudaImplicitArrays {
-  // contact_force
+  // Stage `contact_force` of the implicit step.
   DeviceArray<Vec3> step_force, end_force, residual;
   DeviceArray<Real> force_magnitude, stiffening;
   DeviceArray<Index> matrix_count;
   DeviceArray<ContactEntry> matrix_entries;
   DeviceArray<Sym3> matrix_diagonal, inverse_block;
-  // particle_correct
+  // Stage `particle_correct`.
   DeviceArray<Vec3> right_hand_side, correction;
   DeviceArray<Vec4> direction[2];
   SolverProgress solver;
   CudaRubbingArrays rubbing;
 
-  // For the items and their list, when that is built.
+  // Sizes the arrays for the items and their list after it is built.
   void resize(const CudaItems& items);
 };
 
@@ -74,7 +74,7 @@ class CudaImplicitStep : public ImplicitStep {
   CudaBodies& bodies_;
   CudaImplicitArrays& arrays_;
   const Real h_;
-  bool ghosts_stale_ = false;  // the next contact_force refreshes them
+  bool ghosts_stale_ = false;  // the next contact force stage refreshes them
 
  private:
   ContactMatrix matrix();
@@ -84,9 +84,9 @@ class CudaImplicitStep : public ImplicitStep {
   void subtract_surface_steps();
   int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
 
-  // Of the last contact_force.
+  // Of the last contact force stage.
   Real largest_stiffening_ = 0, force_scale_ = 0, right_hand_side_norm_ = 0;
-  LineSearch line_search_;  // along arrays_.correction
+  LineSearch line_search_;  // largest stiffness ratio along arrays_.correction
 };
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// The items of one rank on its GPU: what the objects of the backend share.
+// The particles and ghosts of one rank on its GPU: what the objects of the backend share.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ namespace scree {
 
 class CudaExplicitRun;
 
-// The halo with a stream of its own, beside that of the rows.
+// The halo exchange on a stream of its own, concurrent with the kernels over rows.
 struct HaloLane {
   HaloLane(const Ranks& ranks, Transport transport) : halo(ranks, transport) {}
 
@@ -33,7 +33,7 @@ struct HaloLane {
 };
 
 struct CudaItems {
-  // idle_work: Backend's.
+  // idle_work: as passed to the backend.
   CudaItems(const Model& of, const Ranks& on, const std::function<void()>& idle_work,
             std::unique_ptr<DeviceContactKernels> law);
   CudaItems(const CudaItems&) = delete;
@@ -42,31 +42,32 @@ struct CudaItems {
   Device device() const { return {stream}; }
   DeviceViews views() { return views(now.position.data(), now.velocity.data(), now.angular_velocity.data()); }
   DeviceViews views(const Vec4* position, const Vec4* velocity, const Vec4* spin);
-  // For `history`, while there is a list.
+  // What `history` reads of the list, while there is one.
   DeviceHistory::Listed listed() const {
     return {now.position.data(), now.row_key.data(), owned, list, surfaces};
   }
   void idle() const {
     if (idle_work) idle_work();
   }
-  // Particle i becomes the one that was order[i]; n of them stay.
+  // Moves particle order[i] to i for i = 0 ... n - 1; the others are removed.
   void reorder(const Index* order, Index n);
-  // Room for a number per particle while a list is built.
+  // Scratch memory for one `Index` per particle while a list is built.
   Index* numbers_while_listing() { return reinterpret_cast<Index*>(other.position.data()); }
 
   void refresh_ghosts(Device on) {
     update_halo(on, now.position.data(), now.velocity.data(), now.angular_velocity.data());
   }
-  // spin: is not looked at unless particles rotate.
+  // spin: unused unless particles rotate.
   void update_halo(Device on, Vec4* position, Vec4* velocity, Vec4* spin) {
     lane.halo.update_motion(on, position, velocity, model.rotates() ? std::optional(spin) : std::nullopt,
                             owned);
   }
   void refresh_ghosts() { refresh_ghosts(device()); }
-  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
+  // Orders the streams: what is queued on the halo stream after the fork waits for the rows queued so far,
+  // and what is queued on the main stream after the join waits for the halo.
   void fork_lane() { lane.rows_done.record(stream), lane.rows_done.hold(lane.stream); }
   void join_lane() { lane.done.record(lane.stream), lane.done.hold(stream); }
-  // The same for halos, for which one rank alone does not use that stream.
+  // The same for a halo exchange, for which a single rank does not use the second stream.
   void halo_after_rows();
   void rows_after_halo();
   template <class QueueGhosts, class QueueRows>
@@ -75,13 +76,13 @@ struct CudaItems {
   void queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
                          const QueueLate& queue_late, HaloClock* clock);
 
-  // Queues sums of terms over the particles; see DeviceResults::totals.
+  // Queues sums of terms over the particles; see `DeviceResults::totals`.
   template <int N, class Item>
   void queue_sums(const Item& item, ExactSums<N> Results::*sums);
-  // Smallest id of the particles of all ranks of which `is` holds; kNoId without one.
+  // Smallest id among the particles of all ranks for which `is` holds; `kNoId` if there is none.
   template <class Is>
   long long smallest_id(const Is& is);
-  // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
+  // Throws `SimulationError` naming the particle of smallest id, over all ranks, whose force is not finite.
   void report_not_finite(const Vec3* force);
 
   const Model& model;
@@ -89,32 +90,33 @@ struct CudaItems {
   Subdomain subdomain;
   HhtCoefficients hht;
   const std::function<void()>& idle_work;
-  Stream stream;  // everything that follows the particles
+  Stream stream;  // main stream of the particles
   std::unique_ptr<DeviceContactKernels> kernels;
   DeviceSurfaces surfaces;
 
-  // `now` holds the state.
+  // `now` holds the state, `other` the second arrays.
   ParticleArrays now;
   SecondArrays other;
   bool in_mixed = false;  // whether explicit runs are in mixed precision
   MixedArrays mixed;
   Index owned = 0;
-  ItemLayout layout;   // without its list of ghosts
-  Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
-  StepParts parts;     // of explicit steps
+  ItemLayout layout;   // its list of ghosts is empty
+  Index interior = 0;  // number of leading particles, in whole cell blocks, that have no ghost neighbours and
+                       // are no ghosts elsewhere
+  StepParts parts;     // split of explicit steps
   HaloLane lane;
   DeviceList list;
-  // Of explicit steps: what they know of their list, or, while one is built, what has no other room.
+  // Arrays of explicit steps that depend on the list; while a list is built, scratch arrays.
   DeviceRoom room;
   DeviceHistory history;
   LoadBalance balance;
   DeviceResults results;
-  DeviceArray<unsigned char> space;  // of library calls
+  DeviceArray<unsigned char> space;  // scratch of library calls
 
-  // The explicit run with an open step, which may be elsewhere than in `now`; null without one.
+  // The explicit run with an open step, whose arrays may differ from those of `now`; null without one.
   CudaExplicitRun* open_run = nullptr;
-  // Where the velocities are that the law saw in the last explicit step, until a list is built; null where
-  // the state's are those.
+  // Velocities at which the law was evaluated in the last explicit step, valid until the next list; null
+  // where they are those of the state.
   const Vec4 *seen_velocity = nullptr, *seen_spin = nullptr;
 };
 
@@ -141,9 +143,9 @@ void CudaItems::queue_sums(const Item& item, ExactSums<N> Results::*sums) {
              [&](Real* largest) { lane.halo.max(device(), largest, N); });
 }
 
-// Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first,
-// end). With several ranks the interior, which meets no ghosts, is computed while the halo is under way, and
-// the rest beside it as soon as that is there.
+// Queues a pass over the particles that reads their ghosts: queue_ghosts(device) the halo exchange,
+// queue_rows(device, first, end) the kernel. With several ranks the interior, which has no ghost neighbours,
+// is computed during the halo exchange, and the boundary as soon as the ghosts have arrived.
 template <class QueueGhosts, class QueueRows>
 void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
                                   HaloClock* clock) {
@@ -160,9 +162,10 @@ void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRo
       [&](Device on) { queue_rows(on, interior, owned); }, clock);
 }
 
-// The same of several ranks, where queue_early(device) and queue_late(device) queue the rows of the interior,
-// and the rest. Both streams stand where the pass may begin; afterwards the halo's stands behind it, so that
-// the next halo begins before the next rows fill the GPU. clock: if given, it looks.
+// The same for several ranks, where queue_early(device) queues the interior and queue_late(device) the
+// boundary. At the call both streams are ordered after what the pass reads; afterwards the halo stream is
+// ordered after the interior, so that the next halo exchange starts before the next rows fill the GPU. clock:
+// measures the exchange, if not null.
 template <class QueueGhosts, class QueueEarly, class QueueLate>
 void CudaItems::queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
                                   const QueueLate& queue_late, HaloClock* clock) {

@@ -8,7 +8,8 @@
 namespace scree {
 namespace {
 
-// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not sound.
+// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not finite or out
+// of range.
 struct WrapItem {
   ParticleViews in;
   Vec3 box_min, period;
@@ -22,7 +23,8 @@ struct WrapItem {
   }
 };
 
-// Particles outside the search get the key past the last cell, those that have gone to other ranks the next.
+// Key for the sort: the cell; last_cell + 1 for particles outside the search, and last_cell + 2 for those
+// that have migrated to other ranks.
 struct CellKeyItem {
   const Vec4* position;
   const std::uint8_t* drifting;
@@ -38,7 +40,7 @@ struct CellKeyItem {
   }
 };
 
-// What the ghosts need once: their keys, and the fields that are copied.
+// What ghosts need once per list: their keys, and the fields copied from their owners.
 struct GhostNameItem {
   const Ghost* ghosts;
   FieldArrays<GhostField> fields;
@@ -52,7 +54,7 @@ struct GhostNameItem {
 };
 
 struct GhostKeyItem {
-  const Vec4* position;  // of the ghosts
+  const Vec4* position;  // number of ghosts
   BrickGrid grid;
   unsigned outside;
   unsigned* keys;
@@ -62,7 +64,7 @@ struct GhostKeyItem {
   }
 };
 
-// Keeps where a particle is, and the square of the distance from there [m^2].
+// Stores the position of a particle, and the square of its distance from there [m^2].
 struct BuiltAtItem {
   const Vec4* position;
   Vec3* built_at;
@@ -87,12 +89,12 @@ struct GhostItem {
 
 }  // namespace
 
-// While a run of explicit steps is open its step is brought into the state first.
+// An open step of an explicit run is first copied into the state.
 void CudaList::settle() {
   if (items_.open_run != nullptr) items_.open_run->settle();
 }
 
-// With ghosts and surfaces where they are now: it is the places that name contacts.
+// After the poses and ghosts were refreshed: the keys of contacts depend on positions.
 void CudaList::leave_slots() {
   if (!items_.history.at_slots()) return;
   items_.refresh_ghosts();
@@ -104,7 +106,7 @@ void CudaList::place_bodies(std::span<const BodyMotion> motion) {
   bodies_.side().set_motion(motion);
   if (!current_) return;
   bodies_.side().place();
-  // An explicit run brings the surfaces to the device itself, beside its steps.
+  // An explicit run copies the poses of the surfaces itself, concurrently with its steps.
   if (items_.open_run == nullptr) bodies_.put();
 }
 
@@ -116,7 +118,7 @@ void CudaList::wrap_positions() {
     throw SimulationError(kUnsoundPosition[0] + std::to_string(id) + kUnsoundPosition[1]);
 }
 
-// particles: of all ranks.
+// particles: number over all ranks.
 void CudaList::sort_cells(Real skin, std::int64_t particles) {
   const Ranks& ranks = items_.ranks;
   grid_ = make_brick_grid(ranks.alone()
@@ -143,7 +145,7 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
   items_.layout.owned = items_.owned, items_.layout.active = found.active;
 }
 
-// Lays out all items, makes room for them, and names the ghosts among them.
+// Lays out particles and ghosts, sizes their arrays, and sets the keys of the ghosts.
 void CudaList::find_ghosts(Real width) {
   ItemLayout& layout = items_.layout;
   DeviceHalo& halo = items_.lane.halo;
@@ -156,7 +158,8 @@ void CudaList::find_ghosts(Real width) {
     halo.list(items_.device(), now.position.data(), layout.active);
     const auto items = static_cast<std::size_t>(layout.items);
     now.grow(items, owned, owned, items_.stream), items_.other.grow(items, owned);
-    // Those that have left for other ranks, many at the start of a run, had room beside those that came.
+    // Particles that have migrated to other ranks, many of them at the start of a run, shared the arrays with
+    // those that arrived.
     now.trim(owned, items_.stream), items_.other.trim(items_.stream);
   });
   name_ghosts();
@@ -184,7 +187,7 @@ void CudaList::lay_out_items(Real skin) {
   bodies_.side().place();
 }
 
-// Ghosts by cell.
+// Index of ghosts by cell.
 void CudaList::index_ghosts() {
   const Index ghosts = items_.lane.halo.size();
   if (ghosts == 0) return;
@@ -221,9 +224,9 @@ void CudaList::search(Real skin) {
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
-// What explicit steps need beside the list. Forces, and where particles rotate all else that is of an
-// instant, are of the state at rest: no step reads them, and the last one of a run writes them all. Until
-// then others stand in their place.
+// Arrays of explicit steps that depend on the list. Forces, and with rotation all other values at an instant,
+// belong to the synchronous state: no step reads them and the last step of a run writes them all, so that
+// until then their memory serves other arrays.
 void CudaList::make_room_for_steps() {
   ParticleArrays& now = items_.now;
   const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
@@ -232,7 +235,7 @@ void CudaList::make_room_for_steps() {
   const RoomFor fraction{items_.mixed.fraction, in_mixed};
   const RoomFor rest{items_.mixed.rest, in_mixed};
   const RoomFor spin_rest{items_.mixed.spin_rest, rotates ? in_mixed : 0};
-  const bool in_forces = places.fits(now.force);  // but for long rows
+  const bool in_forces = places.fits(now.force);  // unless rows are long
   items_.room.lay_out(RoomFor{built_at_, static_cast<std::size_t>(items_.layout.active)},
                       items_.list.room_for_pruned(), places.unless(in_forces), fraction.unless(rotates),
                       rest.unless(rotates), spin_rest.unless(rotates));
@@ -243,7 +246,7 @@ void CudaList::make_room_for_steps() {
   }
 }
 
-// What of the list each rank makes alone: what takes most of the memory.
+// The parts of the list that each rank builds alone, which take most of the memory.
 void CudaList::find_rows(Real skin) {
   index_ghosts();
   search(skin);
@@ -252,15 +255,15 @@ void CudaList::find_rows(Real skin) {
     built_at_.resize(static_cast<std::size_t>(items_.layout.active)), step_arrays_.resize(items_);
     items_.history.take_slots(items_.listed());
   } else {
-    items_.history.take_slots(items_.listed());  // what was kept leaves the room
+    items_.history.take_slots(items_.listed());  // the packed history leaves the scratch memory
     make_room_for_steps();
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
   for_each(items_.device(), items_.layout.active, BuiltAtItem{items_.now.position.data(), built_at_.data()});
 }
 
-// Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
-// all ranks then fail, and can write their last good state.
+// Where an allocation fails the particles are unchanged. Phases in which that is likely end with `together`,
+// so that all ranks fail at once and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
   settle();
   current_ = false;

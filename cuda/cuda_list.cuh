@@ -1,4 +1,4 @@
-// The neighbour list of one rank on its GPU, and all that is done when one is built.
+// The neighbour list of one rank on its GPU, and all that happens when one is built.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace scree {
 
 class CudaList : public RankList {
  public:
-  // step_arrays: those of implicit steps, which grow with the list.
+  // step_arrays: those of implicit steps, which are resized with the list.
   CudaList(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& step_arrays)
       : items_(items),
         bodies_(bodies),
@@ -28,17 +28,17 @@ class CudaList : public RankList {
   std::int64_t builds() const override { return builds_; }
   LoadBalance balance() const override { return items_.balance; }
 
-  // Whether the items are those that the list was built of, and it is finished.
+  // Whether the list is complete and was built for the present items.
   bool current() const { return current_; }
   void outdate() { current_ = false; }
-  Real skin() const { return skin_; }  // that it covers [m]
+  Real skin() const { return skin_; }  // skin of the list [m]
   Real cutoff() const { return builder_.cutoff(skin_); }
-  Real bound() const { return bound_; }  // displacement of any item since it was built, at most [m]
+  Real bound() const { return bound_; }  // upper bound of the displacement of any item since it was built [m]
   void set_bound(Real bound) { bound_ = bound; }
   CudaOwners& owners() { return owners_; }
 
  private:
-  // Parts of build, in their order.
+  // Phases of build(), in order.
   void settle();
   void leave_slots();
   void wrap_positions();
@@ -54,12 +54,12 @@ class CudaList : public RankList {
   CudaItems& items_;
   CudaBodies& bodies_;
   CudaImplicitArrays& step_arrays_;
-  NeighborBuilder builder_;  // its grid and reach; the search is the device's
+  NeighborBuilder builder_;  // grid and range of the search, which runs on the device
   CudaOwners owners_;
   CellSort particle_sort_, ghost_sort_;
   BrickGrid grid_;
   DeviceArray<Index> ghost_items_;
-  DeviceArray<Vec3> built_at_;  // positions of the particles in the search when the list was built
+  DeviceArray<Vec3> built_at_;  // positions of the searched particles when the list was built
   bool current_ = false;
   Real skin_ = 0, bound_ = 0;
   std::int64_t builds_ = 0;

@@ -17,7 +17,7 @@ struct LeavesItem {
   __device__ bool operator()(Index i) const { return owner_of(grid, cuts, xyz(position[i])) != rank; }
 };
 
-// Particle leaving[k] on its way.
+// Packs the k-th departing particle into its record.
 struct MigrantItem {
   ParticleViews in;
   const Index* leaving;
@@ -32,7 +32,7 @@ struct MigrantItem {
 
 }  // namespace
 
-// Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.
+// Approximate cost of a step: one for the particle and one for each entry of its row in the last list.
 void CudaOwners::decompose() {
   const auto n = static_cast<std::size_t>(items_.owned);
   std::vector<Vec4> position(n);
@@ -49,11 +49,11 @@ void CudaOwners::decompose() {
   cuts_.upload(decomposition_.cuts(), items_.stream);
 }
 
-// In parts of bounded size; all ranks take as many.
+// Messages are of bounded size; all ranks take the same number of rounds.
 void CudaOwners::migrate() {
   if (!decomposition_.exists() || items_.balance.imbalance > items_.model.parallel.imbalance) decompose();
   items_.other.grow(items_.now.position.size(), static_cast<std::size_t>(items_.owned));
-  Index* leaving = items_.numbers_while_listing();  // until the sort
+  Index* leaving = items_.numbers_while_listing();  // valid until the sort
   const LeavesItem leaves{decomposition_.grid(), cuts_.data(), items_.now.position.data(),
                           items_.ranks.rank()};
   with_space(items_.space, [&](void* at, std::size_t& bytes) {
@@ -103,7 +103,7 @@ void CudaOwners::add_migrants(const std::vector<Particle>& arriving) {
   for_each(items_.device(), static_cast<Index>(arriving.size()),
            ArrivalItem{unpacked.data(), views_of(items_.now), items_.owned});
   items_.owned = owned;
-  wait_for(items_.stream);  // before the array above goes
+  wait_for(items_.stream);  // the kernel reads `unpacked`
 }
 
 void CudaOwners::note_rows() {

@@ -1,5 +1,5 @@
-// Which rank owns which particles where there are several: src/dem/cpu/cpu_list.cpp for the GPU's backend.
-// Particles that change their rank, few after the first list, go through the host.
+// Assignment of the particles to the ranks, if there are several: src/dem/cpu_list.cpp for the GPU backend.
+// Particles that migrate to another rank, few after the first list, go through the host.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// In ParticleArrays::drifting: a particle that another rank owns from now on.
+// Mark in `ParticleArrays::drifting`: another rank owns the particle from now on.
 inline constexpr std::uint8_t kGone = 2;
 
 class CudaOwners {
@@ -17,13 +17,14 @@ class CudaOwners {
   CudaOwners(CudaItems& items, const NeighborBuilder& builder) : items_(items), builder_(builder) {}
 
   const Decomposition& decomposition() const { return decomposition_; }
-  // Every particle to the rank whose box it is in. Those that go stay in the arrays, marked, until the sort
-  // leaves them behind; arrived() says that it has.
+  // Sends every particle to the rank whose box it is in. Those that departed stay in the arrays, marked,
+  // until the sort by cell drops them, which arrived() acknowledges.
   void migrate();
   void arrived() { migrating_ = false; }
   bool migrating() const { return migrating_; }
 
-  // When a list was built: keeps the lengths of its rows, and what it says about the balance.
+  // After a list was built: stores the lengths of its rows as costs; the second one measures the load balance
+  // from them.
   void note_rows();
   void measure_balance();
   DeviceArray<Index>& row_length() { return row_length_; }
@@ -37,8 +38,8 @@ class CudaOwners {
   const NeighborBuilder& builder_;
   Decomposition decomposition_;
   DeviceArray<DomainCut> cuts_;
-  DeviceArray<Index> row_length_;  // of the particles in the last list, with several ranks
-  bool migrating_ = false;         // some are on their way between ranks
+  DeviceArray<Index> row_length_;  // row lengths in the last list, with several ranks
+  bool migrating_ = false;         // marked particles have not been dropped yet
 };
 
 }  // namespace scree

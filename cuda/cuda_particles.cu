@@ -11,7 +11,8 @@
 namespace scree {
 namespace {
 
-// Collects the particles outside that are not known to drift; counts all, keeps as many as there is room for.
+// Collects particles outside the domain that are not yet known to drift; counts all, stores as many as there
+// is space for.
 struct LeaverItem {
   ParticleViews in;
   OpenBox box;
@@ -34,7 +35,7 @@ struct LeaverItem {
   }
 };
 
-// Wraps the leavers a last time and marks them.
+// Wraps escaped particles for the last time and marks them.
 struct MarkItem {
   const Index* particles;
   ParticleViews in;
@@ -81,7 +82,7 @@ void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses
   wait_for(stream);
   items_.history.load({}, items_.owned), load_works({});
   list_.outdate();
-  // records() must work where no memory is left, and a kernel takes some when it is launched first.
+  // records() must work where memory is exhausted, and the first launch of a kernel allocates some.
   for_each(items_.device(), std::min<Index>(items_.owned, 1), record_item(0));
 }
 
@@ -129,7 +130,7 @@ void CudaParticles::initial_forces() {
     now.loss_power.zero(items_.stream);
 }
 
-// Into leavers_, as many as there is room for; how many there are.
+// Stores particles that have just escaped in leavers_, as many as there is space for; returns their number.
 std::size_t CudaParticles::find_leavers() {
   Index* count = items_.results.at(&Results::leavers);
   require_cuda(cudaMemsetAsync(count, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
@@ -145,7 +146,7 @@ std::vector<Leaver> CudaParticles::outside() {
   if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, items_.stream);
   std::vector<Leaver> leavers(find_leavers());
   if (!items_.ranks.any(!leavers.empty())) return leavers;
-  if (leavers.size() > leavers_.size()) {  // not all were kept; now there is room for them
+  if (leavers.size() > leavers_.size()) {  // not all were stored; there is space for all now
     leavers_.resize_clean(leavers.size(), items_.stream);
     find_leavers();
   }
@@ -169,7 +170,7 @@ void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
     if (leaver.rank == items_.ranks.rank()) particles.push_back(leaver.local_index);
   const bool remove = items_.model.space.leaving == Leaving::remove;
   const auto n = remove ? static_cast<std::size_t>(items_.owned) : 0;
-  // The arrays come first: where there is no memory for them, nothing has changed yet.
+  // The arrays are sized first: if memory does not suffice, nothing has changed yet.
   DeviceArray<Index> d_particles, iota(n), staying(n), row_length(items_.ranks.alone() ? 0 : n);
   DeviceArray<std::uint8_t> stays(n);
   d_particles.upload(particles, items_.stream);
@@ -193,11 +194,11 @@ void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
     row_length.resize(static_cast<std::size_t>(items_.owned));
     for_each(items_.device(), items_.owned, GatherItem{old_length.data(), staying.data(), row_length.data()});
   }
-  wait_for(items_.stream);  // before the arrays above go
+  wait_for(items_.stream);  // the copies above read host arrays of this scope
   old_length.swap(row_length);
 }
 
-// Before the leavers are wrapped and marked.
+// Before the escaped particles are wrapped and marked.
 void CudaParticles::take_contacts_out() {
   ParticleArrays& now = items_.now;
   const bool verlet = is_verlet(items_.model);

@@ -40,7 +40,7 @@ class CudaParticles : public RankParticles {
   CudaItems& items_;
   CudaBodies& bodies_;
   CudaList& list_;
-  DeviceArray<Particle> records_;  // on their way between host and device
+  DeviceArray<Particle> records_;  // records in transit between host and device
   DeviceArray<Leaver> leavers_;
 };
 

@@ -82,7 +82,7 @@ Real CudaReports::inside_kinetic() {
 void CudaReports::start_output() {
   OutputArrays& o = output_;
   const auto n = static_cast<std::size_t>(items_.owned);
-  o.ready.wait();  // for the last output, whose arrays are written now
+  o.ready.wait();  // of the last output, whose arrays are overwritten now
   o.n = n;
   o.h_ids.resize(n), o.position.resize(n), o.h_position.resize(n);
   for (FieldColumn& column : o.columns) {
@@ -102,7 +102,7 @@ void CudaReports::start_output() {
   o.ready.record(copy_stream_);
 }
 
-// By global id.
+// Sorted by global id.
 void CudaReports::queue_order() {
   OutputArrays& o = output_;
   for_each(items_.device(), items_.owned, IdItem{items_.now.row_key.data(), o.ids.data(), o.order.data()});
@@ -115,7 +115,7 @@ void CudaReports::queue_order() {
   if (o.n > 0) with_space(items_.space, sort);
 }
 
-// In that order.
+// Row numbers in that order.
 void CudaReports::queue_values() {
   OutputArrays& o = output_;
   const OutputSource source = output_source(views_of(items_.now), items_.model, items_.subdomain.period());
@@ -150,8 +150,8 @@ ShapePack CudaReports::pack_shapes() {
   return bodies_.side().pack();
 }
 
-// Queued, with where the lines of each particle begin. contacts_: their numbers, of which the one past the
-// end is read, though no sum depends on it.
+// Queues the numbers of contact lines per particle and their offsets. The scan also reads the number past the
+// end of contacts_, although no offset depends on it.
 LineRequest CudaReports::count_lines() {
   const auto n = static_cast<std::size_t>(items_.owned);
   contacts_.resize(n + 1), line_offsets_.resize(n + 1);
@@ -169,7 +169,7 @@ LineRequest CudaReports::count_lines() {
   return request;
 }
 
-// Some particles after the other, so that few lines are on the device at a time.
+// In batches of particles, so that few lines are on the device at a time.
 ContactLines CudaReports::contact_lines() {
   need_loads();
   LineRequest request = count_lines();
@@ -204,7 +204,7 @@ std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted
   std::vector<GlobalId> ids(wanted.begin(), wanted.end());
   std::sort(ids.begin(), ids.end());
   traced_ids_.upload(ids, items_.stream);
-  // An id that no particle has stands where none of this rank's was found.
+  // Where this rank found no particle, the result is an id that none has.
   traced_.resize(ids.size());
   require_cuda(cudaMemsetAsync(traced_.data(), 0xff, ids.size() * sizeof(TracedParticle), items_.stream),
                "cudaMemsetAsync");

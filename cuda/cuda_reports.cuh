@@ -1,4 +1,4 @@
-// What the GPU's backend tells about its particles: sums, values for output.
+// Reports of the GPU backend on its particles: sums, and values for output.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ class CudaReports : public Reports {
   std::vector<TriangleLoad> triangle_loads() override;
 
  private:
-  // The values of a snapshot on their way out: those of one field, and all.
+  // Values of a snapshot on their way to the host: those of one field, and of all.
   struct FieldColumn {
     OutputField field;
     DeviceArray<std::byte> values;
@@ -51,13 +51,13 @@ class CudaReports : public Reports {
 
   CudaItems& items_;
   CudaBodies& bodies_;
-  Stream copy_stream_;  // for what goes out beside the steps
+  Stream copy_stream_;  // stream for copies concurrent with the steps
   OutputArrays output_;
-  // Of each particle's contacts.
+  // Number of contacts of each particle.
   DeviceArray<Real> elastic_, pairs_, cohesion_;
   DeviceArray<Index> contacts_;
   DeviceArray<SpringEnergies> springs_;
-  // Empty unless contacts are shown: where the lines of each particle begin, and some of the lines.
+  // Empty unless contacts are written: the offsets of each particle's lines, and a batch of lines.
   DeviceArray<Index> line_offsets_;
   DeviceArray<ContactLine> lines_;
   DeviceArray<GlobalId> traced_ids_;

@@ -13,7 +13,7 @@
 
 namespace scree {
 
-// What atomicMin starts from: bytes of 0x7f, above every id.
+// Initial value of minima of ids: bytes of 0x7f, above every id.
 inline constexpr long long kNoId = 0x7f7f7f7f7f7f7f7f;
 
 struct Results {
@@ -22,13 +22,13 @@ struct Results {
   Index index, leavers;
   ExactSums<1> slope;
   ExactSums<kLedgerTerms> ledger;
-  // All blocks of a step add to its first members and read the others. Here a line of the cache ends within
-  // it; where it stood in one line, an explicit step of 1e6 particles took 4 % (double) and 10 % (mixed)
-  // longer on an H200.
+  // All blocks of a step add to its first members and read the others. As placed here, a cache line ends
+  // between the two; with both in one line, an explicit step of 1e6 particles took 4 % (double) and 10 %
+  // (mixed) longer on an H200.
   VerletControl control;
   long long worst_id;
   Index interior, active,
-      staying;  // particles in the interior, in the search, and on this rank from now on
+      staying;  // numbers of particles: in the interior, in the search, and on this rank after migration
   ExactSums<kWallTerms> wall;
   ExactSums<kRotationTerms> rotation;
   ExactSums<1> cohesion;
@@ -46,7 +46,7 @@ class DeviceResults {
   T* at(T Results::*member) {
     return &(on_device_.data()->*member);
   }
-  Results& host() { return on_host_[0]; }  // as last copied
+  Results& host() { return on_host_[0]; }  // the last copy
   // Queues the copy of one member to the host.
   template <class T>
   void copy(T Results::*member, cudaStream_t stream) {
@@ -56,7 +56,7 @@ class DeviceResults {
   void copy(T Results::*member) {
     copy(member, stream_);
   }
-  // The same, and waits until what is queued is done.
+  // The same, and waits for the stream.
   template <class T>
   const T& fetch(T Results::*member) {
     copy(member);
@@ -64,7 +64,8 @@ class DeviceResults {
     return on_host_.data()->*member;
   }
 
-  // Where kernels put the smallest of some ids, which starts from kNoId; then that of all ranks.
+  // Where kernels write the smallest of some ids, initially `kNoId`; then its value on the host, over all
+  // ranks.
   long long* clear_id() {
     require_cuda(cudaMemsetAsync(at(&Results::worst_id), 0x7f, sizeof(long long), stream_),
                  "cudaMemsetAsync");
@@ -72,7 +73,7 @@ class DeviceResults {
   }
   long long smallest_id() { return ranks_.min(fetch(&Results::worst_id)); }
 
-  // Over all ranks, once the device's part is on the host.
+  // Totals over all ranks, of sums that have been copied to the host.
   template <int N>
   std::array<Real, N> totals(const ExactSums<N>& sums) const {
     std::array<__int128, N> quanta;

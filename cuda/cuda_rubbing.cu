@@ -1,4 +1,4 @@
-// The schedule of src/dem/cpu/cpu_rubbing.cpp.
+// The same schedule as src/dem/cpu_rubbing.cpp, with kernels.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ struct IsLargest {
   __device__ bool operator()(Index i) const { return largest_part(residual[i]) == *largest; }
 };
 
-// What is not finite of either part.
+// Whether the translational or the rotational part is not finite.
 struct SumOfPartsItem {
   const Twist* twist;
   Vec3* sum;
@@ -33,10 +33,11 @@ struct FirstTwistItem {
   SCREE_HD void operator()(Index i) const { first[i] = direction.next(i, {}), solution[i] = {}; }
 };
 
-// One step of the solve: takes the direction into the solution and the residual, and finds the next.
+// One step of the solve: adds the direction to the solution, updates the residual, and computes the next
+// direction.
 struct RubbingSolverItem {
   SubtractRubbingItem<SlicedRows> subtract;
-  TwistDirectionItem direction;  // weights of the next one
+  TwistDirectionItem direction;  // weights of the next direction
   Twistf *next, *solution;
 
   SCREE_HD Real operator()(Index i) const {
@@ -52,7 +53,7 @@ struct RubbingSolverItem {
 
 constexpr int kResidualThreads = 128;
 
-// Residual, block and norms of a particle from its entries.
+// Residual, diagonal block and norms of a particle from its entries of the Newton matrix.
 __global__ void __launch_bounds__(kResidualThreads)
     residual_kernel(Index n, const __grid_constant__ RubbingResidualItem residual, const RubbingMatrix matrix,
                     const SlicedRows rows, const Index* surface_offsets,
@@ -85,7 +86,7 @@ void CudaRubbingArrays::resize(const CudaItems& items) {
       correction.resize(owned);
 }
 
-// The state is put aside by a swap.
+// The state at the start of the step is kept by swapping the arrays.
 CudaRubbingStep::CudaRubbingStep(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays, Real h)
     : CudaImplicitStep(items, bodies, arrays, h), rubbing_(arrays.rubbing) {
   std::swap(items.now.angular_velocity, items.other.angular_velocity);
@@ -114,7 +115,7 @@ RubbingMatrix CudaRubbingStep::matrix() {
           rubbing_.surface_entries.data()};
 }
 
-// To where their accelerations take them.
+// Predicts positions and orientations from the accelerations.
 void CudaRubbingStep::turn_particles() {
   for_each(items_.device(), items_.owned, TurnItem{step_views(), turning_views()});
   for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
@@ -145,7 +146,7 @@ void CudaRubbingStep::refresh_ghosts(Device on) {
   halo.exchange(on, mean.spin);
 }
 
-// Forces, Newton matrix and residual, with the ghosts refreshed where they must be.
+// Forces, Newton matrix and residual, after a refresh of the ghosts where the iterate has changed.
 void CudaRubbingStep::queue_system() {
   DeviceRubbingRequest r;
   r.in = items_.views();
@@ -185,7 +186,7 @@ void CudaRubbingStep::queue_system() {
   require_cuda(cudaGetLastError(), "rubbing residual");
 }
 
-// Over the particles of all ranks; waits.
+// Maxima over the particles of all ranks; waits.
 RubbingNorms CudaRubbingStep::largest_norms() {
   copy_async(rubbing_.h_norms.data(), rubbing_.norms.data(), 1, items_.stream);
   wait_for(items_.stream);
@@ -237,11 +238,11 @@ void CudaRubbingStep::shorten_correction() {
   turn_particles();
 }
 
-// With frozen limits none grows.
+// With lagged limits no stiffness grows.
 bool CudaRubbingStep::is_consistent() const { return !frozen_ && ::scree::is_consistent(sharpness_); }
 
-// Prepares it for the solve and returns its largest part [N]. The bodies have already taken their correction:
-// see CudaImplicitStep.
+// Prepares the residual for the solve and returns its largest component [N]. The bodies have applied their
+// correction already: see `CudaImplicitStep`.
 Real CudaRubbingStep::right_hand_side() {
   if (!bodies_.have_surfaces()) return scaled_residual_ * force_scale_;
   for_each(items_.device(), items_.owned,
@@ -299,7 +300,7 @@ ParticleCorrection CudaRubbingStep::particle_correct() {
 }
 
 void CudaRubbingStep::freeze_limits() {
-  const auto clear = [&](DeviceArray<Real>& limits, std::int64_t n) {  // to NaN: no contact
+  const auto clear = [&](DeviceArray<Real>& limits, std::int64_t n) {  // all bits set, a NaN: no contact
     limits.resize(static_cast<std::size_t>(n));
     const std::size_t bytes = static_cast<std::size_t>(n) * sizeof(Real);
     if (n > 0) require_cuda(cudaMemsetAsync(limits.data(), 0xff, bytes, items_.stream), "cudaMemsetAsync");
@@ -307,7 +308,7 @@ void CudaRubbingStep::freeze_limits() {
   clear(rubbing_.neighbor_limits, items_.list.entries());
   clear(rubbing_.surface_limits, items_.surfaces.entries());
   const FrozenLimits to{rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()};
-  if (ghosts_stale_) {  // on the stream of the halo, as in a pass over the rows
+  if (ghosts_stale_) {  // on the halo stream, as in a pass over the rows
     items_.halo_after_rows();
     items_.queue_beside_halo([&](Device on) { refresh_ghosts(on); }, [](Device, Index, Index) {}, nullptr);
     items_.rows_after_halo();

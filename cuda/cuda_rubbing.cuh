@@ -1,4 +1,4 @@
-// The implicit step of the GPU's backend where contacts rub and particles turn.
+// The implicit step of the GPU backend for laws with friction, where particles rotate.
 #pragma once
 
 #include "cuda_implicit.cuh"
@@ -31,16 +31,16 @@ class CudaRubbingStep : public CudaImplicitStep {
   RubbingNorms largest_norms();
   bool is_consistent() const;
   Real right_hand_side();
-  void report_not_finite();  // throws, as that of the items
+  void report_not_finite();  // throws where a residual is not finite, as the item of the same name does
   int solve(Real tolerance);
 
   CudaRubbingArrays& rubbing_;
   bool frozen_ = false;
-  ResidualSearch search_;                          // along rubbing_.correction
-  Real scaled_residual_ = 0;                       // of the last contact_force
-  Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
+  ResidualSearch search_;                          // largest stiffness ratio along rubbing_.correction
+  Real scaled_residual_ = 0;                       // of the last contact force stage
+  Real largest_stiffening_ = 0, force_scale_ = 0;  // of the last contact force stage
   Real sharpness_ = 0;
-  Real unit_ = 0;  // of rubbing_.correction [N]
+  Real unit_ = 0;  // largest component of rubbing_.correction [N]
   RubbingTolerance tolerance_;
 };
 

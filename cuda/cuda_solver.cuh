@@ -1,5 +1,5 @@
-// The schedule of the linear solves of implicit steps: iterate_chebyshev() of dem/implicit/block_solver.hpp
-// on the device.
+// The schedule of the linear solves of implicit steps: `iterate_chebyshev` of dem/block_solver.hpp on the
+// device.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace scree {
 
-// Progress of a linear solve: written by the last block of each product.
+// Progress of a linear solve, written by the last block of each matrix-vector product.
 struct SolverControl {
-  Real tolerance;  // on the largest |residual| [N]
-  Real largest;    // squared, of this product
+  Real tolerance;  // bound of the largest |residual| [N]
+  Real largest;    // square of the largest |residual| of this product
   unsigned finished_blocks;
   int products;
   int stop;
-  int alone;  // the last block decides; else the ranks do, together, after the product
+  int alone;  // one rank: the last block decides; several ranks do so after a reduction
 };
 
 struct SolverProgress {
@@ -36,8 +36,8 @@ __global__ void decide_kernel(SolverControl* c) {
   if (!c->stop) decide(c);
 }
 
-// For the particles [first, end). Registers are rationed for three blocks of the most threads that launches
-// may have: it lives from many threads that wait.
+// One matrix-vector product, for the particles first ... end - 1. Registers are limited so that three of the
+// largest blocks fit on a multiprocessor: the kernel hides latency with many threads.
 template <class Item>
 __global__ void __launch_bounds__(256, 3)
     solver_kernel(Index first, Index end, const __grid_constant__ Item item, SolverControl* c) {
@@ -48,9 +48,9 @@ __global__ void __launch_bounds__(256, 3)
   if (c->alone && is_last_block(&c->finished_blocks, gridDim.x)) decide(c);
 }
 
-// begin(weights) queues the first directions. For every product: ghosts(on, product) queues those of its
-// directions; item(product, weights), with the weights of the next directions, is what a particle does, and
-// returns the square of its residual. Returns the number of products.
+// begin(weights) queues the first directions. For every product, ghosts(on, product) queues the ghosts of its
+// directions, and item(product, weights), with the weights of the next directions, computes a particle's part
+// and returns the square of its residual. Returns the number of products.
 template <class Begin, class Ghosts, class MakeItem>
 int solve_on_device(CudaItems& items, SolverProgress& progress, Real largest_stiffening, Real tolerance,
                     const Begin& begin, const Ghosts& ghosts, const MakeItem& item) {

@@ -114,7 +114,7 @@ Vec4* StepQueue::spins() const {
 void StepQueue::convert_to_mixed() {
   ParticleArrays& now = items_.now;
   mixed_ = {make_quantum_grid(list_.cutoff()), control_.seen().closed};
-  // Ghosts come with the first step's halo.
+  // The ghosts come with the halo exchange of the first step.
   for_each(items_.device(), items_.owned,
            ToMixedItem{now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
                        mixed_views(), mixed_->quanta, items_.subdomain.box(), h_, list_.skin() / 2});
@@ -144,8 +144,8 @@ void StepQueue::bring_home() {
   control_.at_home();
 }
 
-// queue_surfaces(device): what the rows beside placed surfaces wait for; queue_ghosts(device, k): the halo of
-// the k-th step from now on; queue_rows(device, rows): the kernel of a step on these; key: all that the
+// queue_surfaces(device): what rows near surfaces wait for; queue_ghosts(device, k): the halo exchange of the
+// k-th step from now; queue_rows(device, rows): the kernel of a step for these rows; key: everything that the
 // launches depend on.
 template <class QueueSurfaces, class QueueGhosts, class QueueRows>
 void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
@@ -172,7 +172,7 @@ void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSu
   });
 }
 
-// The same of several ranks. After each step they share what decides whether the next one may be taken.
+// The same for several ranks. After each step they reduce what decides whether the next one may be taken.
 template <class QueueSurfaces, class QueueGhosts, class QueueEarly, class QueueLate>
 void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces,
                                  const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
@@ -181,7 +181,8 @@ void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surface
   items_.halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
     if (!items_.parts.apart()) queue_surfaces(items_.device()), items_.halo_after_rows();
-    // The first step waits for the host; steps behind a stop do nothing that a halo could hide behind.
+    // The clock measures the second step: the first one waits for the host, and later ones may be past a
+    // stop, where nothing hides the halo exchange.
     HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.lane.clock : nullptr;
     items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_early, queue_late, clock);
     items_.lane.halo.max(halo, control_.on_device()->shared, 2);
@@ -191,7 +192,7 @@ void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surface
   require_cuda(cudaGetLastError(), "explicit step");
 }
 
-// The host knows where the steps that are queued find their ghosts: behind a stop nothing is read any more.
+// The host knows where queued steps read their ghosts: after a stop nothing is read any more.
 void StepQueue::queue_double(Index steps, const Event* loads_found) {
   DeviceHalo& halo = items_.lane.halo;
   const VerletRequest r = request();

@@ -1,4 +1,4 @@
-// Explicit steps as they are queued on the device, in double or in mixed precision.
+// Queues explicit steps on the device, in double or in mixed precision.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// Kept from one run to the next.
+// Workspace kept from one run to the next.
 struct RunWorkspace {
   StepGraph graph;
   Event step_queued;
@@ -21,23 +21,23 @@ class StepQueue {
   StepQueue(CudaItems& items, CudaList& list, RunControl& control, RunWorkspace& workspace, Real h)
       : items_(items), list_(list), control_(control), workspace_(workspace), h_(h) {}
 
-  // Queues so many steps, each closed and the next opened, behind each other and their halos. Those behind a
-  // stop do nothing. loads_found: of surfaces that move, when their contacts with the particles are there;
-  // null for surfaces at rest, whose contacts are queued with each step.
+  // Queues that many steps after each other, each with its halo exchange; each is closed and the next opened.
+  // Those after a stop do nothing. loads_found: for moving surfaces, when their contacts with the particles
+  // have been evaluated; null for static surfaces only, whose contacts are queued with each step.
   void queue(Index steps, const Event* loads_found = nullptr) {
     items_.in_mixed ? queue_mixed(steps, loads_found) : queue_double(steps, loads_found);
   }
-  // A step in double.
+  // Request of a step in double.
   VerletRequest request();
   bool in_mixed() const { return mixed_.has_value(); }
-  // Brings the open step into the arrays of the state, once the host has looked at the control.
+  // Copies the open step into the arrays of the state, after the host has read the control block.
   void bring_home();
 
  private:
-  // Where the open step is in the arrays of mixed precision.
+  // Arrays that hold the open step in mixed precision.
   struct Mixed {
     QuantumGrid quanta;
-    Index start;  // steps closed when it was brought there
+    Index start;  // closed steps when the mixed state was last converted to double
   };
   PrunedViews pruned_views(const Vec4* position);
   void queue_double(Index steps, const Event* loads_found);

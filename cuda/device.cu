@@ -1,4 +1,4 @@
-// The machine's GPU, and what a model needs of its memory.
+// The GPU of this machine, and what a model needs of its memory.
 #include <algorithm>
 #include <iterator>
 
@@ -14,7 +14,7 @@ std::size_t& device_bytes_in_use() {
 
 namespace {
 
-cudaError_t chosen = cudaSuccess;  // what came of choose_device
+cudaError_t chosen = cudaSuccess;  // result of choose_device
 
 int this_device() {
   int device = 0;
@@ -56,7 +56,7 @@ std::string trouble_of(cudaError_t status) {
     case cudaErrorNoDevice:
       return "there is no GPU that CUDA can use";
     case cudaErrorInsufficientDriver:
-    case cudaErrorUnsupportedPtxVersion:  // no machine code for the GPU, and a driver too old to make it
+    case cudaErrorUnsupportedPtxVersion:  // no machine code for this GPU, and a driver too old to compile it
       return driver == 0 ? "there is no NVIDIA driver here"
                          : "the NVIDIA driver supports CUDA " + version(driver) + ", this program needs " +
                                version(runtime);

@@ -1,4 +1,4 @@
-// Where the loops over items run on a GPU, its memory, and how its errors become ours.
+// How loops over items run on a GPU, its memory, and the conversion of its errors to exceptions.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -14,17 +14,18 @@
 
 namespace scree {
 
-// The counterpart of Serial: work is queued on the stream and this returns before it is done.
+// The counterpart of `Serial`: work is queued on the stream, and the call returns before it is done.
 struct Device {
   cudaStream_t stream = nullptr;
 };
 
-// Of the GPU.
+// Of the GPU that this rank uses.
 std::size_t multiprocessors();
 std::array<char, 16> device_uuid();
 
-// Throws DeviceError with the runtime's text. what: the call that failed, for the message. Where memory was
-// wanting the device works on, and the runtime forgets the error: the next launch would report it as its own.
+// Throws `DeviceError` with the runtime's text. what: the call that failed, for the message. After a lack of
+// memory the device still works, and the error is cleared: otherwise the next launch would report it as its
+// own.
 inline void require_cuda(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   if (status == cudaErrorMemoryAllocation) cudaGetLastError();
@@ -35,10 +36,10 @@ inline void wait_for(cudaStream_t stream) {
   require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
 }
 
-// urgent: its blocks start before those that wait on other streams.
+// urgent: its blocks are scheduled before those waiting on other streams.
 enum class Priority { normal, urgent };
 
-// A stream of its own, and an event on it.
+// A stream and an event, each owned by its object.
 class Stream {
  public:
   explicit Stream(Priority priority = Priority::normal) {
@@ -73,7 +74,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-// An event that knows when it was.
+// An event that records its time.
 class TimedEvent {
  public:
   TimedEvent() { require_cuda(cudaEventCreate(&event_), "cudaEventCreate"); }
@@ -81,7 +82,7 @@ class TimedEvent {
   TimedEvent(const TimedEvent&) = delete;
   TimedEvent& operator=(const TimedEvent&) = delete;
   void record(cudaStream_t stream) { require_cuda(cudaEventRecord(event_, stream), "cudaEventRecord"); }
-  // Both have been [s].
+  // Time between two recorded events [s].
   double seconds_since(const TimedEvent& before) const {
     float milliseconds = 0;
     require_cuda(cudaEventElapsedTime(&milliseconds, before.event_, event_), "cudaEventElapsedTime");
@@ -92,11 +93,11 @@ class TimedEvent {
   cudaEvent_t event_ = nullptr;
 };
 
-// Leaves all but `shared` bytes of a multiprocessor's fast memory, and what the driver takes for itself, to
-// its cache. Without this the driver takes more for shared memory than the blocks need.
+// Leaves the on-chip memory of a multiprocessor to the L1 cache, except for `shared` bytes and what the
+// driver reserves. By default the driver assigns more to shared memory than the blocks need.
 template <class Kernel>
 void prefer_cache(Kernel* kernel, std::size_t shared) {
-  constexpr std::size_t kDriver = 16 * 1024;  // 1 KB per block
+  constexpr std::size_t kDriver = 16 * 1024;  // reserved per block: 1 KB
   int device = 0, most = 0;
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
   require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device),
@@ -107,7 +108,7 @@ void prefer_cache(Kernel* kernel, std::size_t shared) {
                "cudaFuncSetAttribute");
 }
 
-// What the code of a kernel that this GPU runs was compiled for: 90 for generation 9.0.
+// The architecture for which the code of a kernel on this GPU was compiled: 90 for compute capability 9.0.
 template <class Kernel>
 int generation_of(Kernel* kernel) {
   cudaFuncAttributes attributes{};
@@ -115,21 +116,21 @@ int generation_of(Kernel* kernel) {
   return attributes.ptxVersion;
 }
 
-// n values, queued on the stream. from and to: device and pinned memory.
+// Queues a copy of n values on the stream. from and to: device or pinned memory.
 template <class T>
 void copy_async(T* to, const T* from, std::size_t n, cudaStream_t stream) {
   if (n > 0)
     require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream), "cudaMemcpyAsync");
 }
 
-// Device memory that the arrays below hold now [B].
+// Device memory that all `DeviceArray`s hold now [B].
 std::size_t& device_bytes_in_use();
 
-// An array on the device. Its contents are lost where it has to grow.
+// An array on the device. Its contents are lost when it grows.
 template <class T>
 class DeviceArray {
  public:
-  static constexpr std::size_t kSpare = 8;  // an array that grows gets 1 / kSpare more than asked for
+  static constexpr std::size_t kSpare = 8;  // reserve of a growing array: 1 / kSpare of its size
 
   DeviceArray() = default;
   explicit DeviceArray(std::size_t size) { resize(size); }
@@ -140,7 +141,7 @@ class DeviceArray {
     return *this;
   }
 
-  // Throws DeviceError where the memory does not suffice; the array is then empty.
+  // Throws `DeviceError` where memory does not suffice; the array is then empty.
   void resize(std::size_t size) {
     if (size > capacity_) {
       release();
@@ -150,13 +151,13 @@ class DeviceArray {
     }
     size_ = size;
   }
-  // The same, with room for more where the array has to grow: for sizes that change a little each time.
+  // The same, with a reserve when the array grows: for sizes that vary a little.
   void resize_with_spare(std::size_t size) {
     if (size > capacity_) resize(size + size / kSpare);
     size_ = size;
   }
-  // The same for records that travel to the host whole: bytes between their members, which nobody writes, are
-  // zero.
+  // The same for records that are copied to the host whole: it clears the padding bytes between their
+  // members, which nothing else writes.
   void resize_clean(std::size_t size, cudaStream_t stream) {
     if (size <= capacity_) {
       size_ = size;
@@ -165,8 +166,7 @@ class DeviceArray {
     resize(size);
     zero(stream);
   }
-  // The same, with the first `keep` values kept where the array has to grow, and room for more. Waits if it
-  // grows.
+  // The same, keeping the first `keep` values when the array grows, with a reserve. Waits if it grows.
   void grow(std::size_t size, std::size_t keep, cudaStream_t stream) {
     if (size > capacity_) {
       DeviceArray larger(keep > 0 ? size + size / kSpare : size);
@@ -176,7 +176,7 @@ class DeviceArray {
     }
     size_ = size;
   }
-  // Gives back what it has beyond twice the room for more; the first `keep` values stay. Waits if it does.
+  // Shrinks to twice the reserve if it is larger; keeps the first `keep` values. Waits if it shrinks.
   void trim(std::size_t keep, cudaStream_t stream) {
     if (borrowed_ || capacity_ <= size_ + 2 * (size_ / kSpare)) return;
     DeviceArray smaller(size_ + size_ / kSpare);
@@ -185,13 +185,13 @@ class DeviceArray {
     smaller.size_ = size_;
     swap(smaller);
   }
-  // So many values stand at `data` from now on, in memory that another holds. Where the array has to grow it
-  // takes memory of its own.
+  // From now on the n values are at `data`, in memory that another array owns. If the array has to grow it
+  // allocates its own.
   void borrow(T* data, std::size_t size) {
     release();
     data_ = data, size_ = capacity_ = size, borrowed_ = true;
   }
-  // It is empty afterwards.
+  // The array is empty afterwards.
   void release() {
     if (data_ != nullptr && !borrowed_) {
       cudaFree(data_);
@@ -201,7 +201,7 @@ class DeviceArray {
   }
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
-  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // that it holds
+  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // owned or aliased [B]
   T* data() { return data_; }
   const T* data() const { return data_; }
   void swap(DeviceArray& other) noexcept {
@@ -212,7 +212,7 @@ class DeviceArray {
     if (size_ > 0) require_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "cudaMemsetAsync");
   }
 
-  // Whole vectors; both wait until the copy is done.
+  // Copies of whole vectors; both wait until the copy is done.
   void upload(const std::vector<T>& values, cudaStream_t stream) {
     resize(values.size());
     copy(data_, values.data(), size_, cudaMemcpyHostToDevice, stream);
@@ -235,8 +235,8 @@ class DeviceArray {
   bool borrowed_ = false;
 };
 
-// A library call that needs space on the device: call(nullptr, bytes) asks for how much, call(at, bytes) does
-// the work.
+// A library call with scratch memory on the device: call(nullptr, bytes) sets the size that it needs,
+// call(at, bytes) runs.
 template <class Call>
 void with_space(DeviceArray<unsigned char>& space, const Call& call) {
   std::size_t bytes = 0;
@@ -245,7 +245,7 @@ void with_space(DeviceArray<unsigned char>& space, const Call& call) {
   call(space.data(), bytes);
 }
 
-// An array in host memory that the device copies to and from without waiting.
+// A page-locked array of the host, for asynchronous copies.
 template <class T>
 class PinnedArray {
  public:

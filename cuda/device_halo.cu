@@ -3,15 +3,16 @@
 namespace scree {
 namespace {
 
-// Visits the targets of a particle: counts the entries per target, or writes them to their places. Entries of
-// a target come in any order; nothing depends on it, because rows are ordered by global id and image.
+// Visits the ranks and images that need a particle as a ghost: counts its entries per target, or writes them.
+// Entries of a target are in any order; nothing depends on it, because rows are sorted by global id and
+// image.
 struct TargetItem {
   const Vec4* position;
   DomainBox box;
   Real reach;
   const HaloTarget* targets;
   int count;
-  unsigned long long* next;  // per target: the entry after the last
+  unsigned long long* next;  // per target: end of its entries
   Ghost* ghosts;             // null: only count
 
   __device__ void operator()(Index i) const {

@@ -1,4 +1,4 @@
-// Halo on the device: src/partition/halo.hpp for ghosts of any number of ranks, whose packing are kernels.
+// Halo exchange on the device: src/partition/halo.hpp for ghosts of any number of ranks, packed by kernels.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,12 @@
 
 namespace scree {
 
-// Where the ghosts' copies of a field go: to their places behind the owned items, or into what is sent.
+// Destination of a ghost's copy of a field: its position after the owned items, or the send buffer.
 template <class T>
 struct GhostField {
   T *field, *packed;
-  Index own, first_ghost;  // own: entries that are images of the rank's own particles, and come first
+  Index own, first_ghost;  // number of entries that are periodic images of the rank's own particles, which
+                           // come first
 
   SCREE_HD void put(Index entry, const T& value) const {
     if (entry < own)
@@ -45,14 +46,15 @@ struct SpinGhostItem {
   SCREE_HD void operator()(Index entry) const { spin.put(entry, spin.field[ghosts[entry].source]); }
 };
 
-// Looks at some halos of positions and velocities: one of every batch of explicit steps, those of implicit
-// forces. How long each took, and how long the rows that need none left it waited for.
+// Times a sample of the halo exchanges of positions and velocities: one per batch of explicit steps, and
+// those of implicit forces. Measures how long each took, and how long it was still under way after the
+// interior was done.
 class HaloClock {
  public:
   void begin(cudaStream_t halo) { begin_.record(halo); }
   void end(cudaStream_t halo) { end_.record(halo); }
   void interior_done(cudaStream_t rows) { interior_done_.record(rows), running_ = true; }
-  // Once both streams are done.
+  // Reads the times, once both streams are done.
   void read(HaloSize& halo) {
     if (!running_) return;
     running_ = false, ++looks_;
@@ -73,27 +75,27 @@ class DeviceHalo {
 
   // Empty for one rank.
   std::string transport() const { return transport_ ? transport_->name() : ""; }
-  // Whether the host waits for the device in every exchange.
+  // Whether every exchange waits for the device on the host.
   bool waits() const { return transport_ && transport_->waits(); }
 
-  // exchange_halo: counts the ghosts among items at position[0 ... n-1], and tells the neighbours. Waits for
-  // the stream. Collective.
+  // Stage exchange_halo: counts the ghosts among the items at position[0 ... n-1], and tells the neighbouring
+  // ranks. Waits for the stream. Collective.
   void count(Device device, const HaloPlan& plan, const Vec4* position, Index n);
-  // Then lists the same.
+  // Then lists the ghosts that were counted.
   void list(Device device, const Vec4* position, Index n);
   Index size() const { return plan_.ghosts(); }
   const HaloPlan& plan() const { return plan_; }
-  // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then
+  // How the fields of ghosts are filled: for_each over entries() with an item that writes into fields, then
   // exchange.
   Index entries() const { return plan_.own() + plan_.sent(); }
   const Ghost* ghosts() const { return ghost_.data(); }
-  // buffer: below kBuffers, for fields in the same exchange. T: at most as large as Vec4.
+  // buffer: below `kBuffers`, distinct for the fields of one exchange. T: at most as large as `Vec4`.
   template <class T>
   GhostField<T> field(int buffer, T* field, Index first_ghost) {
     static_assert(sizeof(T) <= sizeof(Vec4));
     return {field, reinterpret_cast<T*>(packed_[buffer].data()), plan_.own(), first_ghost};
   }
-  // Sends what was put into fields, and receives the ghosts. messages: of these fields.
+  // Sends what was written into fields, and receives the ghosts. messages: those of these fields.
   void exchange(Device device, std::span<const HaloMessage> messages) {
     if (transport_) transport_->exchange(plan_, messages, device.stream);
   }
@@ -101,12 +103,12 @@ class DeviceHalo {
   void exchange(Device device, const GhostField<T>&... fields) {
     exchange(device, std::array{fields.message()...});
   }
-  // update_halo of positions, velocities, and angular velocities where particles rotate. All ranks give a
-  // spin or none: that of a rank without items may be null.
+  // Exchanges positions, velocities and, where particles rotate, angular velocities. Either all ranks pass a
+  // spin or none; it may be null on a rank without items.
   void update_motion(Device device, Vec4* position, Vec4* velocity, std::optional<Vec4*> spin,
                      Index first_ghost);
 
-  // Maxima over all ranks of n values >= 0 in device memory, queued. Collective.
+  // Queues the maxima over all ranks of n values >= 0 in device memory. Collective.
   void max(Device device, Real* values, Index n) {
     if (transport_) transport_->max(values, n, device.stream);
   }
@@ -114,12 +116,12 @@ class DeviceHalo {
  private:
   void visit_targets(Device device, const Vec4* position, Index n, Ghost* ghosts);
 
-  std::unique_ptr<HaloTransport> transport_;  // none for one rank
+  std::unique_ptr<HaloTransport> transport_;  // null for one rank
   HaloPlan plan_;
   DeviceArray<Ghost> ghost_;
   DeviceArray<HaloTarget> targets_;
   DeviceArray<unsigned long long> counts_;
-  // For motion, and for what ghosts get once.
+  // Messages of the motion, and of what ghosts get once per list.
   static constexpr std::size_t kBuffers =
       std::max(count_arrays<kMotion | kSpins>(), count_arrays<kNames | kGhostCopies>());
   DeviceArray<Vec4> packed_[kBuffers];

@@ -28,10 +28,10 @@ struct CountUpItem {
   SCREE_HD void operator()(Index i) const { out[i] = first + i; }
 };
 
-// Room over what was needed where an array had to grow: one in so many.
+// Reserve of an array that had to grow: 1 / kKeptSpare of what is needed.
 constexpr std::size_t kKeptSpare = 32, kEntriesSpare = 32;
 
-// In one piece.
+// All rows in one contiguous part.
 template <class Rows>
 KeptViews views_of_rows(Rows& rows, int numbers) {
   KeptViews views{rows.offsets.data(), numbers, {}};
@@ -39,7 +39,7 @@ KeptViews views_of_rows(Rows& rows, int numbers) {
   return views;
 }
 
-// Queues the copies of all contacts from their parts into one piece, and back.
+// Queues the copies of all contacts from their parts to contiguous memory, and back.
 void join_parts(const KeptViews& parts, std::int64_t* keys, Real* values, cudaStream_t stream) {
   const auto numbers = static_cast<std::size_t>(parts.numbers);
   for (const KeptViews::Part& part : parts.part) {
@@ -93,8 +93,8 @@ HistoryViews DeviceHistory::surface_views_in_run(bool ahead) {
   return views;
 }
 
-// The number itself is the device's, and contacts with bodies are not this kernel's, so that the launches of
-// one run are those of the next.
+// The step number is kept on the device, and contacts with bodies belong to another kernel. So the launches
+// of one run equal those of the next, and captured graphs can be reused.
 HistoryViews DeviceHistory::views_in_run() {
   HistoryViews views = this->views();
   views.bodies = views.ahead = nullptr, views.step = 0;
@@ -108,7 +108,7 @@ void DeviceHistory::begin_run() {
 }
 
 std::size_t DeviceHistory::add_up(Rows& rows, Index count) {
-  // The length past the end is read, though no sum depends on it.
+  // The scan also reads the length past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(rows.offsets.data() + count, 0, sizeof(Index), stream_), "cudaMemsetAsync");
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, rows.offsets.data(), count + 1, stream_), "scan");
@@ -137,10 +137,11 @@ void DeviceHistory::fill_rows(const KeptViews& rows, const Listed& at, Index fir
 
 KeptViews DeviceHistory::kept_views() { return parts_ ? *parts_ : views_of_rows(kept_, width()); }
 
-// Room for so many contacts in parts, beside the records: where nothing is needed before the sort, and after
-// it.
+// Memory for that many contacts in parts, while the slots' records are in use: the second arrays, which are
+// free before and after the sort, then the arrays of explicit steps.
 KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
-  constexpr std::size_t kWhole = 4;  // of so many the numbers begin with whole sectors
+  constexpr std::size_t kWhole = 4;  // multiple of the sizes of parts, which aligns the values to 32 B
+                                     // sectors
   const auto numbers = static_cast<std::size_t>(width());
   KeptViews parts{kept_.offsets.data(), width(), {}};
   std::size_t first = 0, next = 0;
@@ -160,8 +161,8 @@ KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
   return parts;
 }
 
-// Room for so many contacts in one piece: where the records are, which then must not be needed any more.
-// False where that does not suffice.
+// Memory for that many contacts in one part: the memory of the slots' records, which must not be needed any
+// more. False where it does not suffice.
 bool DeviceHistory::lay_out_in_records(std::size_t contacts) {
   const auto numbers = static_cast<std::size_t>(width());
   const RoomFor keys{kept_.keys, contacts};
@@ -173,15 +174,15 @@ bool DeviceHistory::lay_out_in_records(std::size_t contacts) {
   return true;
 }
 
-// The contacts of packings have room in the place of the records, from when these are not needed any more
-// until they are made again; before and after that they stand in parts. Few neighbours beside many surfaces
-// leave no such room.
+// While a list is built, the packed history of a packed bed fits into the memory of the slots' records: from
+// when they are packed until they are unpacked. Before and after that it is in parts. With few neighbours and
+// many surfaces it does not fit.
 void DeviceHistory::leave_slots(const Listed& at) {
   if (!at_slots_) return;
   row_of_.resize(static_cast<std::size_t>(at.owned));
   const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
                     numbers = static_cast<std::size_t>(width()),
-                    room = contacts + contacts / kKeptSpare;  // for those that come with particles
+                    room = contacts + contacts / kKeptSpare;  // for arriving particles
   in_records_ = lay_out_in_records(room);
   if (!in_records_) rooms_.of_steps.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
   kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
@@ -192,7 +193,7 @@ void DeviceHistory::leave_slots(const Listed& at) {
   at_slots_ = false;
 }
 
-// What is kept where the records come gets out of their way.
+// Moves the packed history out of the memory of the slots' records.
 void DeviceHistory::clear_records() {
   if (!in_records_) return;
   const KeptViews parts = lay_out_parts(kept_.keys.size());
@@ -259,7 +260,7 @@ void DeviceHistory::append(const KeptContacts& arriving, Index owned) {
   copy_async(kept_.values.data() + values, arriving.values.data(), arriving.values.size(), stream_);
   for_each({stream_}, static_cast<Index>(more),
            CountUpItem{row_of_.data() + owned, static_cast<Index>(rows)});
-  wait_for(stream_);  // before the vectors above go
+  wait_for(stream_);  // the copies above read `offsets`
 }
 
 KeptContacts DeviceHistory::download(const Rows& rows, const KeptViews& parts) const {
@@ -289,7 +290,7 @@ KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
 KeptContacts DeviceHistory::contacts(const Listed& at) {
   if (!exists()) return {};
   if (!at_slots_) return download(kept_, kept_views()).rows(row_of_.download(stream_));
-  // Some rows after the other: steps need the room of what is kept.
+  // In batches of rows: the scratch memory of the packed history is in use by steps.
   KeptContacts out = no_contacts(numbers_, 0);
   for (Index first = 0; first < at.owned; first += kRowsAtOnce) {
     const Index count = std::min(kRowsAtOnce, at.owned - first);

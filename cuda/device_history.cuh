@@ -1,5 +1,4 @@
-// What the contacts of a rank's particles remember, on its GPU: src/dem/host/cpu_history.hpp for device
-// memory.
+// The contact history of a rank's particles on its GPU: src/dem/cpu_history.hpp for device memory.
 #pragma once
 
 #include <optional>
@@ -17,38 +16,38 @@ namespace scree {
 
 class DeviceHistory {
  public:
-  // Memory that is free while a list is built: the second arrays but for the sort, the room of explicit steps
-  // all the time.
+  // Memory that is free while a list is built: the second arrays except during the sort, and the arrays of
+  // explicit steps.
   struct Rooms {
     SecondArrays& second;
     DeviceRoom& of_steps;
   };
-  // numbers: per contact, or kSidesAlone; 0: nothing below does anything. What is queued without a device
-  // goes to the stream.
+  // numbers: history values per contact, or `kSidesAlone`; with 0 nothing below does anything. Work without a
+  // device argument is queued on the stream.
   DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, const Rooms& rooms);
 
   bool exists() const { return numbers_ != 0; }
   bool at_slots() const { return at_slots_; }
-  // For walks on the list, outside a run of explicit steps. ahead: what contacts with placed surfaces
-  // remember is in the arrays of what was evaluated ahead.
+  // For loops over the list outside a run of explicit steps. ahead: the history of contacts with surfaces is
+  // in the arrays of the next step.
   HistoryViews views(bool ahead = false);
 
-  // In such a run steps are numbered on the device from where it began.
+  // In a run of explicit steps the device numbers the steps, starting from first_step().
   void begin_run();
   const Real* first_step() const { return first_step_.data(); }
   HistoryViews views_in_run();
-  HistoryViews surface_views_in_run(bool ahead);            // of placed surfaces alone
-  void closed(Index steps) { step_ = run_start_ + steps; }  // since the run began
+  HistoryViews surface_views_in_run(bool ahead);            // for surfaces only
+  void closed(Index steps) { step_ = run_start_ + steps; }  // since the start of the run
   void accepted() { closed_last(), take_ahead(); }
-  void closed_last() { step_ += 1; }  // one more than closed() has said
-  // What was evaluated ahead of contacts with placed surfaces is what they remember; in a run that is so when
-  // the step's velocities are brought into the state's arrays.
+  void closed_last() { step_ += 1; }  // one more than the last closed() reported
+  // Makes the next history of contacts with surfaces the present one; in a run this happens when the
+  // velocities of the open step are copied into the state.
   void take_ahead() { bodies_.swap(ahead_), features_.swap(features_ahead_); }
-  // For another look at the contacts with bodies over the step that was closed last: from before it, to be
-  // held in place of what the step left. ahead: where that is.
+  // For a second evaluation of the contacts with bodies over the step that was closed last: reads the history
+  // before that step and writes the one after. ahead: whether the latter is in the arrays of the next step.
   HistoryViews views_before(bool ahead);
 
-  // The list as it is with the items where they are now, ghosts and surfaces on bodies included.
+  // The list with the present positions of its items, including ghosts and surfaces on bodies.
   struct Listed {
     const Vec4* position;
     const std::int64_t* row_key;
@@ -56,29 +55,30 @@ class DeviceHistory {
     const DeviceList& list;
     const DeviceSurfaces& surfaces;
   };
-  // Before a list goes, for which it waits, and after another was built.
+  // leave_slots packs the history before a list is rebuilt, and waits; take_slots unpacks it into the slots
+  // of the new list.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
-  // In between, of the particles in their order; for kernels that run before take_slots().
+  // The packed rows in the order of the particles; for kernels between the two.
   RememberedRows remembered();
-  // Then, like the particles: new ones, another order of them, some more behind. numbers: room for one
-  // per particle.
+  // Also between the two, following the particles: replaces the rows, reorders them, appends rows of arriving
+  // particles. numbers: scratch for one `Index` per particle.
   void load(const KeptContacts& contacts, Index owned);
   void reorder(const Index* order, Index n, Index* numbers);
   void append(const KeptContacts& arriving, Index owned);
 
-  // Of these particles, in this order, on the host; not at the slots. Waits.
+  // Packed history of these particles, in this order, on the host; only between the two. Waits.
   KeptContacts rows(const Index* particles, Index n);
-  // Of all, in the order of the particles.
+  // Packed history of all particles, in their order, at any time.
   KeptContacts contacts(const Listed& at);
 
-  // Of the records at the slots.
+  // Memory of the slots' records [B].
   std::size_t bytes() const {
     return neighbors_.bytes() + ground_.bytes() + bodies_.bytes() + ahead_.bytes();
   }
 
  private:
-  // Rows of contacts on the device, as KeptContacts has them.
+  // Packed rows of contacts on the device, laid out as in `KeptContacts`.
   struct Rows {
     DeviceArray<Index> offsets;  // [rows + 1]
     DeviceArray<std::int64_t> keys;
@@ -86,10 +86,11 @@ class DeviceHistory {
   };
   bool is_alone() const { return numbers_ == kSidesAlone; }
   int width() const { return is_alone() ? 0 : numbers_; }
-  // What rows of so many particles from the first on hold: the offsets; with room for them, the contacts.
+  // Counts the contacts of `count` rows from `first` on into rows.offsets; the second one writes the
+  // contacts, whose arrays must be sized.
   std::size_t count_rows(Rows& rows, const Listed& at, Index first, Index count);
   void fill_rows(const KeptViews& rows, const Listed& at, Index first, Index count);
-  // Lengths of rows become their offsets; returns how many contacts there are. Waits.
+  // Converts row lengths to offsets; returns the number of contacts. Waits.
   std::size_t add_up(Rows& rows, Index count);
   void make_room(Rows& rows, std::size_t contacts) const;
   KeptContacts download(const Rows& rows, const KeptViews& parts) const;
@@ -103,21 +104,22 @@ class DeviceHistory {
   const cudaStream_t stream_;
   const Rooms rooms_;
   bool at_slots_ = false;
-  DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews; empty if kSidesAlone
+  DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // the arrays of `HistoryViews`; empty if
+                                                           // `kSidesAlone`
   DeviceArray<Index> features_, features_ahead_;
-  Real step_ = 2, run_start_ = 2;  // there is one before the first
+  Real step_ = 2, run_start_ = 2;  // number of the step; 1 is the state before the first
   DeviceArray<Real> first_step_;
   PinnedArray<Real> h_first_step_;
-  // Unless at the slots: what is kept, and which row of it is that of each particle. It stands in the memory
-  // of the records, or, while they are made of it, in parts.
+  // The packed history while a list is built, and the row in it of each particle. It uses the memory of the
+  // slots' records or, while the records are read or written, parts of other arrays.
   Rows kept_;
   bool in_records_ = false;
   std::optional<KeptViews> parts_;
-  DeviceArray<std::int64_t> rest_keys_;  // of the last part
+  DeviceArray<std::int64_t> rest_keys_;  // keys and values of the last part
   DeviceArray<Real> rest_values_;
   DeviceArray<Index> row_of_;
-  Rows packed_;                       // on its way to the host
-  DeviceArray<unsigned char> space_;  // of library calls
+  Rows packed_;                       // on the way to the host
+  DeviceArray<unsigned char> space_;  // scratch of library calls
   PinnedArray<Index> h_count_{1};
 };
 

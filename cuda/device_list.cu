@@ -8,18 +8,19 @@
 
 namespace scree {
 
-// Where the search puts what it finds.
+// Where the search writes its rows.
 struct RowOutputs {
   std::int64_t* slice_start;
   Index *counts, *neighbors;
-  Index* first_entry;           // null where nobody asks for it
-  unsigned long long capacity;  // slots
+  Index* first_entry;           // null where entries need no numbers
+  unsigned long long capacity;  // slots available
   DeviceList::Totals* totals;
 };
 
 namespace {
 
-// The search keeps a row of up to so many entries in shared memory; longer rows take a slower way.
+// The search keeps up to this many entries of a row in shared memory; longer rows use device memory, which is
+// slower.
 template <int kEntries>
 struct RowBuffer {
   static constexpr int kThreads = kEntries <= 16 ? 128 : 64;
@@ -41,7 +42,8 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     return dot(d, d) < reach * reach;
   };
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
-  // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
+  // Neighbouring cells in x of one cell block are contiguous: one range of items, or two where a cell block
+  // ends.
   const Index split = min(x1 + 1, in.grid.next_brick(x0));
   for (Index z = max(c.z - 1, 0); z <= min(c.z + 1, cells.cells[2] - 1); ++z)
     for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y) {
@@ -51,7 +53,7 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
         const Index second_begin = starts[second],
                     all = length + starts[second + x1 + 1 - split] - second_begin;
         const auto at = [&](Index k) { return item(k < length ? begin + k : second_begin + k - length); };
-        for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
+        for (Index k = 0; k < all; k += 2) {  // two at once: independent loads hide latency
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
           const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
           if (hit[0] && j[0] != i) visit(j[0]);
@@ -63,7 +65,7 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     }
 }
 
-// Heap sort of a row in device memory by row_key.
+// Heap sort by row_key of a row in device memory.
 __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
   const auto at = [&](Index k) -> Index& { return row[static_cast<std::int64_t>(k) * kSlice]; };
   const auto sift = [&](Index root, Index end) {
@@ -93,7 +95,7 @@ __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buf
     if (found < kEntries) buffer.neighbor[found][column] = j;
     ++found;
   });
-  // Sorted at the end, all threads of a warp together.
+  // Sorted after the search, so that all threads of a warp sort together.
   const Index kept = min(found, kEntries);
   for (Index k = 0; k < kept; ++k) buffer.key[k][column] = in.row_key[buffer.neighbor[k][column]];
   for (Index k = 1; k < kept; ++k) {
@@ -109,7 +111,7 @@ __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buf
   return found;
 }
 
-// Of the lanes before this one.
+// Sum over the lower lanes of the warp.
 __device__ Index sum_before(Index value) {
   const auto lane = static_cast<int>(threadIdx.x) % kSlice;
   Index sum = value;
@@ -144,7 +146,7 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
   if (i >= in.owned) return;
   out.counts[i] = found;
   if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity)
-    return;  // the host repeats the search
+    return;  // too few slots: the host repeats the search
   Index* row = out.neighbors + start + lane;
   if (found <= kEntries) {
     for (Index k = 0; k < found; ++k)

@@ -1,5 +1,4 @@
-// Neighbour list on the device: the same rows as those of src/dem/search/neighbor_list.hpp, laid out for
-// coalesced reads.
+// Neighbour list on the device: the same rows as in src/dem/neighbor_list.hpp, laid out for coalesced reads.
 #pragma once
 
 #include "brick_grid.cuh"
@@ -8,22 +7,22 @@
 
 namespace scree {
 
-inline constexpr Index kSlice = 32;  // rows that share a slice: one warp
+inline constexpr Index kSlice = 32;  // rows per slice: one warp
 
-// Rows in slices of 32: entry k of row i stands 32 slots after entry k - 1, beside entry k of row i + 1. A
-// slice is as wide as its longest row.
+// Rows in slices of 32: entry k of row i is 32 slots after entry k - 1, next to entry k of row i + 1. A slice
+// is as wide as its longest row.
 struct SlicedRows {
   const std::int64_t* slice_start;  // [slices]
   const Index* counts;              // [items]
   const Index* neighbors;           // [slots]
-  // Number of a row's first entry, one row after the other, nothing left free in between: where contacts
-  // remember. Null where none does.
+  // Number of a row's first entry when the rows are numbered without gaps: indexes the contact history. Null
+  // where contacts have no history.
   const Index* first_entry{};  // [items]
 
   SCREE_HD std::int64_t first(Index i) const { return slice_start[i / kSlice] + i % kSlice; }
   SCREE_HD static constexpr int stride() { return kSlice; }
 
-  // As PackedRows::for_each_contact, with the number of an entry as its slot.
+  // As `PackedRows::for_each_contact`, with the number of an entry as its slot.
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
@@ -36,8 +35,8 @@ struct SlicedRows {
     }
   }
 
-  // The same with the place of an entry in its row. Two are tested at once while the next two are under way:
-  // loads that do not wait for each other.
+  // The same, and passes the index of an entry in its row. Tests two entries at once while the next two are
+  // loaded: independent loads hide latency.
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_place(Index i, const Touches& touches, const Evaluate& evaluate,
                                const Add& add) const {
@@ -56,8 +55,8 @@ struct SlicedRows {
     }
   }
 
-  // The same for launches of so few threads that nothing else hides the loads: so many entries are tested and
-  // evaluated at once, whether they touch or not.
+  // The same for launches with few threads, which hide no latency by themselves: `kAtOnce` entries are tested
+  // and evaluated at once, whether they touch or not.
   template <int kAtOnce, class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_place_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
                                        const Add& add) const {
@@ -85,30 +84,29 @@ struct SlicedRows {
 
 // Which rows an explicit step walks.
 enum class RowUse : int {
-  pruned,  // the pruned ones
-  prune,   // all entries, and writes down those that the next steps need
-  all      // all entries: particles so fast that pruned rows would not last
+  pruned,  // pruned rows
+  prune,   // all entries, and writes the pruned rows for the next steps
+  all      // all entries, because pruned rows would not last with particles this fast
 };
 
-// Where an entry stands in its row.
+// Index of an entry in its row.
 using RowPlace = std::uint16_t;
 
-// Rows of an explicit step. Most entries of a list with a skin do not touch; a step that has looked at all of
-// them keeps those within a small margin of touching, and the next steps walk these alone until a particle
-// has moved by half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J.
-// Chem. Phys. 153 (2020). Entries that do not touch add nothing, so that sums have the same bits either way.
-//
-// kAtOnce: entries that are evaluated at once, eagerly; 0: those that touch, one by one.
+// Rows of an explicit step. Most entries of a list with a skin do not touch. A step that tests all of them
+// stores those within a small margin of touching, and the next steps walk only these until a particle has
+// moved by half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J. Chem.
+// Phys. 153 (2020). Entries that do not touch add nothing, so that sums have the same bits either way.
+// kAtOnce: number of entries that are evaluated at once, touching or not; 0: only touching ones, one by one.
 template <int kAtOnce>
 struct PrunedRows {
   SlicedRows rows;
-  Index *counts, *neighbors;  // the pruned rows: [items], [slots]
+  Index *counts, *neighbors;  // the pruned rows, `counts` per item and `neighbors` per slot
   RowUse use;
-  Real margin;  // [m]
+  Real margin;  // pruning margin [m]
   RowPlace*
-      places{};  // of the entries of the pruned rows in the whole ones, where contacts remember: [slots]
+      places{};  // index of the pruned rows' entries in the whole rows, for the contact history: [slots]
 
-  // test: as touches in PackedRows, with near(j, margin). Slots are those of the whole rows.
+  // test: as in `PackedRows`, with near(j, margin). Slots are those of the whole rows.
   template <class Test, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     if (use == RowUse::prune) return prune(i, test, evaluate, add);
@@ -153,36 +151,35 @@ struct PrunedRows {
   }
 };
 
-// What the search reads. Active particles stand in the order of their cells; ghosts are found through an
-// index of their own.
+// Input of the search. Active particles are sorted by cell; ghosts are found through an index of their own.
 struct ListInput {
   const Vec4* position;         // all items
-  const std::int64_t* row_key;  // all items: orders the entries of a row, by global id and image
+  const std::int64_t* row_key;  // sort key of entries per item: global id and image
   BrickGrid grid;
-  const Index* particle_starts;  // [cells + 1] into the active particles
-  const Index* ghost_starts;     // [cells + 1] into ghost_items; null without any
+  const Index* particle_starts;  // [cells + 1] first active particle of each cell
+  const Index* ghost_starts;     // [cells + 1] first of ghost_items of each cell; null without ghosts
   const Index* ghost_items;
-  Index active, owned;  // owned particles have rows, those that are not active empty ones
-  Real skin;            // NeighborBuilder::past_touch() [m]
+  Index active, owned;  // number of owned particles, which have rows; rows of inactive ones are empty
+  Real skin;            // `NeighborBuilder::past_touch` [m]
 };
 
 class DeviceList {
  public:
-  // remembers: whether contacts do. slots: per particle, of which there is room from the start.
+  // remembers: whether contacts have a history. slots: initial capacity per particle.
   DeviceList(bool remembers, double slots);
 
-  // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if
-  // not. Throws DeviceError where there is none, and SimulationError where contacts remember and a row is too
-  // long for RowPlace, or there are more entries than an Index counts.
+  // Fills the list. Waits for the device once, to learn whether the capacity sufficed, and repeats with more
+  // if not. Throws `DeviceError` where memory does not suffice, and `SimulationError` where contacts have a
+  // history and a row is too long for `RowPlace` or there are more entries than an `Index` can count.
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const {
     return {slice_start_.data(), counts_.data(), neighbors_.data(), first_entry_.data()};
   }
-  // Where the list is not needed any more: room for n values.
+  // Scratch memory for n values while the list is not needed.
   Index* take_room(std::size_t n);
-  // What the pruned rows need beside the list. After a build they hold nothing of use until a step with
-  // RowUse::prune.
+  // Arrays of pruned rows besides those of the list. After a build they are undefined until a step with
+  // `RowUse::prune`.
   RoomFor<Index> room_for_pruned() { return {pruned_, neighbors_.size()}; }
   RoomFor<RowPlace> room_for_places() { return {places_, remembers_ ? neighbors_.size() : 0}; }
   PrunedRows<0> pruned_rows();
@@ -196,13 +193,13 @@ class DeviceList {
  private:
   struct Totals {
     unsigned long long used;     // slots
-    unsigned long long entries;  // of them filled
+    unsigned long long entries;  // number of entries
     Index longest;               // row
   };
   void search(Device device, const ListInput& in);
 
   const bool remembers_;
-  const double slots_at_start_;  // per particle
+  const double slots_at_start_;  // initial slots per particle
   DeviceArray<std::int64_t> slice_start_;
   DeviceArray<Index> counts_, first_entry_, neighbors_, pruned_counts_, pruned_;
   DeviceArray<RowPlace> places_;

@@ -10,16 +10,17 @@
 namespace scree {
 namespace {
 
-// How many groups and triangles there are so far.
+// Counters of groups and triangles.
 enum Cursor { kGroups, kTriangles, kCursors };
 
-// The cells near meshes, one after the other: those of cells[k] are first[k] ... first[k + 1] - 1.
+// The cells near meshes, numbered one after the other: cells[k] has the numbers first[k] ... first[k + 1] -
+// 1.
 struct SearchedCells {
   const CellsNear* cells;
   const std::int64_t* first;
-  Index count;  // of cells[]
+  Index count;  // number of cells[]
 
-  // To which of cells[] a cell belongs.
+  // The k of the cells[k] that contains a numbered cell.
   __device__ Index owner(std::int64_t c) const {
     Index low = 0, high = count;
     while (high - low > 1) {
@@ -30,8 +31,8 @@ struct SearchedCells {
   }
 };
 
-// Makes the groups, in any order, with their triangles and the number of entries that they need; those for
-// which there is no room are only counted.
+// Makes the groups, in any order, with their triangles and the number of their entries; those beyond the
+// capacity are only counted.
 struct FindNearItem {
   MeshSearch in;
   const MeshView* meshes;
@@ -52,7 +53,7 @@ struct FindNearItem {
     cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
       const MeshSight sight{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
-      constexpr Index kKept = 24;  // so that few rows are searched for twice
+      constexpr Index kKept = 24;  // long enough that few rows are searched twice
       Index kept[kKept], found = 0;
       sight.for_each_triangle([&](Index t) {
         if (found < kKept) kept[found] = t;
@@ -77,7 +78,8 @@ struct FindNearItem {
 };
 
 constexpr int kFindThreads = 64;
-constexpr int kFindBlocks = 8;  // on a multiprocessor: a search waits for one box after the other
+constexpr int kFindBlocks = 8;  // blocks per multiprocessor: a search loads one bounding box after the other,
+                                // and many threads hide the latency
 
 __global__ void __launch_bounds__(kFindThreads, kFindBlocks)
     find_near_kernel(Index cells, const __grid_constant__ FindNearItem item) {
@@ -88,7 +90,7 @@ __global__ void __launch_bounds__(kFindThreads, kFindBlocks)
 struct CountItem {
   const NearMesh* near;
   const MeshGroup* groups;
-  Index* counts;  // of entries per particle
+  Index* counts;  // average entries per particle
 
   __device__ void operator()(Index g) const { atomicAdd(&counts[near[g].particle], groups[g].entries); }
 };
@@ -120,30 +122,31 @@ struct GroupItem {
     while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
     standings[g] = kNoStanding;
-    touches[entry].triangle = -1;  // where a first look begins
+    touches[entry].triangle = -1;  // initial capacity
   }
 };
 
 constexpr int kTouchThreads = 128;
-constexpr int kTouchBlocks = 4;  // on a multiprocessor: with more, registers spill
-constexpr int kTeamLanes = 8;    // rows have some ten triangles
+constexpr int kTouchBlocks = 4;  // blocks per multiprocessor: with more, registers spill
+constexpr int kTeamLanes = 8;    // rows have about ten triangles
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
-// The contacts now.
+// Contacts at an instant.
 struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Most particles stay where they were; those of a block that must look at triangles are shared out among its
-// lanes, so that no warp waits for the few of its lanes that must: smooth rows among teams, so that these do
-// not wait for a row of triangles. The full search of other rows is one lane's work.
+// Most particles keep their contact of the last step, which is cheap to confirm. Those of a block that must
+// search their triangles are redistributed over its lanes, so that no warp waits for a few of its lanes:
+// smooth rows by lane groups, each of which searches one row of triangles together; the full search of other
+// rows by single lanes.
 template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
                  MeshTouch* touches, Standing* standings) {
   __shared__ TouchRecords::Shared shared;
-  // Groups whose triangles must be looked at: those of teams from the start, those of single lanes from the
-  // end.
+  // Groups of triangles that must be searched: those for lane groups from the front, those for single lanes
+  // from the back.
   __shared__ Index looking[kTouchThreads], of_teams, of_lanes;
   SurfaceViews now = views;
   if (!look.open(now)) return;
@@ -185,7 +188,7 @@ void queue_touches(Device device, Index groups, const SurfaceViews& views, const
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
-// Whether a cell of the grid reaches into the box.
+// Whether a cell of the grid overlaps the box.
 bool meets(const CellGrid& grid, const Box& box) {
   const auto along = [](Real origin, Real inverse_size, Index cells, Real min, Real max) {
     return max >= origin && min <= origin + static_cast<Real>(cells) / inverse_size;
@@ -226,7 +229,7 @@ DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream)
     if (surfaces_.at(s).kind == SurfaceKind::mesh) instances_.push_back(s);
 }
 
-// Where the search looks, mesh by mesh and image by image.
+// The boxes of cells to search, per mesh and image.
 std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
                                                        Real largest_radius) const {
   std::vector<CellsNear> near;
@@ -253,7 +256,7 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePl
   for_each(device, count_, CountItem{near_.data(), groups_.data(), counts});
 }
 
-// False: there was not room enough, and is now.
+// False: the capacity did not suffice, and has been enlarged.
 bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near) {
   std::vector<std::int64_t> first{0};
   for (const CellsNear& cells : near) first.push_back(first.back() + cells.count());

@@ -17,28 +17,28 @@
 
 namespace scree {
 
-// A particle near a mesh, before its row is there.
+// A particle near a mesh, before it has a row.
 struct NearMesh {
-  Index particle, surface;  // the latter by its number
+  Index particle, surface;  // mesh and its number
   std::int8_t image;
 };
 
-// Where the search finds particles, in the order of their cells, and placed surfaces; device.
+// Where the search finds particles, sorted by cell, and the poses of surfaces; device pointers.
 struct MeshSearch {
   const Vec4* position;
   BrickGrid grid;
   const Index* starts;  // [cells + 1]
-  Real skin;            // how far past touch surfaces at rest are looked for [m]
+  Real skin;            // range past touching of the search at static surfaces [m]
   Vec3 period;
   const PlacedSurface* placed;
   const SurfaceFrame* frames;
   RememberedRows remembered;
 };
 
-// Cells in which particles may be near a mesh that is moved by the shift.
+// Cells whose particles may be near a mesh image, which is displaced by the shift.
 struct CellsNear {
-  Index placed, number;  // of the surface
-  Real skin;             // how far past touch it is looked for [m]
+  Index placed, number;  // number of the surface
+  Real skin;             // range past touching of the search [m]
   Vec3 shift;
   std::int8_t image;
   CellRange range;
@@ -62,27 +62,27 @@ class DeviceMeshes {
   DeviceMeshes(const Model& model, cudaStream_t stream);
   bool exist() const { return !meshes_.empty(); }
 
-  // For a new list, in this order. Finds who is near what, and adds to counts[particle] the entries that they
-  // need; waits. places: the host's; largest_radius: of the particles [m]. Then: writes these entries to the
-  // rows, of which next[particle] are free from then on. Then, with the rows in order: which entries belong
-  // together.
+  // For a new list, in this order. The first finds the particles near meshes, adds the numbers of their
+  // entries to counts[particle], and waits; places: the host's poses; largest_radius: of the particles [m].
+  // The second writes these entries to the rows, from next[particle] on, which it advances. The third, with
+  // the rows sorted, finds which entries belong together.
   void find(Device device, const MeshSearch& search, const SurfacePlaces& places, Real largest_radius,
             Index* counts);
   void fill(Device device, Index* next, Index* surfaces, std::int8_t* images);
   void group(Device device, const Index* offsets, const Index* surfaces, const std::int8_t* images);
 
-  // Queues the contacts now; the entries' arrays hold them.
+  // Queues the contacts at the present instant, into the entries' arrays.
   void touch(Device device, const SurfaceViews& views);
-  // The same of whatever explicit step is open when the kernel runs.
+  // The same for the explicit step that is open when the kernel runs.
   void touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look);
   // The same over an implicit step.
   void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                        const PlacedSurface* start_placed);
-  // For so many entries; and for those of an implicit step.
+  // Size the arrays for that many entries; the second one those of implicit steps.
   void make_room(Index entries);
   void make_room_over_step(Index entries);
 
-  // What triangle_sums() reads of them, on the host; waits.
+  // Host copies of what `triangle_sums` reads; waits.
   std::vector<MeshGroup> download_groups(cudaStream_t stream) const { return groups_.download(stream); }
   std::vector<MeshTouch> download_touches(cudaStream_t stream) const { return touches_.download(stream); }
 
@@ -92,7 +92,7 @@ class DeviceMeshes {
   const MeshTouchBefore* before() const { return before_.data(); }
 
  private:
-  // The arrays of a MeshView.
+  // The arrays of a `MeshView`.
   struct Arrays {
     DeviceArray<Vec3> vertices;
     DeviceArray<MeshTriangle> triangles;
@@ -110,8 +110,8 @@ class DeviceMeshes {
   DeviceArray<MeshView> views_;
   SurfaceSet surfaces_;
   bool sheets_;
-  std::vector<Index> instances_;  // placed surfaces that are meshes
-  Index count_ = 0;               // of groups
+  std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
+  Index count_ = 0;               // capacity for groups
   DeviceArray<CellsNear> cells_;
   DeviceArray<std::int64_t> first_cell_;
   DeviceArray<NearMesh> near_;

@@ -1,4 +1,4 @@
-// Device memory that arrays share which are never needed at the same time.
+// Device memory shared by arrays that are never needed at the same time.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,18 @@
 
 namespace scree {
 
-// An array that is to stand in a room, with so many values.
+// An array to be laid out in an arena, and its size.
 template <class T>
 struct RoomFor {
   DeviceArray<T>& array;
   std::size_t size;
 
   std::size_t bytes() const {
-    constexpr std::size_t kAligned = 256;  // as memory of its own is
+    constexpr std::size_t kAligned = 256;  // sizes are multiples of this, as the alignment of allocations
     return (size * sizeof(T) + kAligned - 1) / kAligned * kAligned;
   }
   RoomFor unless(bool elsewhere) const { return {array, elsewhere ? 0 : size}; }
-  // In the memory of another array, of whose values nothing is left once the first is written.
+  // Uses the memory of another array, whose values are lost once the first value is written.
   template <class U>
   bool fits(const DeviceArray<U>& other) const {
     return size * sizeof(T) <= other.size() * sizeof(U);
@@ -33,9 +33,8 @@ struct RoomFor {
 
 class DeviceRoom {
  public:
-  // These arrays stand in the room from now on, one behind the other. Those that stood there before are lost:
-  // what is queued on a stream may still use them, nobody else. Throws DeviceError where the memory does not
-  // suffice.
+  // Lays the arrays out one after the other. The contents of the previous ones are lost; work already queued
+  // on a stream may still use them, nothing else may. Throws `DeviceError` where memory does not suffice.
   template <class... T>
   void lay_out(const RoomFor<T>&... rooms) {
     const std::size_t needed = (rooms.bytes() + ...);
@@ -47,7 +46,7 @@ class DeviceRoom {
   std::size_t bytes() const { return bytes_.bytes(); }
 
  private:
-  static constexpr std::size_t kSpare = 32;  // where it has to grow: one in so many for what comes
+  static constexpr std::size_t kSpare = 32;  // reserve when it grows: 1 / kSpare
   DeviceArray<std::byte> bytes_;
 };
 

@@ -12,13 +12,13 @@ namespace {
 constexpr int kSearchThreads = 128;
 constexpr Index kChunk = 128;  // entries
 
-// What the search for entries reads.
+// Input of the search for surfaces near particles.
 struct EntrySearch {
   const Vec4* position;
   Index active;
   BrickGrid grid;
   const Index* starts;
-  Real reach, skin;  // reach: largest radius of a particle and skin [m]
+  Real reach, skin;  // reach: largest particle radius + skin [m]
   SurfaceNumbers numbers;
   const PlacedSurface* placed;
   Vec3 period;
@@ -28,7 +28,7 @@ __device__ bool is_near(const EntrySearch& in, Vec4 p, const WallPlane& plane) {
   return wall_pair(p, plane).distance < p.w + in.skin;
 }
 
-// Entries with planes at rest per particle.
+// Counts the entries with static planes per particle.
 struct GroundCountItem {
   EntrySearch in;
   Index* counts;
@@ -53,7 +53,7 @@ struct GroundFillItem {
   EntryOutputs out;
   __device__ void operator()(Index i) const {
     Index slot = offsets[i];
-    if (offsets[i + 1] > slot)  // most have none, and their places need not be read
+    if (offsets[i + 1] > slot)  // most particles have none, and need not read the offsets
       for (Index w = 0; w < in.numbers.ground; ++w)
         if (in.numbers.at_rest(w) && is_near(in, in.position[i], in.numbers.planes[w])) {
           out.surfaces[slot] = w, out.images[slot] = kNoShift;
@@ -63,7 +63,7 @@ struct GroundFillItem {
   }
 };
 
-// Calls visit(i, surface, image) for the active particles near the block's surface, a sphere.
+// Calls visit(i, surface, image) for the active particles near the surface of this block, a sphere.
 template <class Visit>
 __device__ void visit_near(const EntrySearch& in, const Visit& visit) {
   const auto s = static_cast<Index>(blockIdx.x);
@@ -98,7 +98,7 @@ __global__ void __launch_bounds__(kSearchThreads)
   });
 }
 
-// Of a plane that is placed.
+// The same for a plane on a body.
 struct PlaneCountItem {
   EntrySearch in;
   Index placed;
@@ -120,7 +120,7 @@ struct PlaneFillItem {
   }
 };
 
-// Orders a row's entries by surface and image: they were written as the threads came.
+// Sorts the entries of a row by surface and image: threads wrote them in any order.
 struct OrderItem {
   const Index* offsets;
   EntryOutputs out;
@@ -139,7 +139,7 @@ struct OrderItem {
   }
 };
 
-// Entries with planes at rest come last, behind all placed surfaces.
+// Entries with static planes come last, after those with all placed surfaces.
 struct SurfaceKeyItem {
   const Index* surfaces;
   SurfaceNumbers numbers;
@@ -187,11 +187,11 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
 void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& places, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
-  Index *const counts = offsets_.data(), *const next = p.numbers;  // the counts become the offsets in place
+  Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
   const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
                        skin,       numbers(), places_.data(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
-  // The entry past the end is read, though no sum depends on it.
+  // The scan also reads the entry past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
   for_each(device, p.owned, GroundCountItem{in, counts});
   if (any_placed() && p.active > 0)
@@ -249,7 +249,7 @@ void DeviceSurfaces::group_by_surface(Device device) {
 
 void DeviceSurfaces::place(Device device, const SurfacePlaces& places) {
   if (!any_placed()) return;
-  placed_.wait();  // for the last copy
+  placed_.wait();  // waits for the previous copy from pinned memory
   h_placed_.resize(places.placed.size()), places_.resize(places.placed.size());
   std::copy(places.placed.begin(), places.placed.end(), h_placed_.data());
   copy_async(places_.data(), h_placed_.data(), places.placed.size(), device.stream);

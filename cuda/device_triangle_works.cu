@@ -4,7 +4,7 @@
 namespace scree {
 namespace {
 
-// Integers add up to the same bits in whatever order the threads come.
+// Integer additions give the same bits in any order of the threads.
 struct AtomicAdd {
   __device__ static void add(std::int64_t& word, std::int64_t piece) {
     atomicAdd(reinterpret_cast<unsigned long long*>(&word), static_cast<unsigned long long>(piece));

@@ -1,4 +1,5 @@
-// What contacts have lost at the triangles of meshes since t = 0, on the device: TriangleWorks of a rank.
+// Energy that contacts have lost at the triangles of meshes since t = 0, on the device: the part of
+// `TriangleWorks` of one rank.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +17,16 @@ class DeviceTriangleWorks {
   DeviceTriangleWorks(const Model& model, cudaStream_t stream);
   bool exist() const { return works_.exist(); }
 
-  // Before so many contacts are booked.
+  // Sizes the arrays before that many contacts are added.
   void make_room(Device device, std::int64_t contacts);
-  // Queues the books of a step that is closed, of the contacts of these groups as they were found last.
+  // Queues the losses over a closed step, of the contacts of these groups as they were evaluated last.
   template <class Works>
   void book(Device device, const SurfaceViews& in, Index groups, const Works& works);
-  // The same of whatever explicit step is open when the kernel runs: the run's next kernel closes it.
+  // The same for the explicit step that is open when the kernel runs; the next kernel of the run closes it.
   void book_in_run(Device device, const SurfaceViews& in, Index groups, const ExplicitWorks& works,
                    const VerletControl* control);
 
-  // As RankParticles has them; both wait.
+  // In the format of `RankParticles`; both wait.
   void load(const std::vector<std::int64_t>& words, cudaStream_t stream);
   std::vector<std::int64_t> words(cudaStream_t stream) const;
 

@@ -8,7 +8,7 @@
 
 namespace scree {
 
-// With the number of the step before the open one, for what contacts remember.
+// Sets the number of the step before the open one, which the contact history is read by.
 template <class Laws, class Views, class Request>
 __device__ Views at_open_step(Views views, const Request& r) {
   if constexpr (ContactWalk<Laws, decltype(views.rows)>::Law::kHistory > 0)
@@ -26,7 +26,8 @@ __device__ inline void close_step(VerletControl& c) {
     c.shared[0] = largest, c.shared[1] = c.outside;
 }
 
-// Whether the particle's new place is outside. Far from the sides the old place alone says no.
+// Whether the particle's new position is outside the domain. Far from its faces the old position alone rules
+// that out.
 __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, Vec4 new_place,
                                   Real d_squared) {
   const Real margin = r.control->half_skin;
@@ -44,12 +45,13 @@ __device__ inline bool is_outside(const MixedRequest& r, Index i, int parity, Re
 
 // Entries of a row that a launch of few threads evaluates at once.
 inline constexpr int kFewThreadsAtOnce = 4;
-// Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that
-// wait, or from many entries at once.
+// Blocks per multiprocessor, which bounds the registers per thread: latency is hidden by many threads or,
+// with entries evaluated at once, by their independent loads.
 constexpr int verlet_blocks(int at_once) { return at_once == 0 ? 7 : 4; }
 constexpr int mixed_blocks(int at_once) { return at_once == 0 ? 10 : 6; }
 
-// Blocks of the next step may come from now on, and this one waits until the step before is done.
+// Programmatic dependent launch: blocks of the next step may start from now on, and this one waits until the
+// previous step is done.
 __device__ inline void await_step_before() {
 #if __CUDA_ARCH__ >= 900
   cudaTriggerProgrammaticLaunchCompletion();
@@ -66,16 +68,16 @@ struct BlockLargest {
   }
 };
 
-// Every thread calls this at its end: the last block of the step closes it. d_squared: of the thread's
-// particle, 0 for one outside the search.
+// Every thread calls this at its end: the last block of the step closes it. d_squared: squared displacement
+// of the thread's particle, 0 for one outside the search [m^2].
 __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, unsigned step_blocks,
                                            VerletControl& control) {
-  __syncwarp();  // lane 0 speaks for all: it sees what they wrote
-  // Singles that round up keep the order of the doubles, and a NaN stays the largest.
+  __syncwarp();  // lane 0 acts for all: __syncwarp makes their writes visible to it
+  // Rounding up to float keeps the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
   const unsigned warp_largest = __reduce_max_sync(~0u, bits);
   if (threadIdx.x % warpSize > 0) return;
-  // The warp that comes last speaks for the block; the others do not wait for it.
+  // The last warp to arrive acts for the block; the others do not wait for it.
   atomicMax(&block.largest, warp_largest);
   __threadfence_block();
   if (atomicAdd(&block.arrived, 1u) != kStepBlock / warpSize - 1) return;
@@ -124,7 +126,7 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
-// The words of what a contact of a law does: force, torque, loss, and its kinds.
+// Number of words of the result of a contact: force, torque, loss, and the loss by kind.
 template <class Laws>
 inline constexpr int kWordsOf = 7 + kLossKindsOf<LawOf<Laws>>;
 template <class Word, class Laws>
@@ -132,10 +134,10 @@ using WarpContactsOf = WarpContacts<Word, kWordsOf<Laws>>;
 template <class Word, class Laws>
 using WarpRowsOf = WarpRows<Word, kWordsOf<Laws>>;
 
-// Registers for so many blocks: what a contact takes must not spill.
+// Blocks per multiprocessor: registers are limited so that the evaluation of a contact does not spill.
 inline constexpr int kRubbingBlocks = 4;
 
-// The same of laws that move: a warp's lanes share out its contacts.
+// The same for laws with `kMoves`: the lanes of a warp share its contacts.
 template <class Laws>
 __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
     rubbing_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
@@ -145,7 +147,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   __shared__ union {
     WarpContactsOf<double, Laws> contacts;
     alignas(16) unsigned char stage[kSlice * sizeof(Vec4)];
-  } shared[kStepBlock / kSlice];  // of a warp each
+  } shared[kStepBlock / kSlice];  // one per warp
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
   const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;

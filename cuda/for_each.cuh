@@ -1,4 +1,4 @@
-// The loop over items as a kernel launch, the namesake of base/for_each.hpp, and maxima over items.
+// The loop over items as a kernel launch, the counterpart of base/for_each.hpp, and maxima over items.
 #pragma once
 
 #include <cuda/atomic>
@@ -32,8 +32,8 @@ void for_each(Device device, Index n, const Item& item) {
   require_cuda(cudaGetLastError(), "for_each");
 }
 
-// Non-negative doubles are ordered like their bits, and a NaN's bits lie above all of them: the largest bits
-// are the largest number, or a NaN if there is one, in whatever order the threads come.
+// Non-negative doubles are ordered like their bits, and a NaN's bits exceed them all: the largest bits are
+// the largest number, or a NaN if there is one, in any order of the threads.
 __device__ inline unsigned long long ordered_bits(Real value) {
   return value <= 0 ? 0 : static_cast<unsigned long long>(__double_as_longlong(value)) & ~(1ull << 63);
 }
@@ -51,16 +51,17 @@ __device__ inline void block_max(Real value, Real* d_largest) {
   if (threadIdx.x % warpSize == 0 && bits > 0) atomicMax(&largest, bits);
   __syncthreads();
   auto* target = reinterpret_cast<unsigned long long*>(d_largest);
-  // The plain read saves most of the atomics: the value only grows.
+  // A plain read avoids most of the atomics: the value only grows.
   if (threadIdx.x == 0 && largest > *reinterpret_cast<volatile unsigned long long*>(target))
     atomicMax(target, largest);
   __syncthreads();
 }
 
-// Called by one thread per block after its share of a result: whether all blocks have come by. To that one
-// thread what the others wrote before is visible. *finished is 0 again afterwards.
+// Called by one thread per block after the block's share of a result: true for the last block of the grid,
+// whose calling thread then sees everything the others wrote. *finished is 0 again afterwards.
 __device__ inline bool is_last_block(unsigned* finished, unsigned blocks) {
-  // Release alone: an acquire on every block would empty its multiprocessor's cache each time.
+  // A release suffices here: an acquire in every block would invalidate the L1 cache of its multiprocessor
+  // each time.
   const cuda::atomic_ref<unsigned, cuda::thread_scope_device> count(*finished);
   if (count.fetch_add(1, cuda::memory_order_release) != blocks - 1) return false;
   cuda::atomic_thread_fence(cuda::memory_order_acquire, cuda::thread_scope_device);
@@ -74,8 +75,8 @@ __global__ void max_over_kernel(Index n, const Item item, Real* d_largest) {
   block_max(i < n ? item(i) : 0, d_largest);
 }
 
-// The largest item(i), at least 0; a NaN makes the result a NaN. It stays on the device, in *d_largest,
-// because reading it here would wait for the stream.
+// The largest item(i), at least 0; a NaN makes the result a NaN. It stays on the device, in *d_largest:
+// reading it here would wait for the stream.
 template <class Item>
 void max_over(Device device, Index n, const Item& item, Real* d_largest) {
   static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");

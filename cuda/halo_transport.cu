@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-// MPI reads and writes device memory itself.
+// MPI reads and writes device memory directly.
 class CudaAwareTransport : public HaloTransport {
  public:
   explicit CudaAwareTransport(const Ranks& ranks) : ranks_(ranks), h_values_(kMostValues) {}
@@ -20,7 +20,7 @@ class CudaAwareTransport : public HaloTransport {
     wait_for(stream);
     plan.transfer(messages);
   }
-  // So few values that they are as fast through the host.
+  // up to this many values are as fast through the host
   void max(Real* values, Index n, cudaStream_t stream) override {
     const auto count = static_cast<std::size_t>(n);
     copy_async(h_values_.data(), values, count, stream);
@@ -35,14 +35,14 @@ class CudaAwareTransport : public HaloTransport {
   PinnedArray<Real> h_values_;
 };
 
-// Copies in pinned host memory, for every MPI.
+// Copies in pinned host memory, which work with every MPI.
 class StagedTransport : public CudaAwareTransport {
  public:
   using CudaAwareTransport::CudaAwareTransport;
   std::string name() const override { return "copies in host memory"; }
 
   void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) override {
-    wait_for(stream);  // before the buffers below grow: copies from them may be under way
+    wait_for(stream);  // before the buffers grow: earlier copies from them may be under way
     std::vector<HaloMessage> staged;
     std::size_t bytes = 0;
     const auto room = [&](Index entries, std::size_t element) {
@@ -80,7 +80,7 @@ void require_nccl(ncclResult_t status, const char* what) {
     throw DeviceError(std::string("nccl: ") + what + ": " + ncclGetErrorString(status));
 }
 
-// Everything is queued on the stream, and the host goes on.
+// Everything is queued on the stream, and the host continues.
 class NcclTransport : public HaloTransport {
  public:
   explicit NcclTransport(const Ranks& ranks) {
@@ -89,7 +89,7 @@ class NcclTransport : public HaloTransport {
     ranks.broadcast(id);
     require_nccl(ncclCommInitRank(&communicator_, ranks.size(), id, ranks.rank()), "ncclCommInitRank");
   }
-  // Not ncclCommDestroy: after a failure that would wait for ranks that come no more.
+  // ncclCommAbort, because after a failure ncclCommDestroy would wait for ranks that no longer take part.
   ~NcclTransport() override { ncclCommAbort(communicator_); }
   std::string name() const override { return "NCCL"; }
   bool waits() const override { return false; }
@@ -111,7 +111,7 @@ class NcclTransport : public HaloTransport {
       }
     require_nccl(ncclGroupEnd(), "ncclGroupEnd");
   }
-  // The bits of numbers >= 0 order as the numbers do, and a NaN's come after all of them.
+  // The bits of numbers >= 0 are ordered as the numbers, and a NaN's exceed them all.
   void max(Real* values, Index n, cudaStream_t stream) override {
     require_nccl(ncclAllReduce(values, values, static_cast<std::size_t>(n), ncclUint64, ncclMax,
                                communicator_, stream),
@@ -123,7 +123,7 @@ class NcclTransport : public HaloTransport {
 };
 #endif
 
-// Whether two ranks use the same GPU: NCCL takes one rank per GPU.
+// Whether two ranks use the same GPU: NCCL allows one rank per GPU.
 bool gpus_are_shared(const Ranks& ranks) {
   auto all = ranks.gather_everywhere(std::vector{device_uuid()});
   std::sort(all.begin(), all.end());

@@ -1,4 +1,5 @@
-// How ghosts travel between the ranks' GPUs, and the maxima that every rank needs in the middle of a step.
+// How ghosts travel between the GPUs of the ranks, and the maxima over all ranks that the middle of a step
+// needs.
 #pragma once
 
 #include <memory>
@@ -16,18 +17,18 @@ class HaloTransport {
  public:
   virtual ~HaloTransport() = default;
   virtual std::string name() const = 0;
-  // Whether the host waits for the stream in every call.
+  // Whether every call waits for the stream on the host.
   virtual bool waits() const = 0;
-  // The messages of a plan whose counts are set, in device memory, in the order of the stream. Collective.
+  // Exchanges the messages of a plan whose counts are set, in device memory, in stream order. Collective.
   virtual void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) = 0;
   // values[0 ... n-1] >= 0 in device memory become their maxima over all ranks; a NaN is larger than any
   // number. Collective.
   virtual void max(Real* values, Index n, cudaStream_t stream) = 0;
 };
 
-// The one that the deck names or, for automatic, the first that works here: MPI where it takes device memory,
-// NCCL where the program was built with it and no two ranks share a GPU, else copies in host memory.
-// Collective. Throws TransportError where the deck names one that does not work here.
+// The transport that the deck names or, for automatic, the first that works here: MPI if it takes device
+// memory, NCCL if the program was built with it and no two ranks share a GPU, else copies in host memory.
+// Collective. Throws `TransportError` where the named one does not work here.
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// What is kept of contacts from one list to the next on the device, and the way there from the records at the
-// slots and back.
+// The contact history between two lists on the device: packing it from the records at the slots of the old
+// list, and unpacking it to those of the new.
 #pragma once
 
 #include "kept_views.cuh"
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Of the rows from the first on.
+// Contacts per row, for the rows from `first` on.
 struct CountClosedItem {
   NamedRows names;
   Index first;
@@ -48,7 +48,7 @@ struct KeepItem {
   }
 
  private:
-  // Contacts with meshes may stand out of order: by distance, not by feature.
+  // Contacts with meshes may be unsorted: the list sorts them by distance, not by feature.
   __device__ void order(Index first, Index end) const {
     for (Index k = first + 1; k < end; ++k)
       for (Index at = k; at > first && kept.key(at - 1) > kept.key(at); --at) {
@@ -63,7 +63,7 @@ struct KeepItem {
   }
 };
 
-// Both the row and what was kept are ordered by key: one pass over both. Meshes come after.
+// Both the row and the packed history are sorted by key: one merge pass over both, then the meshes.
 struct TakeItem {
   NamedRows names;
   KeptViews kept;
@@ -89,7 +89,8 @@ struct TakeItem {
     for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
     if (names.records > 0) record->w = names.history.step;
   }
-  // What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
+  // Copies the packed contacts of the particle with a mesh to the entries of their group, of which `entry` is
+  // the first.
   __device__ void take_mesh(Index i, Index entry) const {
     const Vec3 p = xyz(names.position[i]);
     const BesideMesh beside = names.beside_mesh(entry, p);

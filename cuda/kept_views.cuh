@@ -1,4 +1,4 @@
-// Where what is kept of contacts from one list to the next stands on the device.
+// Views of the packed contact history on the device.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace scree {
 
-// Rows of contacts: those of all rows in one piece of memory, or in parts here and there.
+// Rows of contacts, in one part of memory or in several.
 struct KeptViews {
   static constexpr int kParts = 4;
   struct Part {
     std::int64_t* keys = nullptr;
     Real* values = nullptr;
-    // Contacts; none of one that is not there.
+    // Range of the contacts in it; empty, past all, for an unused part.
     Index first = std::numeric_limits<Index>::max(), end = std::numeric_limits<Index>::max();
 
     std::size_t size() const { return static_cast<std::size_t>(end - first); }
   };
   const Index* offsets;  // [rows + 1]
-  int numbers;           // per contact
-  Part part[kParts];     // one after the other
+  int numbers;           // values per contact
+  Part part[kParts];     // in ascending order of contacts
 
   __device__ std::int64_t& key(Index contact) const {
     const Part at = part_of(contact);
@@ -42,12 +42,12 @@ struct KeptViews {
   }
 };
 
-// The row of a particle in between is row_of[particle]; null where no contact remembers.
+// The packed row of a particle is row_of[particle]; null where contacts have no history.
 struct RememberedRows {
   KeptViews kept{};
   const Index* row_of = nullptr;
 
-  // How many contacts it has with the surface of a number.
+  // Number of contacts of the particle with a surface of that number.
   __device__ Index contacts_with(Index particle, Index surface) const {
     if (row_of == nullptr) return 0;
     const Index row = row_of[particle];

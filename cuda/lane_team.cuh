@@ -1,4 +1,4 @@
-// Lanes of a warp that look at the triangles of a row together: mesh/team.hpp.
+// Lanes of a warp that search the triangles of a row together: mesh/team.hpp on the device.
 #pragma once
 
 #include <cstring>
@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// kLanes: of a team; the warp's lanes make teams one after the other. All lanes of a team call its functions
-// together.
+// kLanes: lanes per team, a power of two; consecutive lanes of a warp form a team. All lanes of a team call
+// its functions together.
 template <int kLanes>
 struct LaneTeam {
   static_assert(32 % kLanes == 0);
@@ -30,12 +30,12 @@ struct LaneTeam {
   }
 
  private:
-  // Of the warp.
+  // number within the warp
   __device__ static unsigned lanes() {
     constexpr unsigned kFirst = kLanes == 32 ? ~0u : (1u << kLanes % 32) - 1;
     return kFirst << (threadIdx.x % 32 / kLanes * kLanes);
   }
-  // Another lane's value, word by word.
+  // Another lane's value, shuffled word by word.
   template <class T, class Move>
   __device__ static T moved(const T& value, const Move& move) {
     static_assert(sizeof(T) % sizeof(unsigned) == 0);

@@ -1,4 +1,4 @@
-// What contacts remember at the slots of a list on the device, and how it is named.
+// Contact history at the slots of a list on the device, with the keys of its contacts.
 #pragma once
 
 #include "dem/history/history_slots.hpp"
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// The list with what contacts remember, and how it names them.
+// A list with its history records, and the keys of its contacts.
 struct NamedRows {
   const Vec4* position;
   const std::int64_t* row_keys;
@@ -17,9 +17,10 @@ struct NamedRows {
   SurfaceList surfaces;
   PeriodicBox box;
   HistoryViews history;
-  int numbers, records;  // per contact; no records: kSidesAlone
+  int numbers, records;  // per contact; records = 0: `kSidesAlone`
 
-  // Calls visit(record, key) for what stands in row i but for meshes, key() being its name; in their order.
+  // Calls visit(record, key) for the contacts of row i except those with meshes, in ascending order of key(),
+  // the contact key.
   template <class Visit>
   __device__ void visit(Index i, const Visit& visit) const {
     if (records == 0) return;
@@ -34,7 +35,7 @@ struct NamedRows {
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
       if (!is_mesh(entry)) visit(record_of(entry), [&] { return surface_key(entry, p); });
   }
-  // Calls visit(entry) for those of meshes.
+  // Calls visit(entry) for the entries with meshes.
   template <class Visit>
   __device__ void visit_meshes(Index i, const Visit& visit) const {
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
@@ -45,7 +46,7 @@ struct NamedRows {
     const bool at_rest = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
     return (at_rest ? history.ground : history.bodies) + std::int64_t{entry} * records;
   }
-  // Of a mesh.
+  // entry: with a mesh.
   __device__ bool is_closed(Index entry) const {
     return records > 0 ? record_of(entry)->w == history.step : feature(entry) != kNoFeature;
   }
@@ -59,7 +60,7 @@ struct NamedRows {
   __device__ std::int64_t surface_key(Index entry, Vec3 p) const {
     const Index s = surfaces.surfaces[entry];
     if (surfaces.numbers.at_rest(s)) return row_key(surface_id(s));
-    if (placed(entry).kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
+    if (placed(entry).kind == SurfaceKind::plane) return row_key(surface_id(s));  // a plane has no images
     return row_key(surface_id(s), box.image_beside(p, placed(entry).point, surfaces.images[entry]));
   }
   __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId name) const {
@@ -73,7 +74,7 @@ struct NamedRows {
     return {surfaces.meshes[frame.mesh], placed(entry), frame, p,
             image_shift(surfaces.images[entry], box.period)};
   }
-  // Whether two entries of a row are of the same mesh and image.
+  // Whether two entries of a row belong to the same mesh and image.
   __device__ bool alike(Index a, Index b) const {
     return surfaces.surfaces[a] == surfaces.surfaces[b] && surfaces.images[a] == surfaces.images[b];
   }

@@ -6,7 +6,7 @@
 namespace scree {
 namespace {
 
-// Where arrays wait on their way into another order: the room of the second ones.
+// Scratch memory for the reordering of arrays that have no second one: the memory of the second arrays.
 class WaitingRoom {
  public:
   WaitingRoom(SecondArrays& second, std::size_t n) : second_(second), n_(n) { clear(); }
@@ -17,7 +17,7 @@ class WaitingRoom {
       free_[k] = {reinterpret_cast<std::byte*>(array.data()), array.size() * sizeof(Vec4)};
     }
   }
-  // For an array of that type; null where there is none left. One has room where none is taken.
+  // As a scratch array of that type for n values; null where none is left. An empty request always fits.
   template <class T>
   T* take() {
     static_assert(sizeof(T) <= sizeof(Vec4));
@@ -25,7 +25,7 @@ class WaitingRoom {
       if (room.bytes < n_ * sizeof(T)) continue;
       auto* const at = reinterpret_cast<T*>(room.at);
       const std::size_t taken =
-          std::min(room.bytes, SecondArrays::whole(n_ * sizeof(T)));  // the next is aligned
+          std::min(room.bytes, SecondArrays::whole(n_ * sizeof(T)));  // alignment of the next array
       room.at += taken, room.bytes -= taken;
       return at;
     }

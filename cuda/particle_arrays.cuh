@@ -1,4 +1,4 @@
-// Particles on the device: the arrays of ParticleStore, and second ones of what steps read and write.
+// Particles on the device: the arrays of `ParticleStore`, and second arrays of what steps read and write.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace scree {
 
 struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
-  // Room for so many items and particles; the first `keep` items stay.
+  // Sizes the arrays for that many items and particles; keeps the first `keep` items.
   void grow(std::size_t items, std::size_t owned, std::size_t keep, cudaStream_t stream) {
     for_each_array<kItemArrays>(
         FieldsThere(*this), [&](auto& array) { array.grow(items, keep, stream); }, *this);
@@ -18,7 +18,7 @@ struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
     for_each_array<kOwnedArrays>(
         FieldsThere(*this), [&](auto& array) { array.grow(owned, keep, stream); }, *this);
   }
-  // Gives back what much larger numbers of both have left; the first `keep` items stay.
+  // Shrinks arrays that are much too large for both numbers; keeps the first `keep` items.
   void trim(std::size_t keep, cudaStream_t stream) {
     for_each_array<kAllArrays | kOptionalArrays>(
         [&](auto& array) { array.trim(std::min(keep, array.size()), stream); }, *this);
@@ -30,16 +30,16 @@ struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
   }
 };
 
-// An explicit step reads one array and writes the other, an implicit one keeps its start here. While a list
-// is built nobody reads them, and their room is free: for the sort, and before and after that for what is
-// kept of contacts.
+// An explicit step reads one array and writes the other; an implicit one keeps its start in these. While a
+// list is built they serve as scratch memory: for the sort, and before and after it for the packed contact
+// history.
 struct SecondArrays {
   bool rotates = false, implicit = false;
   DeviceArray<Vec4> position, velocity, angular_velocity;  // all items
-  DeviceArray<Vec3> acceleration, angular_acceleration;    // particles, of implicit steps
+  DeviceArray<Vec3> acceleration, angular_acceleration;    // of particles, for implicit steps
 
   std::array<DeviceArray<Vec4>*, 3> motion() { return {&position, &velocity, &angular_velocity}; }
-  // Room for so many; what is there may be lost.
+  // Sizes the arrays; the contents may be lost.
   void grow(std::size_t items, std::size_t owned) {
     position.resize(whole(items)), velocity.resize(whole(items));
     if (rotates) angular_velocity.resize(whole(items));
@@ -47,7 +47,7 @@ struct SecondArrays {
     acceleration.resize(owned);
     if (rotates) angular_acceleration.resize(owned);
   }
-  // The same.
+  // Sizes the arrays; the contents may be lost.
   void trim(cudaStream_t stream) {
     for (DeviceArray<Vec4>* array : motion()) array->trim(0, stream);
     acceleration.trim(0, stream), angular_acceleration.trim(0, stream);
@@ -56,13 +56,14 @@ struct SecondArrays {
     return position.bytes() + velocity.bytes() + angular_velocity.bytes() + acceleration.bytes() +
            angular_acceleration.bytes();
   }
-  // A warp's values of any type then begin and end with whole sectors, and so do halves of an array.
+  // Sizes are multiples of this, so that a warp's values of any type, and halves of an array, begin and end
+  // at 32 B sectors.
   static constexpr std::size_t whole(std::size_t n) { return (n + 31) / 32 * 32; }
 };
 
-// Particles in mixed precision, between two lists: what they alone read, in the DeviceRoom or, where they
-// rotate, in place of what is of an instant. What steps read of one array and write to another stands in the
-// room of the second arrays of the state, which are not needed meanwhile.
+// Particles in mixed precision, between two lists. Arrays of their own are in the `DeviceRoom` or, where
+// particles rotate, alias arrays of values at an instant; double-buffered ones alias the second arrays of the
+// state, which are not needed meanwhile.
 struct MixedArrays {
   DeviceArray<MixedFraction> fraction;
   DeviceArray<MixedRest> rest;
@@ -71,7 +72,7 @@ struct MixedArrays {
   MixedViews views(SecondArrays& room);
 };
 
-// to[i] = from[order[i]] of the arrays that both have; without an order to[i] = from[i].
+// to[i] = from[order[i]] for the arrays that both have; without an order to[i] = from[i].
 struct ReorderItem {
   ParticleViews from, to;
   const Index* order;
@@ -85,11 +86,11 @@ struct ReorderItem {
   }
 };
 
-// Particle i becomes the one that was order[i]; n of them stay. now: its motion changes places with `second`,
-// and what has no second array goes there and back, as much at a time as there is room for.
+// Moves particle order[i] to i for i = 0 ... n - 1. now: arrays with a counterpart in `second` are swapped
+// with it; the others are copied there and back, as many at a time as the memory holds.
 void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n);
 
-// Records of the particles from `first` on: position inside the periodic box, but for those that drift.
+// Records of the particles from `first` on: position inside the periodic box, except for drifting ones.
 struct RecordItem {
   ParticleViews in;
   Index first;
@@ -103,7 +104,7 @@ struct RecordItem {
   }
 };
 
-// Records become the particles from `first` on.
+// The records become the particles from `first` on.
 struct ArrivalItem {
   const Particle* arriving;
   ParticleViews out;

@@ -1,4 +1,5 @@
-// A warp's stretch of an array, through shared memory: device memory is read and written in whole sectors.
+// Staging of a warp's part of an array through shared memory: device memory is read and written in whole
+// sectors.
 #pragma once
 
 #include <cuda_pipeline.h>
@@ -9,8 +10,8 @@
 
 namespace scree {
 
-// Where the warps of a block stage arrays. kBytes: of the largest element. One array at a time, because
-// shared memory is taken from the first-level cache. All lanes of a warp call load, store and put together.
+// Staging memory of the warps of a block. kBytes: size of the largest element. One array at a time, because
+// shared memory is taken from the L1 cache. All lanes of a warp call load, store and put together.
 template <std::size_t kBytes, int kThreads>
 class WarpStage {
  public:
@@ -20,11 +21,11 @@ class WarpStage {
   // The warp's elements are first ... first + n - 1.
   __device__ WarpStage(Shared& shared, Index first, Index n)
       : WarpStage(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes, first, n) {}
-  // With room of the warp alone, kBytes per lane.
+  // `shared`: kBytes per lane for this warp alone.
   __device__ WarpStage(unsigned char* room, Index first, Index n) : bytes_(room), first_(first), n_(n) {}
 
-  // Begins to bring the warp's elements of the array in and returns what stands for the array: an item that
-  // reads and writes only its own element may use it from await to store.
+  // Starts to load the warp's elements of the array, and returns a pointer that replaces the array: an item
+  // that accesses only its own element may use it between await and store.
   template <class T>
   __device__ T* load(const T* array) const {
     const auto* from = reinterpret_cast<const double*>(array + first_);
@@ -38,7 +39,7 @@ class WarpStage {
     __pipeline_wait_prior(0);
     __syncwarp();
   }
-  // Takes them back.
+  // Writes the elements back.
   template <class T>
   __device__ void store(T* array) const {
     __syncwarp();
@@ -49,7 +50,7 @@ class WarpStage {
       if (const Index unit = u * warpSize + lane(); unit < n_ * kUnits<T>) to[unit] = from[unit];
     __syncwarp();
   }
-  // Each lane's value becomes its element of the array.
+  // Writes each lane's value to its element of the array.
   template <class T>
   __device__ void put(const T& value, T* array) const {
     values_of<T>()[lane()] = value;
@@ -58,7 +59,7 @@ class WarpStage {
 
  private:
   template <class T>
-  static constexpr Index kUnits = sizeof(T) / sizeof(double);  // that the lanes copy side by side
+  static constexpr Index kUnits = sizeof(T) / sizeof(double);  // copied by the lanes side by side
 
   __device__ static Index lane() { return static_cast<Index>(threadIdx.x % warpSize); }
   template <class T>
@@ -70,7 +71,8 @@ class WarpStage {
   Index first_, n_;
 };
 
-// A record per lane, for items that write theirs anywhere in an array: the warp copies each out side by side.
+// One record per lane, for items that write theirs to arbitrary elements of an array: the warp copies each of
+// them with coalesced writes.
 template <class T, int kThreads>
 class WarpRecords {
  public:
@@ -81,7 +83,7 @@ class WarpRecords {
       : records_(reinterpret_cast<T*>(shared.bytes) + threadIdx.x / warpSize * warpSize) {}
 
   __device__ T& own() const { return records_[lane()]; }
-  // All lanes of a warp call this: the lane's record becomes to[at]; at -1: it has none.
+  // All lanes of a warp call this: the lane's record is written to to[at]; at = -1: the lane has none.
   __device__ void store(T* to, Index at) const {
     static_assert(sizeof(T) % sizeof(double) == 0);
     constexpr Index kUnits = sizeof(T) / sizeof(double), kLanes = kUnits <= 8 ? 8 : kUnits <= 16 ? 16 : 32;
@@ -101,7 +103,7 @@ class WarpRecords {
   T* records_;
 };
 
-// An array of which an item reads and writes only its own element i: that element alone.
+// A pointer with which an item may access only element i of the array: that element.
 template <class T>
 __device__ T* only(T& element, Index i) {
   return &element - i;

@@ -8,7 +8,7 @@
 
 namespace scree {
 
-// Part of a key: of what a launch is given.
+// Part of a key: one argument of a launch.
 template <class T>
 std::string key_of(const T& value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
@@ -16,16 +16,16 @@ std::string key_of(const T& value) {
 
 class StepGraph {
  public:
-  static constexpr int kSteps = 16;  // in one graph
+  static constexpr int kSteps = 16;  // steps per graph
 
   StepGraph() = default;
   ~StepGraph();
   StepGraph(const StepGraph&) = delete;
   StepGraph& operator=(const StepGraph&) = delete;
 
-  // Queues `steps` calls of queue_one(), which queues one step on the stream. key: all that the launches
-  // depend on; a batch of a key that was seen before is launched without capturing it again. Steps of a new
-  // key are queued one by one first, so that the GPU has work while the host makes the graph.
+  // Queues `steps` calls of queue_one(), which queues one step on the stream. key: everything that the
+  // launches depend on; a batch with a known key is launched without being captured again. Steps of a new key
+  // are first queued one by one, so that the GPU is busy while the host captures the graph.
   template <class QueueOne>
   void queue(cudaStream_t stream, const std::string& key, int steps, const QueueOne& queue_one) {
     if (steps >= kSteps) {
@@ -58,7 +58,7 @@ class StepGraph {
     return keep(key, captured);
   }
 
-  // Sorting swaps the arrays of the particles, so that two keys alternate; two more are slack.
+  // The sort swaps the arrays of the particles, so that two keys alternate; two more are a reserve.
   std::array<Entry, 4> entries_;
   std::size_t oldest_ = 0;
 };

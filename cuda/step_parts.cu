@@ -9,11 +9,10 @@
 namespace scree {
 namespace {
 
-// Launches of their own take longer than they save where fewer blocks than these go ahead on a
-// multiprocessor.
+// Separate launches cost more than they save if fewer interior blocks than this run per multiprocessor.
 constexpr unsigned kLeastBlocks = 8;
 
-// Whether a block of particles meets neither ghosts nor placed surfaces.
+// Whether a block of particles has neither ghosts nor placed surfaces near it.
 struct EarlyItem {
   SurfaceList surfaces;
   Index owned, interior;

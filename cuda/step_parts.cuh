@@ -1,4 +1,5 @@
-// The two parts of an explicit step: the particles that can be advanced at once, and those that wait.
+// The two parts of an explicit step: the interior, which can be advanced at once, and the boundary, which
+// waits.
 #pragma once
 
 #include "contact_kernels.cuh"
@@ -7,17 +8,17 @@
 
 namespace scree {
 
-// Particles whose block meets neither ghosts nor placed surfaces go ahead while the others wait for the halo
-// and for the contacts with those surfaces.
+// Blocks of particles with neither ghosts nor placed surfaces near them are advanced while the others wait
+// for the halo exchange and the contacts with surfaces.
 class StepParts {
  public:
-  // For a new list. The first `interior` of the particles, whole blocks, meet no ghosts; on a rank alone,
-  // whose ghosts are there before the step, that is of no account. Waits where there are placed surfaces.
+  // For a new list. The first `interior` particles, in whole blocks, have no ghost neighbours; this does not
+  // matter on a single rank, whose ghosts are refreshed before the step. Waits if there are placed surfaces.
   void find(Device device, const DeviceSurfaces& surfaces, Index owned, Index interior, bool alone);
 
-  // Whether there are placed surfaces and so many particles away from them that both parts pay.
+  // Whether there are placed surfaces, and enough particles away from them that two launches pay.
   bool apart() const { return apart_; }
-  // Launches that are all of a step, on a rank alone, or its parts; early ones may be none.
+  // Launches: the whole step, for a single rank, or its two parts; the interior may be empty.
   StepRows whole() const { return {nullptr, 0, all_, owned_, alone_, all_}; }
   StepRows early() const {
     return {apart_ ? blocks_.data() : nullptr, 0, early_, owned_, false, early_ + late_blocks()};
@@ -28,13 +29,13 @@ class StepParts {
   }
 
  private:
-  // A step is closed by its last block, of which there must be one.
+  // The last block of a step closes it, so a step needs at least one.
   unsigned late_blocks() const { return all_ > early_ ? all_ - early_ : 1; }
 
   Index owned_ = 0;
-  unsigned all_ = 1, early_ = 0;  // blocks
+  unsigned all_ = 1, early_ = 0;  // number of blocks
   bool alone_ = true, apart_ = false;
-  DeviceArray<Index> blocks_;  // those that are early, then the others
+  DeviceArray<Index> blocks_;  // block numbers: the interior first, then the boundary
   DeviceArray<Index> count_{1};
   DeviceArray<unsigned char> early_flags_, space_;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());

@@ -1,5 +1,5 @@
 // Sums over items that do not depend on the order of the additions: base/reproducible_sum.hpp on the device,
-// bit for bit.
+// with the same bits.
 #pragma once
 
 #include "base/reproducible_sum.hpp"
@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// Workspace of N sums. Quanta are added in two halves of 32 bits each, because the device adds 64 bits at
-// once: up to 2^31 terms of 62 bits do not overflow either.
+// Workspace of N sums. Quanta are added as two halves of 32 bits, because the device has atomic additions of
+// 64 bits only: up to 2^31 terms of 62 bits do not overflow.
 template <int N>
 struct ExactSums {
   Real largest[N];
@@ -54,7 +54,7 @@ __global__ void add_terms_kernel(Index n, const Item item, ExactSums<N>* sums) {
 }
 
 // Queues the sums of item(i).value[0 ... N-1] over i = 0 ... n-1 into *d_sums. share(largest) is called
-// between the two passes, where the largest terms become those of all ranks.
+// between the two passes to reduce the largest terms over the ranks.
 template <int N, class Item, class Share>
 void exact_sums(Device device, Index n, const Item& item, ExactSums<N>* d_sums, const Share& share) {
   require_cuda(cudaMemsetAsync(d_sums, 0, sizeof(ExactSums<N>), device.stream), "exact_sums");

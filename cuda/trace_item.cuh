@@ -1,4 +1,4 @@
-// What one particle puts into the history.
+// Values of one particle for the history output.
 #pragma once
 
 #include "base/hd.hpp"
@@ -8,7 +8,7 @@
 
 namespace scree {
 
-// Writes a particle to the place that its id has among the sorted ids; the others write nothing.
+// Writes a particle to the position of its id among the sorted ids; particles not listed write nothing.
 struct TraceItem {
   ParticleViews in;
   const GlobalId* ids;
@@ -18,7 +18,7 @@ struct TraceItem {
 
   SCREE_HD void operator()(Index i) const {
     const GlobalId id = id_of(in.row_key[i]);
-    Index low = 0, high = count;  // its place is in [low, high)
+    Index low = 0, high = count;  // searched range of positions: low ... high - 1
     while (high - low > 1) {
       const Index middle = low + (high - low) / 2;
       (ids[middle] <= id ? low : high) = middle;

@@ -1,5 +1,5 @@
-// Rows of a warp whose contacts its lanes share out: for laws that take so long that lanes with few contacts
-// must not wait for those with many.
+// Rows of a warp whose contacts are distributed over its lanes: for laws so expensive that lanes with few
+// contacts must not wait for those with many.
 #pragma once
 
 #include <type_traits>
@@ -8,38 +8,39 @@
 
 namespace scree {
 
-// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to. Words: of
-// a result.
+// Shared memory of a warp: the contacts that its lanes have found, their results, and the sums of each lane's
+// row. Words: of a result.
 template <class Word, int kWords>
 struct WarpContacts {
-  static constexpr int kRoom = 12;            // entries of a row that are shared out at a time
-  static constexpr int kStride = kWords | 1;  // odd: lanes that store their results meet other banks
-  // Of a lane one after the other, and lanes an odd number of banks apart.
+  static constexpr int kRoom = 12;            // entries of a row that are distributed at a time
+  static constexpr int kStride = kWords | 1;  // odd, so that results stored by different lanes fall into
+                                              // different banks
+  // Entries of a lane are contiguous, and lanes an odd number of banks apart.
   Index neighbor[kSlice][kRoom | 1];
   RowPlace place[kSlice][kRoom + (kRoom % 4 == 0 ? 2 : 0)];
   Word result[kSlice][kStride];
   double sum[kSlice][kStride];
 };
 
-// Each lane looks for the entries of its row that touch; the lanes then evaluate what all have found, one
-// each, whosever it is; and the results are added up row by row, in the order of the row. All lanes of a warp
-// go through it together; their rows are a slice.
+// Each lane searches its row for touching entries; the contacts of all lanes are then evaluated, one per
+// lane, whichever row they belong to; and the results are summed row by row, in the order of the row. All
+// lanes of a warp take part in every call; their rows form a slice.
 template <class Word, int kWords>
 struct WarpRows {
   using Contacts = WarpContacts<Word, kWords>;
   static constexpr bool kShared = true;
   PrunedRows<0> rows;
-  Contacts* shared;  // of the warp
+  Contacts* shared;  // one per warp
   bool idle;         // the lane has no row
 
-  // Of the whole rows.
+  // Offsets and stride of the whole rows, as in `SlicedRows`.
   __device__ std::int64_t first(Index i) const { return rows.rows.first(i); }
   __device__ static constexpr int stride() { return SlicedRows::stride(); }
 
-  // Adds evaluate(i, j, slot), a structure of kWords Words, of the entries j of row i of which test(j) holds
-  // to sum, a structure of as many doubles; slot: the entry's number. It is called once for each, by any
-  // lane; one that asks for it gets the place of the entry among these, too. Returns how many they are. test:
-  // as in PrunedRows; one without near() is for whole rows.
+  // Adds evaluate(i, j, slot), a structure of kWords `Word`s, to sum, a structure of as many doubles, for the
+  // entries j of row i with test(j); slot is the entry's number. Any lane may make the call for a contact; an
+  // evaluate with a fourth parameter also gets the contact's index among the touching ones. Returns their
+  // number. test: as in `PrunedRows`; a test without near() is for whole rows.
   template <class Test, class Evaluate, class Sum>
   __device__ Index sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
     static_assert(sizeof(Sum) == kWords * sizeof(double));
@@ -55,7 +56,7 @@ struct WarpRows {
     Index next = 0, kept = 0, earlier = 0;
     do {
       Index found = 0;
-      // A few entries at once, and those after them under way: loads that do not wait for each other.
+      // A few entries at once while the next are loaded: independent loads hide latency.
       constexpr Index kAtOnce = 4;
       struct Entries {
         Index j[kAtOnce];
@@ -98,7 +99,7 @@ struct WarpRows {
   }
 
  private:
-  static constexpr int kLanes = kWords <= 8 ? 8 : 16;  // that add up the results of an owner
+  static constexpr int kLanes = kWords <= 8 ? 8 : 16;  // lanes that sum the results of one row
   __device__ static Index lane_of_warp() { return static_cast<Index>(threadIdx.x) % kSlice; }
   template <class Result>
   __device__ static void put(Word (&words)[Contacts::kStride], const Result& result) {
@@ -109,16 +110,16 @@ struct WarpRows {
     rows.places[slot] = static_cast<RowPlace>(place), rows.neighbors[slot] = j;
   }
 
-  // Entries that a lane has found now, and before.
+  // Contacts that a lane has found in this round, and in earlier ones.
   struct Found {
     Index now, earlier;
   };
 
-  // first: the warp's first row. first_entry: of the lane's.
+  // first: the warp's first row. first_entry: number of the first entry of this lane's row.
   template <class Evaluate>
   __device__ void share(Found found, Index first, Index first_entry, const Evaluate& evaluate) const {
     const Index lane = lane_of_warp();
-    Index after = found.now;  // entries of all lanes up to this one
+    Index after = found.now;  // contacts of the lanes up to and including this one
     for (int step = 1; step < kSlice; step *= 2) {
       const Index other = __shfl_up_sync(~0u, after, step);
       if (lane >= step) after += other;
@@ -128,7 +129,7 @@ struct WarpRows {
 #pragma unroll 1
     for (Index begin = 0; begin < all; begin += kSlice) {
       const Index turn = begin + lane;
-      int owner = 0;  // the last lane with no more than `turn` before it
+      int owner = 0;  // the last lane whose first contact is not after this one
       for (int step = kSlice / 2; step > 0; step /= 2)
         if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
       const Index k = turn - __shfl_sync(~0u, before, owner);
@@ -150,8 +151,8 @@ struct WarpRows {
     }
   }
 
-  // The results of the turns begin ... end - 1, of so many owners, a few at a time: each lane adds up one of
-  // the numbers.
+  // Sums the results begin ... end - 1 of this round, which belong to `owners` rows, a few rows at a time:
+  // each lane sums one of the words.
   __device__ void add_up(int first_owner, int owners, Index begin, Index end, Index before,
                          Index after) const {
 #pragma unroll 1
