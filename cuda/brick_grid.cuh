@@ -26,8 +26,8 @@ struct BrickGrid {
   } along[3] = {};
   Index interior = 0;  // of interior cell blocks
 
-  Index cells_of(Index number_of_bricks) const {
-    return number_of_bricks << (shift[0] + shift[1] + shift[2]);
+  Index cells_of(Index number_of_blocks) const {
+    return number_of_blocks << (shift[0] + shift[1] + shift[2]);
   }
   Index count() const { return cells_of(bricks); }
   SCREE_HD Index number(Index x, Index y, Index z) const {
@@ -45,9 +45,9 @@ struct BrickGrid {
     return inside ? before : interior + plain - before;
   }
   SCREE_HD Index key(Index x, Index y, Index z) const {
-    const Index brick = number(x >> shift[0], y >> shift[1], z >> shift[2]);
+    const Index block = number(x >> shift[0], y >> shift[1], z >> shift[2]);
     const auto inside = [this](Index along, int axis) { return along & ((1 << shift[axis]) - 1); };
-    return (((brick << shift[2] | inside(z, 2)) << shift[1] | inside(y, 1)) << shift[0]) | inside(x, 0);
+    return (((block << shift[2] | inside(z, 2)) << shift[1] | inside(y, 1)) << shift[0]) | inside(x, 0);
   }
   // The first cell in x of the cell block after that of x.
   SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
@@ -61,10 +61,10 @@ inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis
   const Real edge = 1 / of(cells.own.inverse_size), margin = cells.reach + 1e-6 * edge;
   const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;
   // Positions outside the grid belong to its outermost cells.
-  const auto begins = [&](Index brick) {
-    return brick == 0 ? -kInfinity : of(cells.own.origin) + edge * (brick << shift);
+  const auto begins = [&](Index block) {
+    return block == 0 ? -kInfinity : of(cells.own.origin) + edge * (block << shift);
   };
-  const auto ends = [&](Index brick) { return brick + 1 == bricks ? kInfinity : begins(brick + 1); };
+  const auto ends = [&](Index block) { return block + 1 == bricks ? kInfinity : begins(block + 1); };
   Index first = 0, last = bricks;
   while (first < last && begins(first) < low) ++first;
   while (last > first && ends(last - 1) > high) --last;

@@ -108,17 +108,17 @@ struct VerletControl {
     choose_rows();
   }
   SCREE_HD void choose_rows() {
-    constexpr Real kPrunedSteps = 32;           // lifetime aimed at for pruned rows [steps]
-    constexpr Real kLeastShare = Real(1) / 32;  // of the skin: particles nearly at rest will also start to
-                                                // move
-    constexpr Real kMostShare = Real(1) / 2;    // of the skin: with more, pruning saves too little
+    constexpr Real kPrunedSteps = 32;            // lifetime aimed at for pruned rows [steps]
+    constexpr Real kMinFraction = Real(1) / 32;  // of the skin: particles nearly at rest will also start to
+                                                 // move
+    constexpr Real kMaxFraction = Real(1) / 2;   // of the skin: with more, pruning saves too little
     if (moved < margin / 2) {
       rows = RowUse::pruned;
       return;
     }
-    const Real wanted = kPrunedSteps * displacement, least = kLeastShare * half_skin;
-    margin = 2 * (wanted > least ? wanted : least);
-    rows = margin < kMostShare * 2 * half_skin ? RowUse::prune : RowUse::all;
+    const Real target = kPrunedSteps * displacement, least = kMinFraction * half_skin;
+    margin = 2 * (target > least ? target : least);
+    rows = margin < kMaxFraction * 2 * half_skin ? RowUse::prune : RowUse::all;
     moved = rows == RowUse::prune ? 0 : kNoRows;
   }
   // Closes the step and opens the next.
@@ -245,7 +245,7 @@ class DeviceContactKernels {
                              SurfaceLoad* loads, InstantSums* sums) const = 0;
   // At an instant, for the first n entries by_surface, of the step that is open when the kernel runs; without
   // sums.
-  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
+  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& query, Index n,
                                     SurfaceLoad* loads) const = 0;
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;

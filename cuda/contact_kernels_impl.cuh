@@ -145,11 +145,11 @@ using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
 // by_surface.
 template <class Laws>
 __global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
-    load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepLook look,
+    load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepLook query,
                        const Laws laws, SurfaceLoad* loads) {
   __shared__ LoadRecords::Shared shared;
   SurfaceViews now = in;
-  if (!look.open(now)) return;
+  if (!query.open(now)) return;
   const LoadRecords records(shared);
   const Index k = thread_index();
   Index touching = -1;
@@ -206,10 +206,10 @@ class ContactKernelsOf : public DeviceContactKernels {
                      InstantSums* sums) const override {
     launch_surfaces(device, chunks, SurfaceLoadItem<Laws>{in, laws_, loads}, loads, sums);
   }
-  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
+  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& query, Index n,
                             SurfaceLoad* loads) const override {
     if (n == 0) return;
-    load_in_run_kernel<<<blocks_for(n, kLoadThreads), kLoadThreads, 0, device.stream>>>(n, in, look, laws_,
+    load_in_run_kernel<<<blocks_for(n, kLoadThreads), kLoadThreads, 0, device.stream>>>(n, in, query, laws_,
                                                                                         loads);
     require_cuda(cudaGetLastError(), "contacts with surfaces");
   }
@@ -256,7 +256,7 @@ class ContactKernelsOf : public DeviceContactKernels {
       if (r.end == r.first) return;
       rubbing_kernel<Laws>
           <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
-      require_cuda(cudaGetLastError(), "rubbing system");
+      require_cuda(cudaGetLastError(), "system with friction");
     } else {
       refuse_rubbing();
     }
@@ -267,7 +267,7 @@ class ContactKernelsOf : public DeviceContactKernels {
       if (n == 0) return;
       rubbing_books_kernel<Laws>
           <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
-      require_cuda(cudaGetLastError(), "rubbing books");
+      require_cuda(cudaGetLastError(), "losses with friction");
     } else {
       refuse_rubbing();
     }

@@ -18,10 +18,10 @@ std::string CudaBackend::double_reason() const {
 }
 
 std::string CudaBackend::description() const {
-  const bool asked = items_.model.integrator.precision == Precision::mixed;
-  const std::string precision = is_mixed() ? "mixed"
-                                : asked    ? "double, because " + double_reason()
-                                           : "double";
+  const bool requested = items_.model.integrator.precision == Precision::mixed;
+  const std::string precision = is_mixed()  ? "mixed"
+                                : requested ? "double, because " + double_reason()
+                                            : "double";
   const Ranks& all = items_.ranks;
   const std::string ranks =
       all.alone() ? ""
@@ -42,11 +42,11 @@ std::vector<DeviceShare> CudaBackend::device_shares() const {
   std::vector<DeviceShare> shares{{"state", items_.now.bytes()},
                                   {"second arrays", items_.other.bytes()},
                                   {"list", items_.list.bytes()},
-                                  {"records of contacts", items_.history.bytes()},
-                                  {"steps or kept contacts", items_.room.bytes()}};
+                                  {"contact history", items_.history.bytes()},
+                                  {"explicit steps or packed history", items_.room.bytes()}};
   std::size_t rest = device_bytes_in_use();
   for (const DeviceShare& share : shares) rest -= share.bytes;
-  shares.push_back({"all else", rest});
+  shares.push_back({"other", rest});
   return shares;
 }
 

@@ -47,11 +47,11 @@ void CudaBodies::take_steps(Real h) {
   side_.take_steps(items_.surfaces.step_sums(), h);
 }
 
-void CudaBodies::queue_loads(const SurfaceLook& look, const Event& ready) {
-  const Device beside{stream_};
-  items_.surfaces.place(beside, side_.places());
+void CudaBodies::queue_loads(const SurfaceLook& query, const Event& ready) {
+  const Device on{stream_};
+  items_.surfaces.place(on, side_.places());
   ready.hold(stream_);
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, look);
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, query);
   loads_found_.record(stream_);
 }
 
@@ -68,12 +68,12 @@ void CudaBodies::book_loads(Real h) {
   booked_.record(stream_), booked_.hold(items_.stream);
 }
 
-void CudaBodies::find_loads_beside(const SurfaceLook& look) {
+void CudaBodies::find_loads_beside(const SurfaceLook& query) {
   if (!have_surfaces()) return;
-  const Device beside{stream_};
-  items_.surfaces.place(beside, side_.places());
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, look);
-  take_loads(look.h);
+  const Device on{stream_};
+  items_.surfaces.place(on, side_.places());
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_look, query);
+  take_loads(query.h);
 }
 
 }  // namespace scree

@@ -34,16 +34,16 @@ class CudaBodies {
   void take_steps(Real h);
 
   // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
-  // contacts of particles in the state of `look`. The kernel of the step reads them after loads_found();
+  // contacts of particles in the state of `query`. The kernel of the step reads them after loads_found();
   // take_loads() waits for their sums.
-  void queue_loads(const SurfaceLook& look, const Event& ready);
+  void queue_loads(const SurfaceLook& query, const Event& ready);
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
   void book_loads(Real h);
   // The same as queue_loads() while the step's kernel may still read its own loads. Waits.
-  void find_loads_beside(const SurfaceLook& look);
+  void find_loads_beside(const SurfaceLook& query);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
  private:

@@ -34,14 +34,10 @@ class RunControl {
   Vec4* open_spin() {
     return (parity_[1] == 0 ? items_.now.angular_velocity : items_.other.angular_velocity).data();
   }
-  void turn() {
-    parity_[0] ^= 1, parity_[1] ^= 1;
-  }  // one step was queued whose control block has not been
-     // read yet
-  void at_home() {
-    parity_[0] = parity_[1] = 0;
-  }  // the open step has been copied into the arrays of the
-     // state
+  // After a step was queued whose control block has not been read yet.
+  void turn() { parity_[0] ^= 1, parity_[1] ^= 1; }
+  // After the open step was copied into the arrays of the state.
+  void at_home() { parity_[0] = parity_[1] = 0; }
 
  private:
   CudaItems& items_;

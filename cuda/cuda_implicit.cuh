@@ -86,7 +86,7 @@ class CudaImplicitStep : public ImplicitStep {
 
   // Of the last contact force stage.
   Real largest_stiffening_ = 0, force_scale_ = 0, right_hand_side_norm_ = 0;
-  LineSearch line_search_;  // largest stiffness ratio along arrays_.correction
+  LineSearch line_search_;  // along arrays_.correction
 };
 
 }  // namespace scree

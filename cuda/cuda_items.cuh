@@ -101,8 +101,8 @@ struct CudaItems {
   MixedArrays mixed;
   Index owned = 0;
   ItemLayout layout;   // its list of ghosts is empty
-  Index interior = 0;  // number of leading particles, in whole cell blocks, that have no ghost neighbours and
-                       // are no ghosts elsewhere
+  Index interior = 0;  // number of leading particles, in whole thread blocks, that have no ghost neighbours
+                       // and are no ghosts elsewhere
   StepParts parts;     // split of explicit steps
   HaloLane lane;
   DeviceList list;

@@ -8,8 +8,8 @@
 namespace scree {
 namespace {
 
-// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not finite or out
-// of range.
+// Wraps a particle into the periodic box. *bad: smallest id of a particle that is not finite or has
+// crossed the whole periodic box.
 struct WrapItem {
   ParticleViews in;
   Vec3 box_min, period;
@@ -54,7 +54,7 @@ struct GhostNameItem {
 };
 
 struct GhostKeyItem {
-  const Vec4* position;  // number of ghosts
+  const Vec4* position;  // of the ghosts
   BrickGrid grid;
   unsigned outside;
   unsigned* keys;

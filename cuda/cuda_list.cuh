@@ -31,7 +31,7 @@ class CudaList : public RankList {
   // Whether the list is complete and was built for the present items.
   bool current() const { return current_; }
   void outdate() { current_ = false; }
-  Real skin() const { return skin_; }  // skin of the list [m]
+  Real skin() const { return skin_; }  // that the list covers [m]
   Real cutoff() const { return builder_.cutoff(skin_); }
   Real bound() const { return bound_; }  // upper bound of the displacement of any item since it was built [m]
   void set_bound(Real bound) { bound_ = bound; }

@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-struct LeavesItem {
+struct DepartsItem {
   DomainGrid grid;
   const DomainCut* cuts;
   const Vec4* position;
@@ -20,11 +20,11 @@ struct LeavesItem {
 // Packs the k-th departing particle into its record.
 struct MigrantItem {
   ParticleViews in;
-  const Index* leaving;
+  const Index* departing;
   Particle* out;
 
   SCREE_HD void operator()(Index k) const {
-    const Index i = leaving[k];
+    const Index i = departing[k];
     out[k] = particle_at(in, i);
     in.drifting[i] = kGone;
   }
@@ -53,13 +53,13 @@ void CudaOwners::decompose() {
 void CudaOwners::migrate() {
   if (!decomposition_.exists() || items_.balance.imbalance > items_.model.parallel.imbalance) decompose();
   items_.other.grow(items_.now.position.size(), static_cast<std::size_t>(items_.owned));
-  Index* leaving = items_.numbers_while_listing();  // valid until the sort
-  const LeavesItem leaves{decomposition_.grid(), cuts_.data(), items_.now.position.data(),
-                          items_.ranks.rank()};
+  Index* departing = items_.numbers_while_listing();  // valid until the sort
+  const DepartsItem departs{decomposition_.grid(), cuts_.data(), items_.now.position.data(),
+                            items_.ranks.rank()};
   with_space(items_.space, [&](void* at, std::size_t& bytes) {
     require_cuda(
-        cub::DeviceSelect::If(at, bytes, thrust::counting_iterator<Index>(0), leaving,
-                              items_.results.at(&Results::index), items_.owned, leaves, items_.stream),
+        cub::DeviceSelect::If(at, bytes, thrust::counting_iterator<Index>(0), departing,
+                              items_.results.at(&Results::index), items_.owned, departs, items_.stream),
         "select");
   });
   const Index count = items_.results.fetch(&Results::index);
@@ -71,10 +71,10 @@ void CudaOwners::migrate() {
   for (Index part = 0; part < parts; ++part) {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
     std::vector<std::vector<Particle>> to(static_cast<std::size_t>(items_.ranks.size()));
-    const KeptContacts contacts = items_.history.rows(leaving + first, n);
+    const KeptContacts contacts = items_.history.rows(departing + first, n);
     std::vector<KeptContacts> contacts_to(to.size(), no_contacts(contacts.numbers, 0));
     std::int64_t k = 0;
-    for (const Particle& p : pack_migrants(leaving + first, n)) {
+    for (const Particle& p : pack_migrants(departing + first, n)) {
       const auto owner = static_cast<std::size_t>(decomposition_.owner(p.position));
       to[owner].push_back(p);
       if (items_.history.exists()) contacts_to[owner].add_row(contacts, k++);
@@ -85,11 +85,11 @@ void CudaOwners::migrate() {
   }
 }
 
-std::vector<Particle> CudaOwners::pack_migrants(Index* leaving, Index count) {
+std::vector<Particle> CudaOwners::pack_migrants(Index* departing, Index count) {
   if (count == 0) return {};
   DeviceArray<Particle> packed;
   packed.resize_clean(static_cast<std::size_t>(count), items_.stream);
-  for_each(items_.device(), count, MigrantItem{views_of(items_.now), leaving, packed.data()});
+  for_each(items_.device(), count, MigrantItem{views_of(items_.now), departing, packed.data()});
   return packed.download(items_.stream);
 }
 

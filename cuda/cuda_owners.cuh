@@ -31,7 +31,7 @@ class CudaOwners {
 
  private:
   void decompose();
-  std::vector<Particle> pack_migrants(Index* leaving, Index count);
+  std::vector<Particle> pack_migrants(Index* departing, Index count);
   void add_migrants(const std::vector<Particle>& arriving);
 
   CudaItems& items_;

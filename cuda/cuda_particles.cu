@@ -13,20 +13,20 @@ namespace {
 
 // Collects particles outside the domain that are not yet known to drift; counts all, stores as many as there
 // is space for.
-struct LeaverItem {
+struct EscapedItem {
   ParticleViews in;
   OpenBox box;
   Vec3 gravity, period;
   Real verlet_step;  // [s]
   Leaver* out;
-  Index room;
+  Index capacity;
   Index* count;
 
   __device__ void operator()(Index i) const {
     const Vec4 x = in.position[i];
     if (in.drifting[i] || box.inside(xyz(x))) return;
     const Index slot = atomicAdd(count, 1);
-    if (slot >= room) return;
+    if (slot >= capacity) return;
     const Real energy = energy_of_motion(in, i, gravity, period);
     const Real shift = verlet_energy_shift(verlet_step, in, i);
     out[slot] = {
@@ -48,11 +48,11 @@ struct MarkItem {
   }
 };
 
-struct StaysItem {
+struct RemainsItem {
   const std::uint8_t* drifting;
-  std::uint8_t* stays;
+  std::uint8_t* remains;
   Index* iota;
-  SCREE_HD void operator()(Index i) const { stays[i] = !drifting[i], iota[i] = i; }
+  SCREE_HD void operator()(Index i) const { remains[i] = !drifting[i], iota[i] = i; }
 };
 
 struct GatherItem {
@@ -91,8 +91,10 @@ RecordItem CudaParticles::record_item(Index first) {
 }
 
 std::vector<Particle> CudaParticles::records() {
-  if (list_.owners().migrating()) throw DeviceError("particles were on their way between ranks");
-  if (items_.open_run != nullptr) throw std::logic_error("CudaParticles: within a run there are no forces");
+  if (list_.owners().migrating())
+    throw DeviceError("the migration of particles between ranks was interrupted");
+  if (items_.open_run != nullptr)
+    throw std::logic_error("CudaParticles: the forces are not up to date within an explicit run");
   std::vector<Particle> out(static_cast<std::size_t>(items_.owned));
   const auto at_once = static_cast<Index>(records_.size());
   for (Index first = 0; first < items_.owned; first += at_once) {
@@ -135,44 +137,44 @@ std::size_t CudaParticles::find_leavers() {
   Index* count = items_.results.at(&Results::leavers);
   require_cuda(cudaMemsetAsync(count, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
   for_each(items_.device(), items_.owned,
-           LeaverItem{views_of(items_.now), items_.subdomain.box(), items_.model.gravity,
-                      items_.subdomain.period(), verlet_step(items_.model), leavers_.data(),
-                      static_cast<Index>(leavers_.size()), count});
+           EscapedItem{views_of(items_.now), items_.subdomain.box(), items_.model.gravity,
+                       items_.subdomain.period(), verlet_step(items_.model), leavers_.data(),
+                       static_cast<Index>(leavers_.size()), count});
   return static_cast<std::size_t>(items_.results.fetch(&Results::leavers));
 }
 
 std::vector<Leaver> CudaParticles::outside() {
-  constexpr std::size_t kFirstRoom = 1024;
-  if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, items_.stream);
-  std::vector<Leaver> leavers(find_leavers());
-  if (!items_.ranks.any(!leavers.empty())) return leavers;
-  if (leavers.size() > leavers_.size()) {  // not all were stored; there is space for all now
-    leavers_.resize_clean(leavers.size(), items_.stream);
+  constexpr std::size_t kInitialCapacity = 1024;
+  if (leavers_.size() == 0) leavers_.resize_clean(kInitialCapacity, items_.stream);
+  std::vector<Leaver> escaped(find_leavers());
+  if (!items_.ranks.any(!escaped.empty())) return escaped;
+  if (escaped.size() > leavers_.size()) {  // not all were stored; there is space for all now
+    leavers_.resize_clean(escaped.size(), items_.stream);
     find_leavers();
   }
   bodies_.find_loads();
   items_.kernels->leavers(items_.device(), items_.views(), items_.subdomain.box(),
-                          static_cast<Index>(leavers.size()), leavers_.data());
-  copy_async(leavers.data(), leavers_.data(), leavers.size(), items_.stream);
+                          static_cast<Index>(escaped.size()), leavers_.data());
+  copy_async(escaped.data(), leavers_.data(), escaped.size(), items_.stream);
   wait_for(items_.stream);
-  for (Leaver& leaver : leavers)
-    leaver.lost = items_.subdomain.beyond_wall(leaver.position), leaver.rank = items_.ranks.rank();
-  leavers = items_.ranks.gather_everywhere(std::move(leavers));
-  std::sort(leavers.begin(), leavers.end(),
+  for (Leaver& particle : escaped)
+    particle.lost = items_.subdomain.beyond_wall(particle.position), particle.rank = items_.ranks.rank();
+  escaped = items_.ranks.gather_everywhere(std::move(escaped));
+  std::sort(escaped.begin(), escaped.end(),
             [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
-  return leavers;
+  return escaped;
 }
 
-void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
-  if (leavers.empty()) return;
+void CudaParticles::take_out(const std::vector<Leaver>& escaped) {
+  if (escaped.empty()) return;
   std::vector<Index> particles;
-  for (const Leaver& leaver : leavers)
-    if (leaver.rank == items_.ranks.rank()) particles.push_back(leaver.local_index);
+  for (const Leaver& particle : escaped)
+    if (particle.rank == items_.ranks.rank()) particles.push_back(particle.local_index);
   const bool remove = items_.model.space.leaving == Leaving::remove;
   const auto n = remove ? static_cast<std::size_t>(items_.owned) : 0;
   // The arrays are sized first: if memory does not suffice, nothing has changed yet.
-  DeviceArray<Index> d_particles, iota(n), staying(n), row_length(items_.ranks.alone() ? 0 : n);
-  DeviceArray<std::uint8_t> stays(n);
+  DeviceArray<Index> d_particles, iota(n), remaining(n), row_length(items_.ranks.alone() ? 0 : n);
+  DeviceArray<std::uint8_t> remains(n);
   d_particles.upload(particles, items_.stream);
   take_contacts_out();
   items_.history.leave_slots(items_.listed());
@@ -182,17 +184,19 @@ void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
   list_.outdate();
   if (!remove) return;
 
-  for_each(items_.device(), items_.owned, StaysItem{items_.now.drifting.data(), stays.data(), iota.data()});
+  for_each(items_.device(), items_.owned,
+           RemainsItem{items_.now.drifting.data(), remains.data(), iota.data()});
   with_space(items_.space, [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceSelect::Flagged(at, bytes, iota.data(), stays.data(), staying.data(),
+    require_cuda(cub::DeviceSelect::Flagged(at, bytes, iota.data(), remains.data(), remaining.data(),
                                             items_.results.at(&Results::index), items_.owned, items_.stream),
                  "select");
   });
-  items_.reorder(staying.data(), items_.results.fetch(&Results::index));
+  items_.reorder(remaining.data(), items_.results.fetch(&Results::index));
   DeviceArray<Index>& old_length = list_.owners().row_length();
   if (!items_.ranks.alone()) {
     row_length.resize(static_cast<std::size_t>(items_.owned));
-    for_each(items_.device(), items_.owned, GatherItem{old_length.data(), staying.data(), row_length.data()});
+    for_each(items_.device(), items_.owned,
+             GatherItem{old_length.data(), remaining.data(), row_length.data()});
   }
   wait_for(items_.stream);  // the copies above read host arrays of this scope
   old_length.swap(row_length);
@@ -202,10 +206,10 @@ void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
 void CudaParticles::take_contacts_out() {
   ParticleArrays& now = items_.now;
   const bool verlet = is_verlet(items_.model);
-  const Vec4* seen = items_.seen_velocity != nullptr ? items_.seen_velocity : now.velocity.data();
-  const Vec4* spin = items_.seen_spin != nullptr ? items_.seen_spin : now.angular_velocity.data();
+  const Vec4* law_velocity = items_.seen_velocity != nullptr ? items_.seen_velocity : now.velocity.data();
+  const Vec4* law_spin = items_.seen_spin != nullptr ? items_.seen_spin : now.angular_velocity.data();
   items_.kernels->departures(
-      items_.device(), items_.views(now.position.data(), seen, spin), items_.model.gravity,
+      items_.device(), items_.views(now.position.data(), law_velocity, law_spin), items_.model.gravity,
       items_.subdomain.box(), items_.owned,
       {now.force.data(), now.acceleration.data(), verlet ? now.loss_power.data() : nullptr,
        now.integrator_loss.data(), now.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,

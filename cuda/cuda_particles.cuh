@@ -30,7 +30,7 @@ class CudaParticles : public RankParticles {
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;
-  void take_out(const std::vector<Leaver>& leavers) override;
+  void take_out(const std::vector<Leaver>& escaped) override;
 
  private:
   RecordItem record_item(Index first);

@@ -30,9 +30,9 @@ struct CountDriftingItem {
 }  // namespace
 
 CudaReports::CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), bodies_(bodies) {
-  const std::vector<OutputField> wanted = computed_fields(items.model.output);
-  std::vector<FieldColumn> columns(wanted.size());
-  for (std::size_t k = 0; k < wanted.size(); ++k) columns[k].field = wanted[k];
+  const std::vector<OutputField> fields = computed_fields(items.model.output);
+  std::vector<FieldColumn> columns(fields.size());
+  for (std::size_t k = 0; k < fields.size(); ++k) columns[k].field = fields[k];
   output_.columns.swap(columns);
 }
 
@@ -180,9 +180,9 @@ ContactLines CudaReports::contact_lines() {
   ContactLines out;
   out.lines.resize(static_cast<std::size_t>(offsets.back()));
   for (Index first = 0; first < n;) {
-    const auto past = std::upper_bound(offsets.begin() + first + 1, offsets.end(),
-                                       offsets[first] + static_cast<Index>(kLinesAtOnce));
-    const Index end = std::max(first + 1, static_cast<Index>(past - offsets.begin()) - 1);
+    const auto next_offset = std::upper_bound(offsets.begin() + first + 1, offsets.end(),
+                                              offsets[first] + static_cast<Index>(kLinesAtOnce));
+    const Index end = std::max(first + 1, static_cast<Index>(next_offset - offsets.begin()) - 1);
     const auto count = static_cast<std::size_t>(offsets[end] - offsets[first]);
     lines_.resize_with_spare(count);
     request.lines = lines_.data(), request.first_line = offsets[first];
@@ -199,9 +199,9 @@ ContactLines CudaReports::contact_lines() {
   return out;
 }
 
-std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted) {
-  if (wanted.empty()) return {};
-  std::vector<GlobalId> ids(wanted.begin(), wanted.end());
+std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> requested) {
+  if (requested.empty()) return {};
+  std::vector<GlobalId> ids(requested.begin(), requested.end());
   std::sort(ids.begin(), ids.end());
   traced_ids_.upload(ids, items_.stream);
   // Where this rank found no particle, the result is an id that none has.

@@ -20,7 +20,7 @@ class CudaReports : public Reports {
   ParticleOutput output() override;
   ShapePack pack_shapes() override;
   ContactLines contact_lines() override;
-  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
+  std::vector<TracedParticle> traced(std::span<const GlobalId> requested) override;
   std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> surface_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
@@ -53,7 +53,7 @@ class CudaReports : public Reports {
   CudaBodies& bodies_;
   Stream copy_stream_;  // stream for copies concurrent with the steps
   OutputArrays output_;
-  // Number of contacts of each particle.
+  // Per particle, over its contacts.
   DeviceArray<Real> elastic_, pairs_, cohesion_;
   DeviceArray<Index> contacts_;
   DeviceArray<SpringEnergies> springs_;

@@ -183,7 +183,7 @@ void CudaRubbingStep::queue_system() {
   residual_kernel<<<blocks_for(items_.owned, kResidualThreads), kResidualThreads, 0, items_.stream>>>(
       items_.owned, residual, matrix(), items_.list.rows(), items_.surfaces.list().offsets, norms,
       rubbing_.norms.data());
-  require_cuda(cudaGetLastError(), "rubbing residual");
+  require_cuda(cudaGetLastError(), "residual with friction");
 }
 
 // Maxima over the particles of all ranks; waits.

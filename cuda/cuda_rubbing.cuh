@@ -36,11 +36,11 @@ class CudaRubbingStep : public CudaImplicitStep {
 
   CudaRubbingArrays& rubbing_;
   bool frozen_ = false;
-  ResidualSearch search_;                          // largest stiffness ratio along rubbing_.correction
+  ResidualSearch search_;                          // line search along rubbing_.correction
   Real scaled_residual_ = 0;                       // of the last contact force stage
   Real largest_stiffening_ = 0, force_scale_ = 0;  // of the last contact force stage
   Real sharpness_ = 0;
-  Real unit_ = 0;  // largest component of rubbing_.correction [N]
+  Real unit_ = 0;  // of rubbing_.correction, `direction_unit` [N]
   RubbingTolerance tolerance_;
 };
 

@@ -226,10 +226,10 @@ void StepQueue::queue_double(Index steps, const Event* loads_found) {
     return queue_in_turn(
         key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
   surfaces.make_room_in_run(items_.device(), steps);
-  const OpenStepLook look = surface_look(r);
+  const OpenStepLook query = surface_look(r);
   queue_in_turn(
-      key + surfaces.key_of_loads(kernels, look, h_), steps,
-      [&](Device on) { surfaces.find_loads_in_run(on, kernels, look, h_); }, queue_ghosts, queue_rows);
+      key + surfaces.key_of_loads(kernels, query, h_), steps,
+      [&](Device on) { surfaces.find_loads_in_run(on, kernels, query, h_); }, queue_ghosts, queue_rows);
 }
 
 void StepQueue::queue_mixed(Index steps, const Event* loads_found) {

@@ -37,7 +37,7 @@ class StepQueue {
   // Arrays that hold the open step in mixed precision.
   struct Mixed {
     QuantumGrid quanta;
-    Index start;  // closed steps when the mixed state was last converted to double
+    Index start;  // number of closed steps when the state was converted to mixed precision
   };
   PrunedViews pruned_views(const Vec4* position);
   void queue_double(Index steps, const Event* loads_found);

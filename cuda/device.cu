@@ -68,7 +68,7 @@ std::string trouble_of(cudaError_t status) {
              ", this program was built for " SCREE_CUDA_ARCHITECTURES " (CMAKE_CUDA_ARCHITECTURES)";
     }
     case cudaErrorMemoryAllocation:
-      return "the GPU's memory is taken by others";
+      return "the GPU's memory is used by other programs";
     default:
       return cudaGetErrorString(status);
   }

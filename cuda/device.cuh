@@ -97,7 +97,7 @@ class TimedEvent {
 // driver reserves. By default the driver assigns more to shared memory than the blocks need.
 template <class Kernel>
 void prefer_cache(Kernel* kernel, std::size_t shared) {
-  constexpr std::size_t kDriver = 16 * 1024;  // reserved per block: 1 KB
+  constexpr std::size_t kDriver = 16 * 1024;  // reserved by the driver: 1 KB per block
   int device = 0, most = 0;
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
   require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device),
@@ -201,7 +201,7 @@ class DeviceArray {
   }
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
-  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // owned or aliased [B]
+  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // none for an alias [B]
   T* data() { return data_; }
   const T* data() const { return data_; }
   void swap(DeviceArray& other) noexcept {

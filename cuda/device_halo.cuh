@@ -18,8 +18,8 @@ namespace scree {
 template <class T>
 struct GhostField {
   T *field, *packed;
-  Index own, first_ghost;  // number of entries that are periodic images of the rank's own particles, which
-                           // come first
+  // own: number of the entries, the first ones, that are periodic images of the rank's own particles.
+  Index own, first_ghost;
 
   SCREE_HD void put(Index entry, const T& value) const {
     if (entry < own)
@@ -57,8 +57,8 @@ class HaloClock {
   // Reads the times, once both streams are done.
   void read(HaloSize& halo) {
     if (!running_) return;
-    running_ = false, ++looks_;
-    const auto mean = [&](double& of, double value) { of += (value - of) / looks_; };
+    running_ = false, ++samples_;
+    const auto mean = [&](double& of, double value) { of += (value - of) / samples_; };
     mean(halo.seconds, end_.seconds_since(begin_));
     mean(halo.exposed_seconds, std::max(0.0, end_.seconds_since(interior_done_)));
   }
@@ -66,7 +66,7 @@ class HaloClock {
  private:
   TimedEvent begin_, end_, interior_done_;
   bool running_ = false;
-  int looks_ = 0;
+  int samples_ = 0;
 };
 
 class DeviceHalo {

@@ -28,8 +28,8 @@ struct CountUpItem {
   SCREE_HD void operator()(Index i) const { out[i] = first + i; }
 };
 
-// Reserve of an array that had to grow: 1 / kKeptSpare of what is needed.
-constexpr std::size_t kKeptSpare = 32, kEntriesSpare = 32;
+// Reserve of an array that had to grow: 1 / kPackedReserve of what is needed.
+constexpr std::size_t kPackedReserve = 32, kEntriesReserve = 32;
 
 // All rows in one contiguous part.
 template <class Rows>
@@ -59,8 +59,8 @@ void fill_parts(const KeptViews& parts, const std::int64_t* keys, const Real* va
   }
 }
 
-NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
-                   int numbers) {
+NamedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
+                     int numbers) {
   return {at.position, at.row_key, at.list.rows(), at.surfaces.list(),
           box,         history,    numbers,        records_of(numbers)};
 }
@@ -127,12 +127,12 @@ std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first,
   countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
   rows.offsets.resize(static_cast<std::size_t>(count) + 1);
   for_each({stream_}, count,
-           CountClosedItem{names_of(at, box_, views(), width()), first, rows.offsets.data()});
+           CountClosedItem{keyed_rows(at, box_, views(), width()), first, rows.offsets.data()});
   return add_up(rows, count);
 }
 
 void DeviceHistory::fill_rows(const KeptViews& rows, const Listed& at, Index first, Index count) {
-  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), width()), first, rows});
+  for_each({stream_}, count, KeepItem{keyed_rows(at, box_, views(), width()), first, rows});
 }
 
 KeptViews DeviceHistory::kept_views() { return parts_ ? *parts_ : views_of_rows(kept_, width()); }
@@ -140,8 +140,8 @@ KeptViews DeviceHistory::kept_views() { return parts_ ? *parts_ : views_of_rows(
 // Memory for that many contacts in parts, while the slots' records are in use: the second arrays, which are
 // free before and after the sort, then the arrays of explicit steps.
 KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
-  constexpr std::size_t kWhole = 4;  // multiple of the sizes of parts, which aligns the values to 32 B
-                                     // sectors
+  constexpr std::size_t kSizeMultiple = 4;  // multiple of the sizes of parts, which aligns the values to 32 B
+                                            // sectors
   const auto numbers = static_cast<std::size_t>(width());
   KeptViews parts{kept_.offsets.data(), width(), {}};
   std::size_t first = 0, next = 0;
@@ -150,8 +150,8 @@ KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
     first += size;
   };
   for (DeviceArray<Vec4>* array : rooms_.second.motion()) {
-    const std::size_t fit =
-        array->size() * sizeof(Vec4) / (sizeof(std::int64_t) + numbers * sizeof(Real)) / kWhole * kWhole;
+    const std::size_t fit = array->size() * sizeof(Vec4) / (sizeof(std::int64_t) + numbers * sizeof(Real)) /
+                            kSizeMultiple * kSizeMultiple;
     auto* const keys = reinterpret_cast<std::int64_t*>(array->data());
     add(keys, reinterpret_cast<Real*>(keys + fit), std::min(fit, contacts - first));
   }
@@ -182,9 +182,10 @@ void DeviceHistory::leave_slots(const Listed& at) {
   row_of_.resize(static_cast<std::size_t>(at.owned));
   const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
                     numbers = static_cast<std::size_t>(width()),
-                    room = contacts + contacts / kKeptSpare;  // for arriving particles
-  in_records_ = lay_out_in_records(room);
-  if (!in_records_) rooms_.of_steps.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
+                    reserved = contacts + contacts / kPackedReserve;  // for arriving particles
+  in_records_ = lay_out_in_records(reserved);
+  if (!in_records_)
+    rooms_.of_steps.lay_out(RoomFor{kept_.keys, reserved}, RoomFor{kept_.values, reserved * numbers});
   kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
   const KeptViews parts = in_records_ ? lay_out_parts(contacts) : kept_views();
   fill_rows(parts, at, 0, at.owned);
@@ -207,14 +208,15 @@ void DeviceHistory::take_slots(const Listed& at) {
   clear_records();
   const auto records = static_cast<std::size_t>(records_of(width()));
   if (const auto needed = static_cast<std::size_t>(at.list.entries()) * records; needed > neighbors_.size())
-    neighbors_.resize(needed + needed / kEntriesSpare);
+    neighbors_.resize(needed + needed / kEntriesReserve);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})
     of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
   ahead_.zero(stream_);
   for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), features_ahead_.data()});
-  for_each({stream_}, at.owned, TakeItem{names_of(at, box_, views(), width()), kept_views(), row_of_.data()});
+  for_each({stream_}, at.owned,
+           TakeItem{keyed_rows(at, box_, views(), width()), kept_views(), row_of_.data()});
   parts_.reset(), kept_.keys.release(), kept_.values.release();
   at_slots_ = true;
 }
@@ -237,7 +239,7 @@ void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
 
 void DeviceHistory::reorder(const Index* order, Index n, Index* numbers) {
   if (!exists()) return;
-  if (parts_) throw std::logic_error("DeviceHistory: the sort would take the room of what is kept");
+  if (parts_) throw std::logic_error("DeviceHistory: the sort would overwrite the packed history");
   for_each({stream_}, n, RowOfItem{row_of_.data(), order, numbers});
   row_of_.resize(static_cast<std::size_t>(n));
   copy_async(row_of_.data(), numbers, row_of_.size(), stream_);

@@ -35,11 +35,11 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const CellGrid& cells = in.grid.cells.own;
   const CellPlace c = in.grid.cells.place(xyz(p));
   if (c.x < 0) return;
-  const auto reaches = [&](Index j) {
+  const auto in_range = [&](Index j) {
     const Vec4 q = in.position[j];
     const Vec3 d = xyz(p) - xyz(q);
-    const Real reach = p.w + q.w + in.skin;
-    return dot(d, d) < reach * reach;
+    const Real range = p.w + q.w + in.skin;
+    return dot(d, d) < range * range;
   };
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Neighbouring cells in x of one cell block are contiguous: one range of items, or two where a cell block
@@ -55,7 +55,8 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
         const auto at = [&](Index k) { return item(k < length ? begin + k : second_begin + k - length); };
         for (Index k = 0; k < all; k += 2) {  // two at once: independent loads hide latency
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
-          const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
+          const bool second_in_range = in_range(j[1]),
+                     hit[2] = {in_range(j[0]), second_in_range && k + 1 < all};
           if (hit[0] && j[0] != i) visit(j[0]);
           if (hit[1] && j[1] != i) visit(j[1]);
         }
@@ -73,15 +74,15 @@ __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
       Index child = 2 * root + 1;
       if (child + 1 < end && row_key[at(child)] < row_key[at(child + 1)]) ++child;
       if (row_key[at(root)] >= row_key[at(child)]) return;
-      const Index held = at(root);
-      at(root) = at(child), at(child) = held;
+      const Index swapped = at(root);
+      at(root) = at(child), at(child) = swapped;
       root = child;
     }
   };
   for (Index root = n / 2; root-- > 0;) sift(root, n);
   for (Index end = n; end-- > 1;) {
-    const Index held = at(0);
-    at(0) = at(end), at(end) = held;
+    const Index swapped = at(0);
+    at(0) = at(end), at(end) = swapped;
     sift(0, end);
   }
 }
@@ -96,9 +97,9 @@ __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buf
     ++found;
   });
   // Sorted after the search, so that all threads of a warp sort together.
-  const Index kept = min(found, kEntries);
-  for (Index k = 0; k < kept; ++k) buffer.key[k][column] = in.row_key[buffer.neighbor[k][column]];
-  for (Index k = 1; k < kept; ++k) {
+  const Index in_buffer = min(found, kEntries);
+  for (Index k = 0; k < in_buffer; ++k) buffer.key[k][column] = in.row_key[buffer.neighbor[k][column]];
+  for (Index k = 1; k < in_buffer; ++k) {
     const std::int64_t key = buffer.key[k][column];
     const Index neighbor = buffer.neighbor[k][column];
     Index to = k;
@@ -208,8 +209,8 @@ void DeviceList::build(Device device, const ListInput& in) {
   countable(h_totals_[0].entries, "stage neighbors: more neighbours");
   if (h_totals_[0].longest > std::numeric_limits<RowPlace>::max())
     throw SimulationError("stage neighbors: a particle with " + std::to_string(h_totals_[0].longest) +
-                          " neighbours; contacts that remember can be at most " +
-                          std::to_string(std::numeric_limits<RowPlace>::max()) + " of one particle");
+                          " neighbours; with a contact history a particle can have at most " +
+                          std::to_string(std::numeric_limits<RowPlace>::max()));
 }
 
 }  // namespace scree

@@ -28,8 +28,8 @@ struct SlicedRows {
                                  const Add& add) const {
     if constexpr (kAsksForSlot<Evaluate>) {
       const std::int64_t number = first_entry[i];
-      const auto at_place = [&](Index j, std::int64_t place) { return evaluate(j, number + place); };
-      for_each_place(i, touches, at_place, add);
+      const auto evaluate_at = [&](Index j, std::int64_t place) { return evaluate(j, number + place); };
+      for_each_place(i, touches, evaluate_at, add);
     } else {
       for_each_place(i, touches, evaluate, add);
     }
@@ -114,10 +114,10 @@ struct PrunedRows {
     const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
     if constexpr (kAsksForSlot<Evaluate>) {
       const std::int64_t number = rows.first_entry[i], start = rows.first(i);
-      const auto at_place = [&](Index j, std::int64_t place) {
+      const auto evaluate_at = [&](Index j, std::int64_t place) {
         return evaluate(j, number + (all ? place : places[start + kSlice * place]));
       };
-      walk(walked, i, test, at_place, add);
+      walk(walked, i, test, evaluate_at, add);
     } else {
       walk(walked, i, test, evaluate, add);
     }
@@ -135,19 +135,19 @@ struct PrunedRows {
   template <class Test, class Evaluate, class Add>
   SCREE_HD void prune(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     const Index* row = rows.neighbors + rows.first(i);
-    Index *const first_kept = neighbors + rows.first(i), *kept = first_kept;
+    Index *const pruned_begin = neighbors + rows.first(i), *pruned_end = pruned_begin;
     std::int64_t number = 0;
     if constexpr (kAsksForSlot<Evaluate>) number = rows.first_entry[i];
     for (Index left = rows.counts[i]; left > 0; --left, row += kSlice, ++number) {
       const Index j = *row;
       if (test.near(j, margin)) {
         if constexpr (kAsksForSlot<Evaluate>)
-          places[kept - neighbors] = static_cast<RowPlace>(rows.counts[i] - left);
-        *kept = j, kept += kSlice;
+          places[pruned_end - neighbors] = static_cast<RowPlace>(rows.counts[i] - left);
+        *pruned_end = j, pruned_end += kSlice;
       }
       if (test(j)) add(evaluate_entry(evaluate, j, number));
     }
-    counts[i] = static_cast<Index>((kept - first_kept) / kSlice);
+    counts[i] = static_cast<Index>((pruned_end - pruned_begin) / kSlice);
   }
 };
 

@@ -42,7 +42,7 @@ struct FindNearItem {
   NearMesh* near;
   MeshGroup* groups;
   Index* triangles;
-  std::size_t room[kCursors];
+  std::size_t capacity[kCursors];
 
   __device__ void operator()(Index k) const {
     const std::int64_t c = first_cell + k;
@@ -52,27 +52,28 @@ struct FindNearItem {
     const SurfaceFrame& frame = in.frames[surface.frame];
     cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
-      const MeshSight sight{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
-      constexpr Index kKept = 24;  // long enough that few rows are searched twice
-      Index kept[kKept], found = 0;
-      sight.for_each_triangle([&](Index t) {
-        if (found < kKept) kept[found] = t;
+      const MeshSight query{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
+      constexpr Index kStored = 24;  // long enough that few rows are searched twice
+      Index near_triangles[kStored], found = 0;
+      query.for_each_triangle([&](Index t) {
+        if (found < kStored) near_triangles[found] = t;
         ++found;
       });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
-      if (g < 0 || static_cast<std::size_t>(g) >= room[kGroups]) return;
-      if (first < 0 || static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > room[kTriangles])
+      if (g < 0 || static_cast<std::size_t>(g) >= capacity[kGroups]) return;
+      if (first < 0 ||
+          static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > capacity[kTriangles])
         return;
       Index* to = triangles + first;
-      if (found <= kKept)
-        for (Index t = 0; t < found; ++t) to[t] = kept[t];
+      if (found <= kStored)
+        for (Index t = 0; t < found; ++t) to[t] = near_triangles[t];
       else
-        sight.for_each_triangle([&](Index t) { *to++ = t; });
+        query.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
-      const RowKind kind = kind_of_row(sight.mesh, triangles + first, found);
-      const Index remembered = in.remembered.contacts_with(i, cells.number);
-      groups[g] = {0, sight.entries(kind, triangles + first, found, remembered), first, found, kind};
+      const RowKind kind = kind_of_row(query.mesh, triangles + first, found);
+      const Index stored_contacts = in.remembered.contacts_with(i, cells.number);
+      groups[g] = {0, query.entries(kind, triangles + first, found, stored_contacts), first, found, kind};
     });
   }
 };
@@ -90,7 +91,7 @@ __global__ void __launch_bounds__(kFindThreads, kFindBlocks)
 struct CountItem {
   const NearMesh* near;
   const MeshGroup* groups;
-  Index* counts;  // average entries per particle
+  Index* counts;  // number of entries per particle
 
   __device__ void operator()(Index g) const { atomicAdd(&counts[near[g].particle], groups[g].entries); }
 };
@@ -122,7 +123,7 @@ struct GroupItem {
     while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
     standings[g] = kNoStanding;
-    touches[entry].triangle = -1;  // initial capacity
+    touches[entry].triangle = -1;  // no triangle to start the first query at
   }
 };
 
@@ -132,7 +133,7 @@ constexpr int kTeamLanes = 8;    // rows have about ten triangles
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // Contacts at an instant.
-struct StateLook {
+struct StateQuery {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
@@ -140,17 +141,17 @@ struct StateLook {
 // search their triangles are redistributed over its lanes, so that no warp waits for a few of its lanes:
 // smooth rows by lane groups, each of which searches one row of triangles together; the full search of other
 // rows by single lanes.
-template <bool kReaches, bool kSheets, class Look>
+template <bool kReaches, bool kSheets, class Query>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
-    touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
+    touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Query query,
                  MeshTouch* touches, Standing* standings) {
   __shared__ TouchRecords::Shared shared;
   // Groups of triangles that must be searched: those for lane groups from the front, those for single lanes
   // from the back.
-  __shared__ Index looking[kTouchThreads], of_teams, of_lanes;
+  __shared__ Index pending[kTouchThreads], for_teams, for_lanes;
   SurfaceViews now = views;
-  if (!look.open(now)) return;
-  if (threadIdx.x == 0) of_teams = of_lanes = 0;
+  if (!query.open(now)) return;
+  if (threadIdx.x == 0) for_teams = for_lanes = 0;
   __syncthreads();
   const MeshTouchItem<kReaches, kSheets> item{now, touches, standings};
   const TouchRecords records(shared);
@@ -162,34 +163,34 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     if (found == Nearest::one) entry = group.entry;
     if (found == Nearest::unclear) {
       const bool smooth = group.kind == RowKind::smooth;
-      looking[smooth ? atomicAdd(&of_teams, 1) : kTouchThreads - 1 - atomicAdd(&of_lanes, 1)] = g;
+      pending[smooth ? atomicAdd(&for_teams, 1) : kTouchThreads - 1 - atomicAdd(&for_lanes, 1)] = g;
     }
   }
   records.store(touches, entry);
   __syncthreads();
   const auto thread = static_cast<Index>(threadIdx.x);
-  if (thread < of_lanes) item.look(looking[kTouchThreads - 1 - thread], Alone{});
+  if (thread < for_lanes) item.look(pending[kTouchThreads - 1 - thread], Alone{});
   using Team = LaneTeam<kTeamLanes>;
-  for (Index k = thread / kTeamLanes; k < of_teams; k += kTouchThreads / kTeamLanes)
-    item.look(looking[k], Team{});
+  for (Index k = thread / kTeamLanes; k < for_teams; k += kTouchThreads / kTeamLanes)
+    item.look(pending[k], Team{});
 }
 
-template <bool kSheets, class Look>
-void queue_touches(Device device, Index groups, const SurfaceViews& views, const Look& look,
+template <bool kSheets, class Query>
+void queue_touches(Device device, Index groups, const SurfaceViews& views, const Query& query,
                    MeshTouch* touches, Standing* standings) {
   if (groups == 0) return;
   const unsigned blocks = blocks_for(groups, kTouchThreads);
   if (views.reach > 0)
     touch_kernel<true, kSheets>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, standings);
   else
     touch_kernel<false, kSheets>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, standings);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
 // Whether a cell of the grid overlaps the box.
-bool meets(const CellGrid& grid, const Box& box) {
+bool overlaps(const CellGrid& grid, const Box& box) {
   const auto along = [](Real origin, Real inverse_size, Index cells, Real min, Real max) {
     return max >= origin && min <= origin + static_cast<Real>(cells) / inverse_size;
   };
@@ -239,7 +240,7 @@ std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search,
     const Real skin = surfaces_.skin_of(s, search.skin);
     for_each_shift(search.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
       const Box box = box_near(places, s, shift, largest_radius, skin);
-      if (meets(search.grid.cells.space, box))
+      if (overlaps(search.grid.cells.space, box))
         near.push_back(
             {s, surfaces_.number_of(s), skin, shift, image, cells_near(search.grid.cells.own, box)});
     });
@@ -263,7 +264,7 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
   const SearchedCells searched{uploaded(cells_, near, device.stream),
                                uploaded(first_cell_, first, device.stream), static_cast<Index>(near.size())};
   cursors_.zero(device.stream);
-  const std::size_t room = std::min(near_.capacity(), groups_.capacity());
+  const std::size_t capacity = std::min(near_.capacity(), groups_.capacity());
   constexpr std::int64_t kAtOnce = 1 << 30;
   for (std::int64_t c = 0; c < first.back(); c += kAtOnce) {
     const auto cells = static_cast<Index>(std::min(kAtOnce, first.back() - c));
@@ -275,7 +276,7 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
                             near_.data(),
                             groups_.data(),
                             triangles_.data(),
-                            {room, triangles_.capacity()}};
+                            {capacity, triangles_.capacity()}};
     find_near_kernel<<<blocks_for(cells, kFindThreads), kFindThreads, 0, device.stream>>>(cells, item);
     require_cuda(cudaGetLastError(), "triangles near particles");
   }
@@ -286,7 +287,7 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
   count_ = h_counts_[kGroups];
   const auto groups = static_cast<std::size_t>(count_),
              triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
-  const bool complete = groups <= room && triangles <= triangles_.capacity();
+  const bool complete = groups <= capacity && triangles <= triangles_.capacity();
   near_.resize_with_spare(groups), groups_.resize_with_spare(groups), standings_.resize_with_spare(groups);
   triangles_.resize_with_spare(triangles);
   return complete;
@@ -313,16 +314,16 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
   if (sheets_)
-    queue_touches<true>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
+    queue_touches<true>(device, count_, views, StateQuery{}, touches_.data(), standings_.data());
   else
-    queue_touches<false>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
+    queue_touches<false>(device, count_, views, StateQuery{}, touches_.data(), standings_.data());
 }
 
-void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
+void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& query) {
   if (sheets_)
-    queue_touches<true>(device, count_, views, look, touches_.data(), standings_.data());
+    queue_touches<true>(device, count_, views, query, touches_.data(), standings_.data());
   else
-    queue_touches<false>(device, count_, views, look, touches_.data(), standings_.data());
+    queue_touches<false>(device, count_, views, query, touches_.data(), standings_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

@@ -19,7 +19,7 @@ namespace scree {
 
 // A particle near a mesh, before it has a row.
 struct NearMesh {
-  Index particle, surface;  // mesh and its number
+  Index particle, surface;  // surface: its number
   std::int8_t image;
 };
 
@@ -37,7 +37,7 @@ struct MeshSearch {
 
 // Cells whose particles may be near a mesh image, which is displaced by the shift.
 struct CellsNear {
-  Index placed, number;  // number of the surface
+  Index placed, number;  // index among the placed surfaces, number of the surface
   Real skin;             // range past touching of the search [m]
   Vec3 shift;
   std::int8_t image;
@@ -63,7 +63,7 @@ class DeviceMeshes {
   bool exist() const { return !meshes_.empty(); }
 
   // For a new list, in this order. The first finds the particles near meshes, adds the numbers of their
-  // entries to counts[particle], and waits; places: the host's poses; largest_radius: of the particles [m].
+  // entries to counts[particle], and waits; poses: those on the host; largest_radius: of the particles [m].
   // The second writes these entries to the rows, from next[particle] on, which it advances. The third, with
   // the rows sorted, finds which entries belong together.
   void find(Device device, const MeshSearch& search, const SurfacePlaces& places, Real largest_radius,
@@ -74,7 +74,7 @@ class DeviceMeshes {
   // Queues the contacts at the present instant, into the entries' arrays.
   void touch(Device device, const SurfaceViews& views);
   // The same for the explicit step that is open when the kernel runs.
-  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look);
+  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& query);
   // The same over an implicit step.
   void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                        const PlacedSurface* start_placed);
@@ -111,7 +111,7 @@ class DeviceMeshes {
   SurfaceSet surfaces_;
   bool sheets_;
   std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
-  Index count_ = 0;               // capacity for groups
+  Index count_ = 0;               // number of groups
   DeviceArray<CellsNear> cells_;
   DeviceArray<std::int64_t> first_cell_;
   DeviceArray<NearMesh> near_;

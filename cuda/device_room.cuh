@@ -26,7 +26,7 @@ struct RoomFor {
   }
   template <class U>
   void stand_in(DeviceArray<U>& other) const {
-    if (!fits(other)) throw std::logic_error("RoomFor: an array in place of a shorter one");
+    if (!fits(other)) throw std::logic_error("RoomFor: an array cannot alias a shorter one");
     array.borrow(reinterpret_cast<T*>(other.data()), size);
   }
 };
@@ -36,11 +36,11 @@ class DeviceRoom {
   // Lays the arrays out one after the other. The contents of the previous ones are lost; work already queued
   // on a stream may still use them, nothing else may. Throws `DeviceError` where memory does not suffice.
   template <class... T>
-  void lay_out(const RoomFor<T>&... rooms) {
-    const std::size_t needed = (rooms.bytes() + ...);
+  void lay_out(const RoomFor<T>&... arrays) {
+    const std::size_t needed = (arrays.bytes() + ...);
     if (needed > bytes_.size()) bytes_.resize(needed + needed / kSpare);
     std::byte* at = bytes_.data();
-    ((rooms.array.borrow(reinterpret_cast<T*>(at), rooms.size), at += rooms.bytes()), ...);
+    ((arrays.array.borrow(reinterpret_cast<T*>(at), arrays.size), at += arrays.bytes()), ...);
   }
 
   std::size_t bytes() const { return bytes_.bytes(); }

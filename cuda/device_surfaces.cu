@@ -176,15 +176,14 @@ DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t str
       placed_planes_.push_back(s), plane_numbers_.push_back(surfaces.number_of(s));
 }
 
-void DeviceSurfaces::build(Device device, const Particles& particles, const SurfacePlaces& places,
-                           Real skin) {
+void DeviceSurfaces::build(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin) {
   material_ = particles.material;
-  place(device, places);
-  find_entries(device, particles, places, skin);
+  place(device, poses);
+  find_entries(device, particles, poses, skin);
   if (any_placed()) group_by_surface(device);
 }
 
-void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& places, Real skin) {
+void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& poses, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
   Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
@@ -200,8 +199,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
   meshes_.find(
       device,
-      {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data(), p.remembered},
-      places, p.largest_radius, counts);
+      {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data(), p.remembered}, poses,
+      p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
                  "scan");
@@ -247,15 +246,15 @@ void DeviceSurfaces::group_by_surface(Device device) {
   steps_.resize(entries);
 }
 
-void DeviceSurfaces::place(Device device, const SurfacePlaces& places) {
+void DeviceSurfaces::place(Device device, const SurfacePlaces& poses) {
   if (!any_placed()) return;
   placed_.wait();  // waits for the previous copy from pinned memory
-  h_placed_.resize(places.placed.size()), places_.resize(places.placed.size());
-  std::copy(places.placed.begin(), places.placed.end(), h_placed_.data());
-  copy_async(places_.data(), h_placed_.data(), places.placed.size(), device.stream);
-  h_frames_.resize(places.frames.size()), frames_.resize(places.frames.size());
-  std::copy(places.frames.begin(), places.frames.end(), h_frames_.data());
-  copy_async(frames_.data(), h_frames_.data(), places.frames.size(), device.stream);
+  h_placed_.resize(poses.placed.size()), places_.resize(poses.placed.size());
+  std::copy(poses.placed.begin(), poses.placed.end(), h_placed_.data());
+  copy_async(places_.data(), h_placed_.data(), poses.placed.size(), device.stream);
+  h_frames_.resize(poses.frames.size()), frames_.resize(poses.frames.size());
+  std::copy(poses.frames.begin(), poses.frames.end(), h_frames_.data());
+  copy_async(frames_.data(), h_frames_.data(), poses.frames.size(), device.stream);
   placed_.record(device.stream);
 }
 
@@ -265,9 +264,10 @@ void DeviceSurfaces::keep_start(Device device) {
   copy_async(start_places_.data(), places_.data(), places_.size(), device.stream);
 }
 
-SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const {
-  return {look.position,
-          look.velocity,
+SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
+                                         const SurfaceLook& query) const {
+  return {query.position,
+          query.velocity,
           material_,
           {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
           places_.data(),
@@ -277,17 +277,17 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, co
           meshes_.touches(),
           meshes_.before(),
           box_,
-          look.history,
+          query.history,
           records_of(kernels.history()),
-          look.spin,
-          look.h,
+          query.spin,
+          query.h,
           reach_};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const SurfaceLook& look) {
+                                const SurfaceLook& query) {
   h_load_sums_.resize(h_chunks_.size());
-  const SurfaceViews views = entry_views(kernels, look);
+  const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch(device, views);
   kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
                         h_load_sums_.data());
@@ -298,45 +298,45 @@ void DeviceSurfaces::make_room_in_run(Device device, Index steps) {
 }
 
 void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels& kernels,
-                                       const OpenStepLook& look, Real h) {
+                                       const OpenStepLook& query, Real h) {
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
-  meshes_.touch_in_run(device, views, look);
-  kernels.surface_loads_in_run(device, views, look, placed_entries_, loads_[0].data());
-  works_.book_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, look.control);
+  meshes_.touch_in_run(device, views, query);
+  kernels.surface_loads_in_run(device, views, query, placed_entries_, loads_[0].data());
+  works_.book_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, query.control);
 }
 
-std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look,
+std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& query,
                                          Real h) const {
-  return key_of(entry_views(kernels, {nullptr, nullptr, nullptr, {}, h})) + key_of(look) +
+  return key_of(entry_views(kernels, {nullptr, nullptr, nullptr, {}, h})) + key_of(query) +
          key_of(meshes_.groups()) + key_of(placed_entries_);
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
-                                const SurfaceLook& look) {
+                                const SurfaceLook& query) {
   h_step_sums_.resize(h_chunks_.size());
   meshes_.make_room_over_step(entries_);
-  const SurfaceViews views = entry_views(kernels, look);
+  const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch_over_step(device, views, start.position, start_places_.data());
   kernels.surface_steps(device, views, chunk_list(), {start, start_places_.data()}, steps_.data(),
                         h_step_sums_.data());
 }
 
 void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
-                               const SurfaceLook& look) {
+                               const SurfaceLook& query) {
   rubs_.resize(static_cast<std::size_t>(entries_));
   h_step_sums_.resize(h_chunks_.size());
   meshes_.make_room_over_step(entries_);
-  const SurfaceViews views = entry_views(kernels, look);
+  const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch_over_step(device, views, start.step.position, start_places_.data());
   kernels.surface_rubs(device, views, chunk_list(), {start, start_places_.data(), rubs_.data()},
                        h_step_sums_.data());
 }
 
 const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
-                                               const SurfaceLook& look) {
+                                               const SurfaceLook& query) {
   if (!any_placed()) return nullptr;
   shown_.resize(static_cast<std::size_t>(entries_));
-  kernels.shown_surfaces(device, entry_views(kernels, look), placed_entries_, loads_[0].data(),
+  kernels.shown_surfaces(device, entry_views(kernels, query), placed_entries_, loads_[0].data(),
                          shown_.data());
   return shown_.data();
 }

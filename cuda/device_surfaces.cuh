@@ -37,7 +37,7 @@ class DeviceSurfaces {
     Index owned, active;
     const BrickGrid* grid;
     const Index* starts;  // [cells + 1] first active particle of each cell
-    Real largest_radius;  // skin [m]
+    Real largest_radius;  // [m]
     Index* numbers;       // scratch for one value per owned particle
     RememberedRows remembered;
   };
@@ -45,8 +45,8 @@ class DeviceSurfaces {
   // period: of the domain [m].
   DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream);
 
-  // Fills the rows. places: the present poses of the surfaces. Waits for the device.
-  void build(Device device, const Particles& particles, const SurfacePlaces& places, Real skin);
+  // Fills the rows. poses: the present ones of the surfaces. Waits for the device.
+  void build(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin);
   bool any_placed() const { return placed_count_ > 0; }
   bool any_at_rest() const { return any_placed() && at_rest_; }  // as `SurfaceSet::at_rest`
   Index entries() const { return entries_; }
@@ -59,27 +59,28 @@ class DeviceSurfaces {
   // Selects one of two sets of loads: that of the step, which the particles read, or of a second evaluation
   // for the bodies.
   enum class Loads { of_step, of_look };
-  // Queues the copy of the surfaces' new poses; done is recorded after it, and `places` may change only then.
-  void place(Device device, const SurfacePlaces& places);
+  // Queues the copy of the surfaces' new poses; the next call waits for it.
+  void place(Device device, const SurfacePlaces& poses);
   void keep_start(Device device);  // at the start of an implicit step
-  // Queues the contacts of particles in the state of `look` with the surfaces on bodies at their present
+  // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
   // poses, and the copy of the sums to the host.
-  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
+  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& query);
   // For static surfaces in a run of explicit steps of length h: queues the loads of the step that is open
   // when the kernels run, and the losses at triangles. key: everything that the launches depend on.
-  void make_room_in_run(Device device, Index steps);  // sizes the arrays before any of these is queued
-  void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
+  void make_room_in_run(Device device, Index steps);  // before that many steps are queued
+  void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& query,
                          Real h);
-  std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;
-  // Over an implicit step; `look` is its end, with the history that results if the step is accepted.
+  std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& query, Real h) const;
+  // Over an implicit step; `query` is its end, with the history that results if the step is accepted.
   void find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
-                  const SurfaceLook& look);
+                  const SurfaceLook& query);
   // The same for laws with friction.
   void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
-                 const SurfaceLook& look);
+                 const SurfaceLook& query);
   // Queues output values per entry from the loads of the step, which were evaluated at an instant for
-  // particles in the state of `look`.
-  const ShownContact* find_shown(Device device, const DeviceContactKernels& kernels, const SurfaceLook& look);
+  // particles in the state of `query`.
+  const ShownContact* find_shown(Device device, const DeviceContactKernels& kernels,
+                                 const SurfaceLook& query);
   // Queues the losses at triangles over a closed step from the contacts evaluated last: over the explicit
   // step of length h, over the implicit step, and the same with friction.
   void book_loads(Device device, const DeviceContactKernels& kernels, Real h);
@@ -91,7 +92,7 @@ class DeviceSurfaces {
   std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
   // Forces and losses at the triangles of meshes, from the loads of the step. For snapshots: all contacts are
-  // copied to the host. planes: the number of static planes. Waits.
+  // copied to the host. planes: on the host. Waits.
   std::vector<TriangleSums> triangle_sums(Device device, std::span<const WallPlane> planes) const;
 
   // All members of the items' views except particles and rows.
@@ -103,17 +104,17 @@ class DeviceSurfaces {
   }
 
  private:
-  void find_entries(Device device, const Particles& particles, const SurfacePlaces& places, Real skin);
+  void find_entries(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin);
   void group_by_surface(Device device);
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
-  SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const;
+  SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& query) const;
 
   PeriodicBox box_;
   Real reach_;  // `Contact::reach` [m]
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
   bool at_rest_;
-  std::vector<Index> placed_planes_, plane_numbers_;  // number of those among the placed surfaces
+  std::vector<Index> placed_planes_, plane_numbers_;  // of planes: index among the placed surfaces, number
   DeviceMeshes meshes_;
   DeviceTriangleWorks works_;
   bool moves_;  // whether particles rotate
@@ -132,7 +133,7 @@ class DeviceSurfaces {
   DeviceArray<SurfaceFrame> frames_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
-  DeviceArray<ShownContact> shown_;  // empty unless the output of surfaces was asked for
+  DeviceArray<ShownContact> shown_;  // empty unless output values were asked for
   DeviceArray<SurfaceRub> rubs_;     // empty unless implicit steps have friction
   // Written by the device for chunks with contacts; the number of contacts is written for all.
   PinnedArray<InstantSums> h_load_sums_;

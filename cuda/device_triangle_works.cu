@@ -6,20 +6,20 @@ namespace {
 
 // Integer additions give the same bits in any order of the threads.
 struct AtomicAdd {
-  __device__ static void add(std::int64_t& word, std::int64_t piece) {
-    atomicAdd(reinterpret_cast<unsigned long long*>(&word), static_cast<unsigned long long>(piece));
+  __device__ static void add(std::int64_t& limb, std::int64_t term) {
+    atomicAdd(reinterpret_cast<unsigned long long*>(&limb), static_cast<unsigned long long>(term));
   }
 };
 
 template <class Works>
-using BookItem = TriangleBookItem<Works, AtomicAdd>;
+using WorkItem = TriangleBookItem<Works, AtomicAdd>;
 
-struct BookInRunItem {
-  BookItem<ExplicitWorks> book;
+struct WorkInRunItem {
+  WorkItem<ExplicitWorks> work;
   const VerletControl* control;
 
   __device__ void operator()(Index g) const {
-    if (!control->stop) book(g);
+    if (!control->stop) work(g);
   }
 };
 
@@ -38,7 +38,7 @@ void DeviceTriangleWorks::make_room(Device device, std::int64_t contacts) {
 
 template <class Works>
 void DeviceTriangleWorks::book(Device device, const SurfaceViews& in, Index groups, const Works& works) {
-  if (exist()) for_each(device, groups, BookItem<Works>{in, table(), works, sums_.data()});
+  if (exist()) for_each(device, groups, WorkItem<Works>{in, table(), works, sums_.data()});
 }
 template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ExplicitWorks&);
 template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitWorks&);
@@ -46,7 +46,7 @@ template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, cons
 
 void DeviceTriangleWorks::book_in_run(Device device, const SurfaceViews& in, Index groups,
                                       const ExplicitWorks& works, const VerletControl* control) {
-  if (exist()) for_each(device, groups, BookInRunItem{{in, table(), works, sums_.data()}, control});
+  if (exist()) for_each(device, groups, WorkInRunItem{{in, table(), works, sums_.data()}, control});
 }
 
 void DeviceTriangleWorks::load(const std::vector<std::int64_t>& words, cudaStream_t stream) {

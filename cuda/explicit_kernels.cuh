@@ -28,19 +28,19 @@ __device__ inline void close_step(VerletControl& c) {
 
 // Whether the particle's new position is outside the domain. Far from its faces the old position alone rules
 // that out.
-__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, Vec4 new_place,
+__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_position, Vec4 new_position,
                                   Real d_squared) {
   const Real margin = r.control->half_skin;
-  if (d_squared < margin * margin && r.box.inside(xyz(old_place), margin)) return false;
-  return !r.box.inside(xyz(new_place)) && !r.drifting[i];
+  if (d_squared < margin * margin && r.box.inside(xyz(old_position), margin)) return false;
+  return !r.box.inside(xyz(new_position)) && !r.drifting[i];
 }
 
 __device__ inline bool is_outside(const MixedRequest& r, Index i, int parity, Real d_squared) {
   const MixedFraction part = r.state.fraction[i];
   const Real margin = r.control->half_skin;
   if (!part.near_side && !(d_squared > margin * margin)) return false;
-  const MixedPlace place = (parity == 0 ? r.state.place[1] : r.state.place[0])[i];
-  return !r.drifting[i] && !r.box.inside(mixed_position(r.grid, r.in.position[i], place, part));
+  const MixedPlace fixed_position = (parity == 0 ? r.state.place[1] : r.state.place[0])[i];
+  return !r.drifting[i] && !r.box.inside(mixed_position(r.grid, r.in.position[i], fixed_position, part));
 }
 
 // Entries of a row that a launch of few threads evaluates at once.
@@ -152,9 +152,9 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   largest_of_step.clear();
   const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const bool idle = i >= r.rows.end;
-  auto& room = shared[threadIdx.x / kSlice];
-  const auto views =
-      at_open_step<Laws>(warp_views(r.in, r.control->rows, r.control->margin, &room.contacts, idle), r);
+  auto& warp_shared = shared[threadIdx.x / kSlice];
+  const auto views = at_open_step<Laws>(
+      warp_views(r.in, r.control->rows, r.control->margin, &warp_shared.contacts, idle), r);
   VerletAdvanceItem<Laws, WarpRowsOf<double, Laws>> item{
       {explicit_walk(views, laws, r.state.h), r.gravity, nullptr, nullptr, nullptr}, r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
@@ -179,7 +179,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
     if (is_outside(r, i, item.forces.walk.in.position[i], position, d_squared)) r.control->outside = 1;
   }
   __syncwarp();
-  const VerletStage stage(room.stage, first, min(static_cast<Index>(warpSize), r.rows.end - first));
+  const VerletStage stage(warp_shared.stage, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
   stage.put(spin, v == 0 ? r.spin[1] : r.spin[0]);
@@ -228,11 +228,11 @@ __global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
   const bool idle = i >= r.rows.end;
   const auto views = at_open_step<Laws>(
       warp_views(r.in, r.control->rows, r.control->margin, &contacts[threadIdx.x / kSlice], idle), r);
-  const MixedPlace* place = parity == 0 ? r.state.place[0] : r.state.place[1];
+  const MixedPlace* fixed_position = parity == 0 ? r.state.place[0] : r.state.place[1];
   const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
   const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
   const MixedRubbingItem<Laws, WarpRowsOf<float, Laws>> item{
-      {views, laws, {{place, motion, r.state.fraction, r.grid}, spin, r.h}},
+      {views, laws, {{fixed_position, motion, r.state.fraction, r.grid}, spin, r.h}},
       r.gravity,
       r.state,
       r.orientation,

@@ -26,7 +26,7 @@ __global__ void for_each_kernel(Index n, const Item item) {
 // Throws DeviceError if the launch fails.
 template <class Item>
 void for_each(Device device, Index n, const Item& item) {
-  static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");
+  static_assert(std::is_trivially_copyable_v<Item>, "an item is copied to the device as bytes");
   if (n <= 0) return;
   for_each_kernel<<<blocks_for(n), launches().block, 0, device.stream>>>(n, item);
   require_cuda(cudaGetLastError(), "for_each");
@@ -79,7 +79,7 @@ __global__ void max_over_kernel(Index n, const Item item, Real* d_largest) {
 // reading it here would wait for the stream.
 template <class Item>
 void max_over(Device device, Index n, const Item& item, Real* d_largest) {
-  static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");
+  static_assert(std::is_trivially_copyable_v<Item>, "an item is copied to the device as bytes");
   static_assert(sizeof(Real) == sizeof(unsigned long long));
   require_cuda(cudaMemsetAsync(d_largest, 0, sizeof(Real), device.stream), "max_over");
   if (n <= 0) return;

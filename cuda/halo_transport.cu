@@ -45,7 +45,7 @@ class StagedTransport : public CudaAwareTransport {
     wait_for(stream);  // before the buffers grow: earlier copies from them may be under way
     std::vector<HaloMessage> staged;
     std::size_t bytes = 0;
-    const auto room = [&](Index entries, std::size_t element) {
+    const auto reserve = [&](Index entries, std::size_t element) {
       constexpr std::size_t kAlignment = 64;
       const std::size_t at = bytes;
       bytes += (static_cast<std::size_t>(entries) * element + kAlignment - 1) / kAlignment * kAlignment;
@@ -53,7 +53,7 @@ class StagedTransport : public CudaAwareTransport {
     };
     std::vector<std::size_t> packed, ghosts;
     for (const HaloMessage& m : messages)
-      packed.push_back(room(plan.sent(), m.element)), ghosts.push_back(room(plan.ghosts(), m.element));
+      packed.push_back(reserve(plan.sent(), m.element)), ghosts.push_back(reserve(plan.ghosts(), m.element));
     buffer_.resize(bytes);
     for (std::size_t k = 0; k < messages.size(); ++k) {
       const HaloMessage& m = messages[k];
@@ -145,7 +145,7 @@ std::string cuda_aware_trouble(const Ranks& ranks) {
 
 }  // namespace
 
-std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted) {
+std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport transport) {
   const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble(ranks);
   const auto refuse = [&](Transport refused, const std::string& why) {
     std::string allowed = "\"auto\"";
@@ -154,14 +154,16 @@ std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport
     throw TransportError("parallel.transport = \"" + word_of(refused) + "\": " + why +
                          "; allowed here: " + allowed + ", \"staged\"");
   };
-  if (wanted == Transport::automatic)
-    wanted = no_mpi.empty() ? Transport::cuda_aware : no_nccl.empty() ? Transport::nccl : Transport::staged;
-  if (wanted == Transport::cuda_aware) {
-    if (!no_mpi.empty()) refuse(wanted, no_mpi);
+  if (transport == Transport::automatic)
+    transport = no_mpi.empty()    ? Transport::cuda_aware
+                : no_nccl.empty() ? Transport::nccl
+                                  : Transport::staged;
+  if (transport == Transport::cuda_aware) {
+    if (!no_mpi.empty()) refuse(transport, no_mpi);
     return std::make_unique<CudaAwareTransport>(ranks);
   }
-  if (wanted == Transport::nccl) {
-    if (!no_nccl.empty()) refuse(wanted, no_nccl);
+  if (transport == Transport::nccl) {
+    if (!no_nccl.empty()) refuse(transport, no_nccl);
 #ifdef SCREE_NCCL
     return std::make_unique<NcclTransport>(ranks);
 #endif

@@ -29,6 +29,6 @@ class HaloTransport {
 // The transport that the deck names or, for automatic, the first that works here: MPI if it takes device
 // memory, NCCL if the program was built with it and no two ranks share a GPU, else copies in host memory.
 // Collective. Throws `TransportError` where the named one does not work here.
-std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted);
+std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport transport);
 
 }  // namespace scree

@@ -9,51 +9,51 @@ namespace scree {
 
 // Contacts per row, for the rows from `first` on.
 struct CountClosedItem {
-  NamedRows names;
+  NamedRows keyed;
   Index first;
   Index* counts;
   __device__ void operator()(Index k) const {
     Index count = 0;
-    names.visit(first + k,
-                [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
-    names.visit_meshes(first + k, [&](Index entry) { count += names.is_closed(entry); });
+    keyed.visit(first + k,
+                [&](const Vec4* record, const auto&) { count += record->w == keyed.history.step; });
+    keyed.visit_meshes(first + k, [&](Index entry) { count += keyed.is_closed(entry); });
     counts[k] = count;
   }
 };
 
 struct KeepItem {
-  NamedRows names;
+  NamedRows keyed;
   Index first;
-  KeptViews kept;
+  KeptViews packed;
   __device__ void operator()(Index k) const {
     const Index i = first + k;
-    Index at = kept.offsets[k];
+    Index at = packed.offsets[k];
     const auto add = [&](const Vec4* record, std::int64_t key) {
-      kept.key(at) = key;
-      Real* const to = kept.values(at);
-      for (int n = 0; n < names.numbers; ++n) to[n] = number_of(record, n);
+      packed.key(at) = key;
+      Real* const to = packed.values(at);
+      for (int n = 0; n < keyed.numbers; ++n) to[n] = number_of(record, n);
       ++at;
     };
-    names.visit(i, [&](const Vec4* record, const auto& key) {
-      if (record->w == names.history.step) add(record, key());
+    keyed.visit(i, [&](const Vec4* record, const auto& key) {
+      if (record->w == keyed.history.step) add(record, key());
     });
-    const Vec3 p = xyz(names.position[i]);
-    names.visit_meshes(i, [&](Index entry) {
-      if (!names.is_closed(entry)) return;
-      const GlobalId name =
-          names.beside_mesh(entry, p).name(names.surfaces.surfaces[entry], names.feature(entry));
-      add(names.record_of(entry), names.mesh_key(entry, p, name));
+    const Vec3 p = xyz(keyed.position[i]);
+    keyed.visit_meshes(i, [&](Index entry) {
+      if (!keyed.is_closed(entry)) return;
+      const GlobalId contact_id =
+          keyed.beside_mesh(entry, p).name(keyed.surfaces.surfaces[entry], keyed.feature(entry));
+      add(keyed.record_of(entry), keyed.mesh_key(entry, p, contact_id));
     });
-    order(kept.offsets[k], at);
+    order(packed.offsets[k], at);
   }
 
  private:
   // Contacts with meshes may be unsorted: the list sorts them by distance, not by feature.
   __device__ void order(Index first, Index end) const {
     for (Index k = first + 1; k < end; ++k)
-      for (Index at = k; at > first && kept.key(at - 1) > kept.key(at); --at) {
-        exchange(kept.key(at - 1), kept.key(at));
-        for (int v = 0; v < names.numbers; ++v) exchange(kept.values(at - 1)[v], kept.values(at)[v]);
+      for (Index at = k; at > first && packed.key(at - 1) > packed.key(at); --at) {
+        exchange(packed.key(at - 1), packed.key(at));
+        for (int v = 0; v < keyed.numbers; ++v) exchange(packed.values(at - 1)[v], packed.values(at)[v]);
       }
   }
   template <class T>
@@ -65,46 +65,46 @@ struct KeepItem {
 
 // Both the row and the packed history are sorted by key: one merge pass over both, then the meshes.
 struct TakeItem {
-  NamedRows names;
-  KeptViews kept;
+  NamedRows keyed;
+  KeptViews packed;
   const Index* row_of;
   __device__ void operator()(Index i) const {
-    Index at = kept.offsets[row_of[i]];
-    const Index end = kept.offsets[row_of[i] + 1];
-    names.visit(i, [&](Vec4* record, const auto& key) {
-      for (int r = 0; r < names.records; ++r) record[r] = {};
+    Index at = packed.offsets[row_of[i]];
+    const Index end = packed.offsets[row_of[i] + 1];
+    keyed.visit(i, [&](Vec4* record, const auto& key) {
+      for (int r = 0; r < keyed.records; ++r) record[r] = {};
       if (at == end) return;
-      const std::int64_t wanted = key();
-      while (at < end && kept.key(at) < wanted) ++at;
-      if (at < end && kept.key(at) == wanted) put(record, at);
+      const std::int64_t sought = key();
+      while (at < end && packed.key(at) < sought) ++at;
+      if (at < end && packed.key(at) == sought) put(record, at);
     });
-    names.visit_meshes(i, [&](Index entry) {
-      if (entry == names.surfaces.offsets[i] || !names.alike(entry - 1, entry)) take_mesh(i, entry);
+    keyed.visit_meshes(i, [&](Index entry) {
+      if (entry == keyed.surfaces.offsets[i] || !keyed.alike(entry - 1, entry)) take_mesh(i, entry);
     });
   }
 
  private:
   __device__ void put(Vec4* record, Index contact) const {
-    const Real* const from = kept.values(contact);
-    for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
-    if (names.records > 0) record->w = names.history.step;
+    const Real* const from = packed.values(contact);
+    for (int k = 0; k < keyed.numbers; ++k) number_of(record, k) = from[k];
+    if (keyed.records > 0) record->w = keyed.history.step;
   }
   // Copies the packed contacts of the particle with a mesh to the entries of their group, of which `entry` is
   // the first.
   __device__ void take_mesh(Index i, Index entry) const {
-    const Vec3 p = xyz(names.position[i]);
-    const BesideMesh beside = names.beside_mesh(entry, p);
-    const std::int64_t wanted = names.mesh_key(entry, p, surface_id(names.surfaces.surfaces[entry]));
+    const Vec3 p = xyz(keyed.position[i]);
+    const BesideMesh in_mesh = keyed.beside_mesh(entry, p);
+    const std::int64_t sought = keyed.mesh_key(entry, p, surface_id(keyed.surfaces.surfaces[entry]));
     Index slot = entry;
-    for (; slot < names.surfaces.offsets[i + 1] && names.alike(entry, slot); ++slot)
-      for (int r = 0; r < names.records; ++r) names.record_of(slot)[r] = {};
+    for (; slot < keyed.surfaces.offsets[i + 1] && keyed.alike(entry, slot); ++slot)
+      for (int r = 0; r < keyed.records; ++r) keyed.record_of(slot)[r] = {};
     const Index last = slot;
     slot = entry;
-    for (Index k = kept.offsets[row_of[i]]; k < kept.offsets[row_of[i] + 1] && slot < last; ++k) {
-      const std::int64_t key = kept.key(k);
-      if (!is_surface(key) || without_feature(key) != wanted) continue;
-      names.feature(slot) = beside.remembered(key);
-      put(names.record_of(slot++), k);
+    for (Index k = packed.offsets[row_of[i]]; k < packed.offsets[row_of[i] + 1] && slot < last; ++k) {
+      const std::int64_t key = packed.key(k);
+      if (!is_surface(key) || without_feature(key) != sought) continue;
+      keyed.feature(slot) = in_mesh.remembered(key);
+      put(keyed.record_of(slot++), k);
     }
   }
 };

@@ -44,7 +44,7 @@ struct KeptViews {
 
 // The packed row of a particle is row_of[particle]; null where contacts have no history.
 struct RememberedRows {
-  KeptViews kept{};
+  KeptViews packed{};
   const Index* row_of = nullptr;
 
   // Number of contacts of the particle with a surface of that number.
@@ -52,8 +52,8 @@ struct RememberedRows {
     if (row_of == nullptr) return 0;
     const Index row = row_of[particle];
     Index count = 0;
-    for (Index k = kept.offsets[row]; k < kept.offsets[row + 1]; ++k)
-      count += is_surface(kept.key(k)) && surface_of(kept.key(k)) == surface;
+    for (Index k = packed.offsets[row]; k < packed.offsets[row + 1]; ++k)
+      count += is_surface(packed.key(k)) && surface_of(packed.key(k)) == surface;
     return count;
   }
 };

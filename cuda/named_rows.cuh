@@ -43,8 +43,8 @@ struct NamedRows {
   }
 
   __device__ Vec4* record_of(Index entry) const {
-    const bool at_rest = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
-    return (at_rest ? history.ground : history.bodies) + std::int64_t{entry} * records;
+    const bool is_static = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
+    return (is_static ? history.ground : history.bodies) + std::int64_t{entry} * records;
   }
   // entry: with a mesh.
   __device__ bool is_closed(Index entry) const {
@@ -63,11 +63,11 @@ struct NamedRows {
     if (placed(entry).kind == SurfaceKind::plane) return row_key(surface_id(s));  // a plane has no images
     return row_key(surface_id(s), box.image_beside(p, placed(entry).point, surfaces.images[entry]));
   }
-  __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId name) const {
+  __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId contact_id) const {
     const PlacedSurface& surface = placed(entry);
     const SurfaceFrame& frame = surfaces.frames[surface.frame];
     const PeriodicBox of = box.without(frame.spanned);
-    return row_key(name, of.image_beside(p, surface.point + frame.to_middle, surfaces.images[entry]));
+    return row_key(contact_id, of.image_beside(p, surface.point + frame.to_middle, surfaces.images[entry]));
   }
   __device__ BesideMesh beside_mesh(Index entry, Vec3 p) const {
     const SurfaceFrame& frame = surfaces.frames[placed(entry).frame];

@@ -7,9 +7,9 @@ namespace scree {
 namespace {
 
 // Scratch memory for the reordering of arrays that have no second one: the memory of the second arrays.
-class WaitingRoom {
+class ReorderScratch {
  public:
-  WaitingRoom(SecondArrays& second, std::size_t n) : second_(second), n_(n) { clear(); }
+  ReorderScratch(SecondArrays& second, std::size_t n) : second_(second), n_(n) { clear(); }
 
   void clear() {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -21,12 +21,12 @@ class WaitingRoom {
   template <class T>
   T* take() {
     static_assert(sizeof(T) <= sizeof(Vec4));
-    for (Free& room : free_) {
-      if (room.bytes < n_ * sizeof(T)) continue;
-      auto* const at = reinterpret_cast<T*>(room.at);
+    for (Free& scratch : free_) {
+      if (scratch.bytes < n_ * sizeof(T)) continue;
+      auto* const at = reinterpret_cast<T*>(scratch.at);
       const std::size_t taken =
-          std::min(room.bytes, SecondArrays::whole(n_ * sizeof(T)));  // alignment of the next array
-      room.at += taken, room.bytes -= taken;
+          std::min(scratch.bytes, SecondArrays::whole(n_ * sizeof(T)));  // alignment of the next array
+      scratch.at += taken, scratch.bytes -= taken;
       return at;
     }
     return nullptr;
@@ -44,15 +44,15 @@ class WaitingRoom {
 
 }  // namespace
 
-MixedViews MixedArrays::views(SecondArrays& room) {
+MixedViews MixedArrays::views(SecondArrays& scratch) {
   MixedViews views{};
   const auto halve = [](DeviceArray<Vec4>& whole, auto*(&halves)[2]) {
     static_assert(2 * sizeof(*halves[0]) == sizeof(Vec4));
     halves[0] = reinterpret_cast<std::remove_reference_t<decltype(halves[0])>>(whole.data());
     halves[1] = halves[0] + whole.size();
   };
-  halve(room.position, views.place), halve(room.velocity, views.motion);
-  halve(room.angular_velocity, views.spin);
+  halve(scratch.position, views.place), halve(scratch.velocity, views.motion);
+  halve(scratch.angular_velocity, views.spin);
   views.fraction = fraction.data(), views.rest = rest.data(), views.spin_rest = spin_rest.data();
   return views;
 }
@@ -67,20 +67,20 @@ void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Ind
   now.angular_velocity.swap(second.angular_velocity);
 
   const ParticleViews state = views_of(now);
-  WaitingRoom room(second, static_cast<std::size_t>(n));
-  ParticleViews waiting;
+  ReorderScratch scratch(second, static_cast<std::size_t>(n));
+  ParticleViews stored;
   const auto bring_back = [&] {
-    for_each(device, n, ReorderItem{state, waiting, order});
-    for_each(device, n, ReorderItem{waiting, state, nullptr});
-    waiting = {}, room.clear();
+    for_each(device, n, ReorderItem{state, stored, order});
+    for_each(device, n, ReorderItem{stored, state, nullptr});
+    stored = {}, scratch.clear();
   };
   for_each_array<kNames | kGhostCopies | kOwnedArrays>(
       FieldsThere(now),
-      [&](auto*& waits) {
-        using T = std::remove_reference_t<decltype(*waits)>;
-        if ((waits = room.take<T>()) == nullptr) bring_back(), waits = room.take<T>();
+      [&](auto*& array) {
+        using T = std::remove_reference_t<decltype(*array)>;
+        if ((array = scratch.take<T>()) == nullptr) bring_back(), array = scratch.take<T>();
       },
-      waiting);
+      stored);
   bring_back();
 }
 

@@ -69,7 +69,7 @@ struct MixedArrays {
   DeviceArray<MixedRest> rest;
   DeviceArray<MixedSpinRest> spin_rest;
 
-  MixedViews views(SecondArrays& room);
+  MixedViews views(SecondArrays& second);
 };
 
 // to[i] = from[order[i]] for the arrays that both have; without an order to[i] = from[i].

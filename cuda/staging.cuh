@@ -22,7 +22,7 @@ class WarpStage {
   __device__ WarpStage(Shared& shared, Index first, Index n)
       : WarpStage(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes, first, n) {}
   // `shared`: kBytes per lane for this warp alone.
-  __device__ WarpStage(unsigned char* room, Index first, Index n) : bytes_(room), first_(first), n_(n) {}
+  __device__ WarpStage(unsigned char* memory, Index first, Index n) : bytes_(memory), first_(first), n_(n) {}
 
   // Starts to load the warp's elements of the array, and returns a pointer that replaces the array: an item
   // that accesses only its own element may use it between await and store.
@@ -59,7 +59,7 @@ class WarpStage {
 
  private:
   template <class T>
-  static constexpr Index kUnits = sizeof(T) / sizeof(double);  // copied by the lanes side by side
+  static constexpr Index kUnits = sizeof(T) / sizeof(double);  // units that the lanes copy side by side
 
   __device__ static Index lane() { return static_cast<Index>(threadIdx.x % warpSize); }
   template <class T>
@@ -89,10 +89,10 @@ class WarpRecords {
     constexpr Index kUnits = sizeof(T) / sizeof(double), kLanes = kUnits <= 8 ? 8 : kUnits <= 16 ? 16 : 32;
     __syncwarp();
     for (Index first = 0; first < warpSize; first += warpSize / kLanes) {
-      const Index owner = first + lane() / kLanes, place = __shfl_sync(~0u, at, owner);
-      if (place < 0) continue;
+      const Index owner = first + lane() / kLanes, element = __shfl_sync(~0u, at, owner);
+      if (element < 0) continue;
       const auto* from = reinterpret_cast<const double*>(records_ + owner);
-      auto* out = reinterpret_cast<double*>(to + place);
+      auto* out = reinterpret_cast<double*>(to + element);
       for (Index unit = lane() % kLanes; unit < kUnits; unit += kLanes) out[unit] = from[unit];
     }
     __syncwarp();

@@ -13,17 +13,17 @@ namespace {
 constexpr unsigned kLeastBlocks = 8;
 
 // Whether a block of particles has neither ghosts nor placed surfaces near it.
-struct EarlyItem {
+struct InteriorItem {
   SurfaceList surfaces;
   Index owned, interior;
-  unsigned char* early;
+  unsigned char* is_interior;
 
   __device__ void operator()(Index block) const {
     const Index first = block * kStepBlock, end = min(first + kStepBlock, owned);
-    bool meets = end > interior;
-    for (Index k = surfaces.offsets[first]; k < surfaces.offsets[end] && !meets; ++k)
-      meets = !surfaces.numbers.at_rest(surfaces.surfaces[k]);
-    early[block] = !meets;
+    bool waits = end > interior;
+    for (Index k = surfaces.offsets[first]; k < surfaces.offsets[end] && !waits; ++k)
+      waits = !surfaces.numbers.at_rest(surfaces.surfaces[k]);
+    is_interior[block] = !waits;
   }
 };
 
@@ -36,7 +36,8 @@ void StepParts::find(Device device, const DeviceSurfaces& surfaces, Index owned,
   if (!surfaces.any_placed() || owned == 0) return;
   const auto blocks = static_cast<Index>(all_);
   blocks_.resize(all_), early_flags_.resize(all_);
-  for_each(device, blocks, EarlyItem{surfaces.list(), owned, alone ? owned : interior, early_flags_.data()});
+  for_each(device, blocks,
+           InteriorItem{surfaces.list(), owned, alone ? owned : interior, early_flags_.data()});
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
         cub::DevicePartition::Flagged(at, bytes, thrust::counting_iterator<Index>(0), early_flags_.data(),

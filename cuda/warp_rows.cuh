@@ -53,7 +53,7 @@ struct WarpRows {
     const bool whole = use != RowUse::pruned;
     const Index* const row = (whole ? rows.rows.neighbors : rows.neighbors) + start;
     const Index count = idle ? 0 : (whole ? rows.rows.counts : rows.counts)[i];
-    Index next = 0, kept = 0, earlier = 0;
+    Index next = 0, pruned_count = 0, earlier = 0;
     do {
       Index found = 0;
       // A few entries at once while the next are loaded: independent loads hide latency.
@@ -80,7 +80,8 @@ struct WarpRows {
         if constexpr (kPrunes)
           if (use == RowUse::prune)
             for (Index k = 0; k < kAtOnce && next + k < count; ++k)
-              if (test.near(at.j[k], rows.margin)) keep(start + kept++ * kSlice, at.j[k], next + k);
+              if (test.near(at.j[k], rows.margin))
+                store_pruned(start + pruned_count++ * kSlice, at.j[k], next + k);
         for (Index k = 0; k < kAtOnce; ++k) {
           if (!touches[k]) continue;
           shared->neighbor[lane][found] = at.j[k];
@@ -93,7 +94,7 @@ struct WarpRows {
       share({found, earlier}, i - lane, number, evaluate);
       earlier += found;
     } while (__any_sync(~0u, next < count));
-    if (use == RowUse::prune && !idle) rows.counts[i] = kept;
+    if (use == RowUse::prune && !idle) rows.counts[i] = pruned_count;
     sum = reinterpret_cast<const Sum&>(shared->sum[lane]);
     return earlier;
   }
@@ -106,8 +107,8 @@ struct WarpRows {
     static_assert(sizeof(Result) == kWords * sizeof(Word));
     reinterpret_cast<Result&>(words) = result;
   }
-  __device__ void keep(std::int64_t slot, Index j, Index place) const {
-    rows.places[slot] = static_cast<RowPlace>(place), rows.neighbors[slot] = j;
+  __device__ void store_pruned(std::int64_t slot, Index j, Index row_index) const {
+    rows.places[slot] = static_cast<RowPlace>(row_index), rows.neighbors[slot] = j;
   }
 
   // Contacts that a lane has found in this round, and in earlier ones.
@@ -128,19 +129,19 @@ struct WarpRows {
     __syncwarp();
 #pragma unroll 1
     for (Index begin = 0; begin < all; begin += kSlice) {
-      const Index turn = begin + lane;
+      const Index index = begin + lane;
       int owner = 0;  // the last lane whose first contact is not after this one
       for (int step = kSlice / 2; step > 0; step /= 2)
-        if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
-      const Index k = turn - __shfl_sync(~0u, before, owner);
+        if (__shfl_sync(~0u, before, owner + step) <= index) owner += step;
+      const Index k = index - __shfl_sync(~0u, before, owner);
       const std::int64_t number_of_first = __shfl_sync(~0u, first_entry, owner);
       const auto slot = [&] { return number_of_first + shared->place[owner][k]; };
       if constexpr (std::is_invocable_v<const Evaluate&, Index, Index, std::int64_t, Index>) {
         const Index among = k + __shfl_sync(~0u, found.earlier, owner);
-        if (turn < all)
+        if (index < all)
           put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot(), among));
       } else {
-        if (turn < all)
+        if (index < all)
           put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot()));
       }
       __syncwarp();
@@ -157,15 +158,15 @@ struct WarpRows {
                          Index after) const {
 #pragma unroll 1
     for (int next = 0; next < owners; next += kSlice / kLanes) {
-      const int owner = first_owner + next + lane_of_warp() / kLanes, word = lane_of_warp() % kLanes;
+      const int owner = first_owner + next + lane_of_warp() / kLanes, component = lane_of_warp() % kLanes;
       const Index from = max(__shfl_sync(~0u, before, owner), begin),
                   to = min(__shfl_sync(~0u, after, owner), end);
-      if (from >= to || word >= kWords) continue;
-      double sum = shared->sum[owner][word];
-      const Word* result = shared->result[from - begin] + word;
+      if (from >= to || component >= kWords) continue;
+      double sum = shared->sum[owner][component];
+      const Word* result = shared->result[from - begin] + component;
 #pragma unroll 2
       for (Index left = to - from; left > 0; --left, result += Contacts::kStride) sum += *result;
-      shared->sum[owner][word] = sum;
+      shared->sum[owner][component] = sum;
     }
   }
 };

@@ -44,14 +44,14 @@ struct StepRub {
 };
 
 // Fraction of the step in contact, from linear interpolation of the overlap.
-SCREE_HD Real closed_share(const ContactStep& c) {
+SCREE_HD Real closed_fraction(const ContactStep& c) {
   if (c.change.kind != Changeover::Kind::none) return c.change.share;
   if (c.overlap1 > 0) return c.overlap0 > 0 ? 1 : c.overlap1 / (c.overlap1 - c.overlap0);
   return c.overlap0 > 0 ? c.overlap0 / (c.overlap0 - c.overlap1) : 0;
 }
 
 // Derivative of `closed_share()` with respect to the overlap at the end [1/m].
-SCREE_HD Real closed_share_slope(const ContactStep& c) {
+SCREE_HD Real closed_fraction_slope(const ContactStep& c) {
   if ((c.overlap0 > 0) == (c.overlap1 > 0)) return 0;
   const Real change = c.overlap1 - c.overlap0;
   return std::abs(c.overlap0) / (change * change);
@@ -88,7 +88,7 @@ template <class Law>
 SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   StepRub out{};
   const bool frozen = c.frozen_limit >= 0;
-  const Real share = frozen ? 1 : closed_share(c.step);
+  const Real share = frozen ? 1 : closed_fraction(c.step);
   const Real mean_force = Real(0.5) * (c.start_force + c.step_force);
   const bool starts = c.step.acts_at_start(), ends = c.step.acts_at_end();
   SpringSlider first{};
@@ -111,7 +111,8 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.limit = share * slider.limit;
   out.step = (2 * share) * over.mean - turned_across(c.motion, out.start);
   out.stiffness = 2 * share * share * over.stiffness;
-  if (!frozen) out.growth = (2 * closed_share_slope(c.step)) * share_derivative(over, share * c.motion.slip);
+  if (!frozen)
+    out.growth = (2 * closed_fraction_slope(c.step)) * share_derivative(over, share * c.motion.slip);
   if (over.grip > 0)
     out.direction = over.direction,
     out.grip = frozen ? 0 : law.tangential.friction * reciprocal(c.motion.leverage);

@@ -54,8 +54,8 @@ constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPer
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
 constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
                  kRowOfTriangle = sizeof(Index);
-constexpr double kSpareRoom = 1.125;  // capacity over size of arrays that may grow with every list
-constexpr double kFilledSlots = 0.8;  // of a list of a settled bed; only these have a contact history
+constexpr double kSpareCapacity = 1.125;  // capacity over size of arrays that may grow with every list
+constexpr double kFilledSlots = 0.8;      // of a list of a settled bed; only these have a contact history
 constexpr double kCellBytes = sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last cell blocks
 
@@ -152,9 +152,9 @@ Sizes sizes_of(const Model& model) {
 // Scratch memory of explicit steps beside the list: `DeviceRoom`.
 double bytes_of_steps(const Model& model, const Sizes& n) {
   // Row indices of the inner pair list; they alias the forces if they fit.
-  const double places = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
+  const double row_indices = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
   double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
-  if (places > n.particles * sizeof(Vec3)) of_steps += places;
+  if (row_indices > n.particles * sizeof(Vec3)) of_steps += row_indices;
   // Where particles rotate, these alias arrays of the instant.
   if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() && !model.attracts())
     of_steps += n.particles * kMixedArrays;
@@ -173,9 +173,9 @@ double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
              at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
   }
   const double second = n.items * (kSecondMotion + (model.rotates() ? kSpinFields : 0)),
-               kept = std::max(0.0, n.particles * bytes_remembered(numbers, 0) - second);
-  if (!explicit_steps) return bytes + kept + n.particles * sizeof(Vec3);
-  return bytes + n.particles * sizeof(Index) + std::max(kept, bytes_of_steps(model, n));
+               packed = std::max(0.0, n.particles * bytes_remembered(numbers, 0) - second);
+  if (!explicit_steps) return bytes + packed + n.particles * sizeof(Vec3);
+  return bytes + n.particles * sizeof(Index) + std::max(packed, bytes_of_steps(model, n));
 }
 
 double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
@@ -197,11 +197,12 @@ double surface_bytes(const Model& model, const Sizes& n) {
   if (implicit && model.rotates()) per_entry += kRubbingArraysPerEntry;
   if (model.output.contacts) per_entry += sizeof(ShownContact);
   if (const int numbers = kept_numbers(model, history_of(model.contact)); numbers != 0)
-    per_entry += kSpareRoom * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
+    per_entry += kSpareCapacity * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
   const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
-  if (!model.meshes.empty()) per_entry += kSpareRoom * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
+  if (!model.meshes.empty())
+    per_entry += kSpareCapacity * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
   return bytes + per_entry * n.entries +
-         kSpareRoom * (kGroupArrays * n.groups + kRowOfTriangle * n.triangles);
+         kSpareCapacity * (kGroupArrays * n.groups + kRowOfTriangle * n.triangles);
 }
 
 }  // namespace
@@ -210,9 +211,9 @@ double surface_bytes(const Model& model, const Sizes& n) {
 double slots_per_particle(const Model& model) {
   constexpr double kDiscs = 8, kSpheres = 9.5, kPerDiameter = 15, kMost = 16;
   if (model.space.dimension == 2) return kDiscs;
-  const Real seen = model.contact.skin + model.contact.reach,
+  const Real range = model.contact.skin + model.contact.reach,
              diameter = 2 * model.particles.totals.largest_radius;
-  return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * seen / diameter) : kSpheres;
+  return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * range / diameter) : kSpheres;
 }
 
 std::size_t device_memory_of_meshes(const Model& model) {
@@ -239,10 +240,10 @@ std::size_t device_memory(const Model& model) {
 
 // The ranks of a GPU may read its free memory at different times: the smallest value counts.
 DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own) {
-  const DeviceClaim& mine = claims[static_cast<std::size_t>(own)];
-  DeviceLoad load{.free = mine.free};
+  const DeviceClaim& own_claim = claims[static_cast<std::size_t>(own)];
+  DeviceLoad load{.free = own_claim.free};
   for (const DeviceClaim& claim : claims) {
-    if (claim.device != mine.device) continue;
+    if (claim.device != own_claim.device) continue;
     load.needed += claim.needed, load.free = std::min(load.free, claim.free), ++load.ranks;
   }
   return load;
@@ -251,10 +252,10 @@ DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own) {
 std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name) {
   const DeviceLoad load = load_of_device(claims, own);
   if (load.needed <= load.free) return "";
-  const std::string who = load.ranks == 1
-                              ? "the model needs about "
-                              : fmt::format("{} ranks share a GPU and together need about ", load.ranks);
-  return fmt::format("{}{} MB of device memory, {} MB are free on {}", who, load.needed / 1000000,
+  const std::string subject = load.ranks == 1
+                                  ? "the model needs about "
+                                  : fmt::format("{} ranks share a GPU and together need about ", load.ranks);
+  return fmt::format("{}{} MB of device memory, {} MB are free on {}", subject, load.needed / 1000000,
                      load.free / 1000000, name);
 }
 

@@ -14,7 +14,7 @@ namespace scree {
 // Error text before and after the id of a particle that wrap_if_sound() rejects.
 inline constexpr const char* kUnsoundPosition[] = {
     "stage sort_cells: the position of particle ",
-    " is not finite, or it crossed the whole periodic space since the last list"};
+    " is not finite, or it crossed the whole periodic domain since the last list"};
 
 // Error texts of countable() for a rank's own particles, and for these with ghosts.
 inline constexpr const char* kTooManyParticles = "stage migrate: more particles";

@@ -152,9 +152,9 @@ struct OverStep {
   SCREE_HD ContactPath pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
     const Index i = self.i;
     const Vec4 q = in.position[j], u = in.velocity[i], w = in.velocity[j];
-    const Real reach = self.p.w + q.w;
+    const Real radius_sum = self.p.w + q.w;
     const Vec3 r = xyz(self.p) - xyz(q), r0 = xyz(self.p0) - xyz(start.position[j]);
-    return path(sphere_pair(r, reach), xyz(u) - xyz(w), sphere_pair(r0, reach),
+    return path(sphere_pair(r, radius_sum), xyz(u) - xyz(w), sphere_pair(r0, radius_sum),
                 xyz(start.velocity[i]) - xyz(start.velocity[j]), r - r0, {self.p.w, q.w, u.w, w.w});
   }
   template <class Rows>

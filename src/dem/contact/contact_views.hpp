@@ -98,8 +98,8 @@ SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& 
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
   const Vec3 r = xyz(p) - xyz(q);
-  const Real reach = p.w + q.w;
-  return dot(r, r) < reach * reach;
+  const Real distance = p.w + q.w;
+  return dot(r, r) < distance * distance;
 }
 
 // Tests whether other items touch the one at p, or come within a margin of touch [m].
@@ -110,8 +110,8 @@ struct TouchTest {
   SCREE_HD bool near(Index j, Real margin) const {
     const Vec4 q = position[j];
     const Vec3 r = xyz(p) - xyz(q);
-    const Real reach = p.w + q.w + margin;
-    return dot(r, r) < reach * reach;
+    const Real distance = p.w + q.w + margin;
+    return dot(r, r) < distance * distance;
   }
 };
 

@@ -27,14 +27,14 @@ struct ContactWalk {
 
   template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
-    walk<kAccepts>(self, reaching(look.test(in, self)), of, visit);
+    walk<kAccepts>(self, in_range(look.test(in, self)), of, visit);
   }
   // Adds the contacts with neighbours to sum; `of` returns its Result for each.
   SCREE_HD_CALLER
   template <bool kAccepts, class Of, class Sum>
   SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
     if constexpr (kShared<Rows>) {
-      in.rows.sum_contacts(self.i, reaching(look.test(in, self)), SharedContact<kAccepts, Of>{*this, of},
+      in.rows.sum_contacts(self.i, in_range(look.test(in, self)), SharedContact<kAccepts, Of>{*this, of},
                            sum);
     } else {
       neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
@@ -56,7 +56,7 @@ struct ContactWalk {
   // Visits the neighbours for which only(j) is true.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
-    const auto test = reaching(look.test(in, self));
+    const auto test = in_range(look.test(in, self));
     walk<false>(
         self, [&](Index j) { return only(j) && test(j); }, of, visit);
   }
@@ -73,7 +73,7 @@ struct ContactWalk {
       if constexpr (requires { look.at_entry(pair, entry); }) look.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
-      if constexpr (sees_history<Of, decltype(pair)>()) {
+      if constexpr (takes_history<Of, decltype(pair)>()) {
         const auto history = in.history.template read<Law>(in.history.ground, entry);
         const bool closed = found_closed(law, pair, history);
         if (!closed && !found_breaking(pair, history)) continue;
@@ -110,13 +110,13 @@ struct ContactWalk {
       return contact;
     }
     // Test for possible contacts of a row.
-    SCREE_HD auto test(const Self& of_row) const { return walk.reaching(walk.look.test(walk.in, of_row)); }
+    SCREE_HD auto test(const Self& of_row) const { return walk.in_range(walk.look.test(walk.in, of_row)); }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
 
   // The test, extended by the interaction range of the law.
   template <class Test>
-  SCREE_HD auto reaching(const Test& test) const {
+  SCREE_HD auto in_range(const Test& test) const {
     if constexpr (kReaches<Law> && requires { test.near(Index{}, Real{}); })
       return ReachTest<Test>{test, in.reach};
     else
@@ -160,7 +160,7 @@ struct ContactWalk {
   }
 
   template <class Of, class Pair>
-  SCREE_HD static constexpr bool sees_history() {
+  SCREE_HD static constexpr bool takes_history() {
     if constexpr (Law::kHistory > 0)
       return std::is_invocable_v<const Of&, const Law&, const Pair&,
                                  decltype(in.history.template read<Law>(nullptr, 0))>;
@@ -172,8 +172,8 @@ struct ContactWalk {
   SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     using Pair = decltype(look.pair(in, self, 0));
     if constexpr (kLawCloses<Pair>)
-      walk_reaching<kAccepts>(self, test, of, visit);
-    else if constexpr (sees_history<Of, Pair>())
+      walk_in_range<kAccepts>(self, test, of, visit);
+    else if constexpr (takes_history<Of, Pair>())
       walk_with_history<kAccepts>(self, test, of, visit);
     else
       walk_without(self, test, of, visit);
@@ -219,17 +219,17 @@ struct ContactWalk {
 
   // The law decides whether an accepted entry is a contact: it is evaluated where it is added.
   template <bool kAccepts, class Test, class Of, class Visit>
-  SCREE_HD void walk_reaching(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+  SCREE_HD void walk_in_range(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     using Pair = decltype(look.pair(in, self, 0));
-    constexpr bool kSeesHistory = sees_history<Of, Pair>();
-    struct Place {
+    constexpr bool kTakesHistory = takes_history<Of, Pair>();
+    struct EntryIndex {
       Index j;
       std::int64_t slot;
     };
-    const auto add = [&](const Place& at) {
+    const auto add = [&](const EntryIndex& at) {
       const Law& law = laws.get(self.material, in.material[at.j]);
       const auto pair = look.pair(in, self, at.j);
-      if constexpr (kSeesHistory) {
+      if constexpr (kTakesHistory) {
         const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
         const bool closed = found_closed(law, pair, history);
         if (!closed && !found_breaking(pair, history)) return;
@@ -241,18 +241,18 @@ struct ContactWalk {
         visit(of(law, pair), at.j);
       }
     };
-    if constexpr (kSeesHistory)
+    if constexpr (kTakesHistory)
       in.rows.for_each_contact(
           self.i, test,
           [](Index j, std::int64_t slot) {
-            return Place{j, slot};
+            return EntryIndex{j, slot};
           },
           add);
     else
       in.rows.for_each_contact(
           self.i, test,
           [](Index j) {
-            return Place{j, 0};
+            return EntryIndex{j, 0};
           },
           add);
   }

@@ -46,23 +46,23 @@ void CpuList::migrate() {
   ParticleStore& store = items_.store;
   const Ranks& ranks = items_.ranks;
   if (!decomposition_.exists() || balance_.imbalance > items_.model.parallel.imbalance) decompose();
-  std::vector<std::vector<Particle>> leaving(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::vector<Index>> left(leaving.size());  // their local indices
-  std::vector<Index> staying;
+  std::vector<std::vector<Particle>> departing(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> departing_indices(departing.size());  // their local indices
+  std::vector<Index> remaining;
   for (Index i = 0; i < store.owned; ++i) {
     const int owner = decomposition_.owner(xyz(store.position[i]));
     if (owner == ranks.rank()) {
-      staying.push_back(i);
+      remaining.push_back(i);
       continue;
     }
-    leaving[static_cast<std::size_t>(owner)].push_back(particle_at(store, i));
-    left[static_cast<std::size_t>(owner)].push_back(i);
+    departing[static_cast<std::size_t>(owner)].push_back(particle_at(store, i));
+    departing_indices[static_cast<std::size_t>(owner)].push_back(i);
   }
-  balance_.migrated += store.owned - static_cast<std::int64_t>(staying.size());
-  const std::vector<Particle> arriving = ranks.deal_out(leaving);
-  countable(staying.size() + arriving.size(), kTooManyParticles);
-  items_.history.migrate(ranks, left, staying);
-  store.reorder(staying);
+  balance_.migrated += store.owned - static_cast<std::int64_t>(remaining.size());
+  const std::vector<Particle> arriving = ranks.deal_out(departing);
+  countable(remaining.size() + arriving.size(), kTooManyParticles);
+  items_.history.migrate(ranks, departing_indices, remaining);
+  store.reorder(remaining);
   for (const Particle& particle : arriving) store.add(particle);
 }
 
@@ -198,10 +198,10 @@ Real CpuList::displacement() {
   return bound_ / (items_.list.skin / 2);
 }
 
-void CpuList::keep_rows(const std::vector<Index>& staying) {
+void CpuList::keep_rows(const std::vector<Index>& remaining) {
   if (items_.ranks.alone()) return;
-  for (std::size_t k = 0; k < staying.size(); ++k) row_length_[k] = row_length_[staying[k]];
-  row_length_.resize(staying.size());
+  for (std::size_t k = 0; k < remaining.size(); ++k) row_length_[k] = row_length_[remaining[k]];
+  row_length_.resize(remaining.size());
 }
 
 void CpuList::measure_balance() {

@@ -25,7 +25,7 @@ class CpuList : public RankList {
   // Particles were added or removed: the list is invalid.
   void outdate() { current_ = false; }
   // Keeps the row lengths of these owned particles, in this order.
-  void keep_rows(const std::vector<Index>& staying);
+  void keep_rows(const std::vector<Index>& remaining);
 
  private:
   // Parts of build, in this order.

@@ -106,11 +106,11 @@ void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
   }
   list_.outdate();
   if (items_.model.space.leaving != Leaving::remove) return;
-  std::vector<Index> staying;
+  std::vector<Index> remaining;
   for (Index i = 0; i < store.owned; ++i)
-    if (!store.drifting[i]) staying.push_back(i);
-  list_.keep_rows(staying);
-  store.reorder(staying), items_.history.reorder(staying);
+    if (!store.drifting[i]) remaining.push_back(i);
+  list_.keep_rows(remaining);
+  store.reorder(remaining), items_.history.reorder(remaining);
 }
 
 }  // namespace scree

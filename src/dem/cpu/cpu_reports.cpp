@@ -93,9 +93,9 @@ ContactLines CpuReports::contact_lines() {
   return out;
 }
 
-std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted) {
+std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> requested) {
   const ParticleStore& store = items_.store;
-  std::vector<GlobalId> ids(wanted.begin(), wanted.end());
+  std::vector<GlobalId> ids(requested.begin(), requested.end());
   std::sort(ids.begin(), ids.end());
   std::vector<TracedParticle> found;
   for (Index i = 0; i < store.owned; ++i) {

@@ -19,7 +19,7 @@ class CpuReports : public Reports {
   ParticleOutput output() override { return std::move(output_); }
   ShapePack pack_shapes() override;
   ContactLines contact_lines() override;
-  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
+  std::vector<TracedParticle> traced(std::span<const GlobalId> requested) override;
   std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> surface_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;

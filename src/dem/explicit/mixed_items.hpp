@@ -70,28 +70,28 @@ struct QuantumGrid {
     return static_cast<std::int64_t>(std::rint(x * inverse_fraction));
   }
   // Position that has moved from x to these low bits.
-  SCREE_HD Real moved(Real x, std::uint32_t place, std::uint16_t part) const {
+  SCREE_HD Real moved(Real x, std::uint32_t low_bits, std::uint16_t part) const {
     const std::int64_t from = count(x);
-    const auto whole = static_cast<std::int32_t>(place - static_cast<std::uint32_t>(from >> 16));
+    const auto whole = static_cast<std::int32_t>(low_bits - static_cast<std::uint32_t>(from >> 16));
     const std::int64_t parts = static_cast<std::int64_t>(part) - (from & 0xffff);
     return static_cast<Real>(from + whole * std::int64_t{65536} + parts) * fraction;
   }
 };
 
 // Position displaced by dx [m]; rest: its fraction, updated.
-SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace place, MixedFraction& rest) {
+SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace position, MixedFraction& rest) {
   const auto move = [&](std::uint32_t& whole, std::uint16_t& part, Real by) {
     const std::int64_t parts = part + grid.count(by);
     whole += static_cast<std::uint32_t>(parts >> 16);
     part = static_cast<std::uint16_t>(parts & 0xffff);
   };
-  move(place.x, rest.x, dx.x), move(place.y, rest.y, dx.y), move(place.z, rest.z, dx.z);
-  return place;
+  move(position.x, rest.x, dx.x), move(position.y, rest.y, dx.y), move(position.z, rest.z, dx.z);
+  return position;
 }
 
-inline QuantumGrid make_quantum_grid(Real reach) {
+inline QuantumGrid make_quantum_grid(Real range) {
   int exponent = 0;
-  std::frexp(reach, &exponent);
+  std::frexp(range, &exponent);
   const Real quantum = std::ldexp(Real(1), exponent - 28);
   return {quantum, std::ldexp(quantum, -16), std::ldexp(1 / quantum, 16)};
 }
@@ -103,18 +103,18 @@ SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
 }
 
 // Position shifted by whole periods.
-SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shift) {
+SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace position, Vec3 shift) {
   // Rounded alike in both directions: two particles see each other at opposite differences.
   const auto whole = [&](Real x) { return static_cast<std::uint32_t>((grid.count(x) + 32768) >> 16); };
-  place.x += whole(shift.x), place.y += whole(shift.y), place.z += whole(shift.z);
-  return place;
+  position.x += whole(shift.x), position.y += whole(shift.y), position.z += whole(shift.z);
+  return position;
 }
 
 // Double-precision position of a particle that was at `from` when it was converted [m].
-SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place,
+SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& position,
                              const MixedFraction& part) {
-  return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y),
-          grid.moved(from.z, place.z, part.z)};
+  return {grid.moved(from.x, position.x, part.x), grid.moved(from.y, position.y, part.y),
+          grid.moved(from.z, position.z, part.z)};
 }
 
 // Position of p relative to q [m].
@@ -134,8 +134,8 @@ struct MixedTouchTest {
   SCREE_HD bool near(Index j, Real margin) const {
     const MixedPlace q = place[j];
     const Vec3f r = mixed_difference(quantum, p, q);
-    const float reach = p.radius + q.radius + static_cast<float>(margin);
-    return dot(r, r) < reach * reach;
+    const float distance = p.radius + q.radius + static_cast<float>(margin);
+    return dot(r, r) < distance * distance;
   }
 };
 
@@ -150,14 +150,14 @@ struct ToMixedItem {
 
   SCREE_HD void operator()(Index i) const {
     const Vec4 p = position[i], v = velocity[i];
-    const Vec3f seen = in_single(xyz(v));
+    const Vec3f law_velocity = in_single(xyz(v));
     out.place[0][i] = mixed_place(grid, p);
-    out.motion[0][i] = {seen.x, seen.y, seen.z, static_cast<float>(v.w)};
+    out.motion[0][i] = {law_velocity.x, law_velocity.y, law_velocity.z, static_cast<float>(v.w)};
     const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
     out.fraction[i] = {part(p.x), part(p.y), part(p.z),
                        static_cast<std::uint16_t>(box.inside(xyz(p), 2 * half_skin) ? 0 : 1)};
     const Vec3 middle = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
-    const Vec3f rest = in_single(middle - in_double(seen));
+    const Vec3f rest = in_single(middle - in_double(law_velocity));
     out.rest[i] = {rest.x, rest.y, rest.z, 0};
     if (spin != nullptr) {
       const Vec4 w = spin[i];
@@ -183,13 +183,14 @@ struct FromMixedItem {
   Index steps;
 
   SCREE_HD void operator()(Index i) const {
-    if (drifting[i]) return drift(i);
+    if (drifting[i]) return move_ballistically(i);
     const MixedMotion u = (parity == 0 ? in.motion[0] : in.motion[1])[i];
-    const MixedPlace place = (parity == 0 ? in.place[0] : in.place[1])[i];
+    const MixedPlace fixed_position = (parity == 0 ? in.place[0] : in.place[1])[i];
     const MixedRest rest = in.rest[i];
-    const Vec3 seen{u.x, u.y, u.z}, middle = seen + Vec3{rest.x, rest.y, rest.z};
+    const Vec3 law_velocity{u.x, u.y, u.z}, middle = law_velocity + Vec3{rest.x, rest.y, rest.z};
     // A velocity that is not finite must be visible in the position, which is always finite in fixed point.
-    const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], place, in.fraction[i]) : middle;
+    const Vec3 x =
+        is_finite(middle) ? mixed_position(grid, position[i], fixed_position, in.fraction[i]) : middle;
     position[i] = vec4(x, position[i].w);
     contact_loss[i] += rest.loss;
     if (spin != nullptr) {
@@ -197,8 +198,8 @@ struct FromMixedItem {
       take_spin(i);
       return;
     }
-    velocity[i] = vec4(seen, velocity[i].w);
-    acceleration[i] = verlet_acceleration(h, seen, middle);
+    velocity[i] = vec4(law_velocity, velocity[i].w);
+    acceleration[i] = verlet_acceleration(h, law_velocity, middle);
   }
 
  private:
@@ -210,7 +211,7 @@ struct FromMixedItem {
   }
   // Escaped particles are not covered by a list and may move beyond the range of fixed-point positions; they
   // move under gravity alone.
-  SCREE_HD void drift(Index i) const {
+  SCREE_HD void move_ballistically(Index i) const {
     if (steps == 0) return;
     const Vec4 p = position[i], v = velocity[i];
     const Vec3 first = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
@@ -275,7 +276,8 @@ struct MixedAdvanceItem {
   Real h;
 
   SCREE_HD Real operator()(Index i) const {
-    const ContactWalk<Laws, Rows, AtMixedInstant> walk{in, laws, {places(), motions(), state.fraction, grid}};
+    const ContactWalk<Laws, Rows, AtMixedInstant> walk{
+        in, laws, {positions(), motions(), state.fraction, grid}};
     const auto self = walk.self(i);
     const Real mass = self.u.mass;
     Vec3 f = mass * gravity;
@@ -293,19 +295,20 @@ struct MixedAdvanceItem {
 
  private:
   // No indexing by parity: a GPU would copy the arrays of pointers to local memory.
-  SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
+  SCREE_HD MixedPlace* positions() const { return parity == 0 ? state.place[0] : state.place[1]; }
   SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
 
   SCREE_HD Real advance(Index i, const MixedPlace& p, const MixedMotion& u, Vec3 a, float loss) const {
     const MixedRest rest = state.rest[i];
     const Vec3 old_middle = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 middle = verlet_next_middle(h, old_middle, a), dx = h * middle;
-    const Vec3f seen = in_single(verlet_predicted_from_middle(h, middle, a));
-    const Vec3f new_rest = in_single(middle - in_double(seen));
+    const Vec3f law_velocity = in_single(verlet_predicted_from_middle(h, middle, a));
+    const Vec3f new_rest = in_single(middle - in_double(law_velocity));
     MixedFraction part = state.fraction[i];
     (parity == 0 ? state.place[1] : state.place[0])[i] = moved_by(grid, dx, p, part);
     state.fraction[i] = part;
-    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
+    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {law_velocity.x, law_velocity.y, law_velocity.z,
+                                                            u.mass};
     state.rest[i] = {new_rest.x, new_rest.y, new_rest.z, rest.loss + static_cast<float>(h) * loss};
     return dot(dx, dx);
   }

@@ -94,28 +94,29 @@ struct MixedRubbingItem {
     MixedFraction part = state.fraction[i];
     const Vec3 old = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 middle = verlet_next_middle(h, old, reciprocal(u.mass) * total.force), dx = h * middle;
-    const Vec3f seen = in_single(middle), left = in_single(middle - in_double(seen));
+    const Vec3f rounded = in_single(middle), remainder = in_single(middle - in_double(rounded));
     (parity == 0 ? state.place[1] : state.place[0])[i] = moved_by(grid, dx, self.p, part);
     state.fraction[i] = part;
-    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
-    state.rest[i] = {left.x, left.y, left.z, rest.loss + static_cast<float>(h * total.loss_power)};
-    turn(self, spin_rest, old_orientation, total);
+    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {rounded.x, rounded.y, rounded.z, u.mass};
+    state.rest[i] = {remainder.x, remainder.y, remainder.z,
+                     rest.loss + static_cast<float>(h * total.loss_power)};
+    rotate(self, spin_rest, old_orientation, total);
     return dot(dx, dx);
   }
 
  private:
-  SCREE_HD void turn(const Self& self, const MixedSpinRest& rest, const Quaternion& old_orientation,
-                     const Total& total) const {
+  SCREE_HD void rotate(const Self& self, const MixedSpinRest& rest, const Quaternion& old_orientation,
+                       const Total& total) const {
     const Index i = self.i;
     const Real h = walk.look.h;
     const MixedSpin w = self.spin;
     const Vec3 old = Vec3{w.x, w.y, w.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 spin = verlet_next_middle(h, old, reciprocal(w.inertia) * total.torque);
-    const Vec3f seen = in_single(spin);
-    (parity == 0 ? state.spin[1] : state.spin[0])[i] = {seen.x, seen.y, seen.z, w.inertia};
-    const Vec3f left = in_single(spin - in_double(seen));
+    const Vec3f rounded = in_single(spin);
+    (parity == 0 ? state.spin[1] : state.spin[0])[i] = {rounded.x, rounded.y, rounded.z, w.inertia};
+    const Vec3f remainder = in_single(spin - in_double(rounded));
     const auto friction = static_cast<float>(total.losses.of[kFrictionLoss]);
-    state.spin_rest[i] = {left.x, left.y, left.z, rest.friction + friction};
+    state.spin_rest[i] = {remainder.x, remainder.y, remainder.z, rest.friction + friction};
     orientation[i] = turned_by(old_orientation, spin, h);
   }
 };

@@ -29,17 +29,17 @@ class PairBatch {
   }
 
   // Evaluates the first n pairs over a step. history: for the number of that step.
-  [[gnu::noinline, gnu::flatten]] void evaluate(Index n, const Laws& of, const OverMotion& look,
+  [[gnu::noinline, gnu::flatten]] void evaluate(Index n, const Laws& of, const OverMotion& kinematics,
                                                 const HistoryViews& history) {
     if constexpr (kMayHaveDashpot<Laws>) {
       if (of.law.tangential.damping_ratio == 0) {
         // A compile-time constant lets the compiler leave out the dashpot, which most runs do not have.
         Laws without_dashpot = of;
         without_dashpot.law.tangential.damping_ratio = 0;
-        return evaluate_by(without_dashpot, n, look, history);
+        return evaluate_by(without_dashpot, n, kinematics, history);
       }
     }
-    evaluate_by(of, n, look, history);
+    evaluate_by(of, n, kinematics, history);
   }
 
   // Results of the k-th pair: whether the contact is closed at the end of the step, and whether it has a
@@ -70,10 +70,10 @@ class PairBatch {
   const Side& of_j() const { return of_j_; }
 
  private:
-  void evaluate_by(const Laws& of, Index n, const OverMotion& look, const HistoryViews& views) {
+  void evaluate_by(const Laws& of, Index n, const OverMotion& kinematics, const HistoryViews& views) {
     const Laws laws = of;
     const HistoryViews history = views;
-    const Real h = look.h;
+    const Real h = kinematics.h;
 #pragma GCC ivdep
     for (Index k = 0; k < n; ++k) {
       const Vec4 p = i_.position[k], u = i_.velocity[k], v = i_.spin[k];

@@ -16,7 +16,7 @@ template <class Packed>
 class KeptResults {
  public:
   // Resets all slots to no load.
-  void resize(std::size_t slots) { places_.resize(slots); }
+  void resize(std::size_t slots) { indices_.resize(slots); }
   // Ensures that `more` entries are free.
   void reserve(Index more) {
     while (free_count_ < more) {
@@ -25,18 +25,18 @@ class KeptResults {
       results_.push_back(nothing());
     }
   }
-  Packed& put(Index slot) { return results_[places_[slot] = free_[--free_count_]]; }
+  Packed& put(Index slot) { return results_[indices_[slot] = free_[--free_count_]]; }
   // Adds the load at the slot to the sum and frees its entry.
   void take(Index slot, Packed& sum) {
-    const Index place = std::exchange(places_[slot], kNothing);
-    sum += results_[place];
-    free_[free_count_] = place, free_count_ += place != kNothing;
+    const Index index = std::exchange(indices_[slot], kNothing);
+    sum += results_[index];
+    free_[free_count_] = index, free_count_ += index != kNothing;
   }
 
  private:
   static Packed nothing() { return Packed::of(Packed::Total::nothing()); }
   static constexpr Index kNothing = 0;  // index of a load that changes no sum
-  std::vector<Index> places_;           // index of the load per slot
+  std::vector<Index> indices_;          // index of the load per slot
   std::vector<Packed> results_{nothing()};
   std::vector<Index> free_{0};  // the first free_count_ indices are free
   Index free_count_ = 0;
@@ -48,16 +48,16 @@ class PairSweep {
  public:
   // Called before a step.
   void begin(PairList& pairs) {
-    pairs_ = &pairs, reached_ = next_ = 0;
+    pairs_ = &pairs, evaluated_rows_ = next_ = 0;
     results_.resize(pairs.slots);
   }
 
   // For i = 0, 1, ...: adds the loads on i of the contacts at these slots of row i, in this order.
   template <class Contact, class Sum>
-  void add_row(Index i, Index slot, Index past_slots, const Contact& contact, Sum& sum) {
-    while (i >= reached_) reach(contact);
+  void add_row(Index i, Index slot, Index end_slot, const Contact& contact, Sum& sum) {
+    while (i >= evaluated_rows_) evaluate_ahead(contact);
     Packed packed = Packed::of(sum);
-    for (; slot < past_slots; ++slot) results_.take(slot, packed);
+    for (; slot < end_slot; ++slot) results_.take(slot, packed);
     sum = packed.total();
   }
 
@@ -74,16 +74,16 @@ class PairSweep {
 
   // Evaluates the next contacts of all rows: one batch, which may end within a row.
   template <class Contact>
-  [[gnu::noinline, gnu::flatten]] void reach(const Contact& contact) {
+  [[gnu::noinline, gnu::flatten]] void evaluate_ahead(const Contact& contact) {
     Index found = 0;
-    for (; reached_ < pairs_->rows(); ++reached_) {
-      const auto test = contact.test(contact.walk.self(reached_));
-      for (const Index end = pairs_->offsets[reached_ + 1]; next_ < end; ++next_) {
+    for (; evaluated_rows_ < pairs_->rows(); ++evaluated_rows_) {
+      const auto test = contact.test(contact.walk.self(evaluated_rows_));
+      for (const Index end = pairs_->offsets[evaluated_rows_ + 1]; next_ < end; ++next_) {
         if (found == Batch::kRoom) return evaluate(contact.walk, found);
         const ListedPair& pair = pairs_->pairs[next_];
         Vec4* const records = records_of_pair(next_);
         fetch_ahead(records);
-        found_[found] = {reached_, pair.j, pair.slot, pair.mirror, records};
+        found_[found] = {evaluated_rows_, pair.j, pair.slot, pair.mirror, records};
         found += test(pair.j);
       }
     }
@@ -120,8 +120,8 @@ class PairSweep {
   }
 
   PairList* pairs_ = nullptr;
-  Index reached_ = 0;  // rows whose contacts were evaluated
-  Index next_ = 0;     // next pair to evaluate
+  Index evaluated_rows_ = 0;  // rows whose contacts were evaluated
+  Index next_ = 0;            // next pair to evaluate
   KeptResults<Packed> results_;
   Batch batch_;
   Found found_[Batch::kRoom];

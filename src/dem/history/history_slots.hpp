@@ -103,8 +103,8 @@ struct HistoryViews {
 // particle with both in the periodic box, so that no key depends on when positions were last wrapped.
 inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPastId = 2 * kFirstSurfaceId,
                           kPartnersEnd = 3 * kFirstSurfaceId;
-SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool past = false) {
-  return (past ? kFirstPastId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
+SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool penetrated = false) {
+  return (penetrated ? kFirstPastId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
 }
 SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
 SCREE_HD bool is_past(std::int64_t contact_key) { return contact_key >= 27 * kFirstPastId; }

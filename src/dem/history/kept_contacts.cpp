@@ -11,16 +11,16 @@
 namespace scree {
 namespace {
 
-// The contacts whose keys are wanted. Their values are kept if the law has as many numbers, else zero.
-template <class Wanted>
-KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
+// The contacts with the requested keys. Their values are kept if the law has as many numbers, else zero.
+template <class IsRequested>
+KeptContacts only(const KeptContacts& all, int numbers, const IsRequested& is_requested) {
   KeptContacts out;
   out.numbers = numbers;
   const std::vector<Real> none(static_cast<std::size_t>(out.width()));
   for (std::int64_t i = 0; i < all.particles(); ++i) {
     for (std::int64_t c = all.offsets[static_cast<std::size_t>(i)];
          c < all.offsets[static_cast<std::size_t>(i) + 1]; ++c)
-      if (const std::int64_t key = all.keys[static_cast<std::size_t>(c)]; wanted(key))
+      if (const std::int64_t key = all.keys[static_cast<std::size_t>(c)]; is_requested(key))
         out.add(key, numbers == all.numbers ? all.values_of(c) : none);
     out.end_row();
   }
@@ -28,9 +28,9 @@ KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
 }
 
 // Recognizes contacts with open surfaces by their keys.
-class SheetKeys {
+class OpenSurfaceKeys {
  public:
-  explicit SheetKeys(const Model& model) {
+  explicit OpenSurfaceKeys(const Model& model) {
     const SurfaceSet surfaces(model);
     for (Index s = 0; s < surfaces.placed(); ++s) {
       const Surface& surface = surfaces.at(s);
@@ -135,15 +135,15 @@ KeptContacts KeptContacts::without_surfaces() const {
 }
 
 KeptContacts sides_of(const KeptContacts& contacts, const Model& model, int numbers) {
-  return only(contacts, numbers, SheetKeys(model));
+  return only(contacts, numbers, OpenSurfaceKeys(model));
 }
 
 ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers) {
-  const SheetKeys is_of_sheet(model);
+  const OpenSurfaceKeys is_of_open_surface(model);
   ShapeContacts out;
   out.numbers = numbers;
   for (std::size_t k = 0; k < contacts.keys.size(); ++k)
-    if (is_of_sheet(contacts.keys[k]))
+    if (is_of_open_surface(contacts.keys[k]))
       out.shapes.push_back(contacts.shapes[k]), out.keys.push_back(contacts.keys[k]);
   out.values.resize(out.keys.size() * static_cast<std::size_t>(out.width()));
   return out;

@@ -78,9 +78,9 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
       bins.for_near(placed[i].point - shift, [&](const StartItem& other) {
         const auto j = static_cast<Index>(other.number);
         const Vec3 d = placed[i].point - other.position - shift;
-        const Real reach = placed[i].radius + other.radius + skin;
+        const Real distance = placed[i].radius + other.radius + skin;
         const Surface &one = surfaces_.at(i), &two = surfaces_.at(j);
-        if (dot(d, d) < reach * reach && rule_.may_touch(one.carrier, two.carrier) &&
+        if (dot(d, d) < distance * distance && rule_.may_touch(one.carrier, two.carrier) &&
             model_.contact.law(one.material, two.material).acts())
           partners[i].push_back({j, image});
       });
@@ -90,26 +90,26 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   return partners;
 }
 
-std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& places, Real skin) const {
+std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& poses, Real skin) const {
   std::vector<Index> shapes;
-  for (Index s = 0; s < static_cast<Index>(places.placed.size()); ++s)
-    if (places.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
-  corners_.add_near_planes(places, planes_, kMeshSkins * skin, shapes);
+  for (Index s = 0; s < static_cast<Index>(poses.placed.size()); ++s)
+    if (poses.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
+  corners_.add_near_planes(poses, planes_, kMeshSkins * skin, shapes);
   return shapes;
 }
 
 // Finds the rows of these shapes with all surfaces that are not spheres. Vertices of meshes move as far as
 // their meshes: planes near them are searched in the range used for particles near meshes.
-void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
+void BodyContacts::find_surfaces(const SurfacePlaces& poses, Real skin, const std::vector<Index>& shapes,
                                  SurfaceRows& rows) const {
   std::vector<Vec4> position;
   Vec3 min, max;
   Real largest = 0;
   for (const Index s : shapes) {
     const bool is_corner = corners_.has(s);
-    const PlacedSurface& shape = places.placed[static_cast<std::size_t>(corners_.surface_of(s))];
+    const PlacedSurface& shape = poses.placed[static_cast<std::size_t>(corners_.surface_of(s))];
     const Vec3 p =
-        is_corner ? shape.point + places.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
+        is_corner ? shape.point + poses.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
     const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
     if (position.empty()) min = max = p;
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
@@ -129,9 +129,11 @@ void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const s
     return surfaces_.at(s).kind != SurfaceKind::sphere &&
            rule_.may_touch(carrier_of(shapes[i]), surfaces_.at(s).carrier);
   };
-  const auto remembered = [&](Index i, Index surface) { return kept_.contacts_with(shapes[i], surface); };
+  const auto stored_contacts = [&](Index i, Index surface) {
+    return kept_.contacts_with(shapes[i], surface);
+  };
   build_rows({grid, start, items, position, n, largest}, n,
-             {surfaces_, planes_, places, period_, skin, remembered, may_touch}, rows);
+             {surfaces_, planes_, poses, period_, skin, stored_contacts, may_touch}, rows);
 }
 
 // Lists these shapes, then the periodic images of their partners.
@@ -165,24 +167,24 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
   entries_.set_law_radii(corners_.empty() ? std::vector<Real>{} : std::move(law_radius));
 }
 
-void BodyContacts::build(const SurfacePlaces& places, Real skin) {
-  const std::vector<std::vector<Item>> partners = find_partners(places.placed, skin);
-  const std::vector<Index> all = find_shapes(places, skin);
+void BodyContacts::build(const SurfacePlaces& poses, Real skin) {
+  const std::vector<std::vector<Item>> partners = find_partners(poses.placed, skin);
+  const std::vector<Index> all = find_shapes(poses, skin);
   std::vector<Index> near;
-  find_surfaces(places, skin, all, list_.surfaces);
+  find_surfaces(poses, skin, all, list_.surfaces);
   const std::vector<Index>& offsets = list_.surfaces.offsets;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (offsets[k + 1] > offsets[k] || (!corners_.has(all[k]) && !partners[all[k]].empty()))
       near.push_back(all[k]);
-  if (near.size() < all.size()) find_surfaces(places, skin, near, list_.surfaces);
+  if (near.size() < all.size()) find_surfaces(poses, skin, near, list_.surfaces);
   list_items(near, partners);
-  place(places, Instant::now, 0);
-  if (held_.exists()) take_contacts(places);
+  place(poses, Instant::now, 0);
+  if (held_.exists()) take_contacts(poses);
   has_list_ = true;
 }
 
 // Unpacks the history of the shapes in the list; the contacts of all others have ended.
-void BodyContacts::take_contacts(const SurfacePlaces& places) {
+void BodyContacts::take_contacts(const SurfacePlaces& poses) {
   KeptContacts rows;
   rows.numbers = kept_.numbers;
   std::size_t k = 0;
@@ -192,12 +194,12 @@ void BodyContacts::take_contacts(const SurfacePlaces& places) {
     rows.end_row();
   }
   held_.load(rows, store_.owned);
-  held_.take_slots(listed(places));
+  held_.take_slots(listed(poses));
 }
 
-void BodyContacts::leave_list(const SurfacePlaces& places) {
+void BodyContacts::leave_list(const SurfacePlaces& poses) {
   if (!has_list_ || !held_.exists()) return;
-  kept_ = contacts(places);
+  kept_ = contacts(poses);
   has_list_ = false;
 }
 
@@ -207,13 +209,13 @@ void BodyContacts::load(const ShapeContacts& contacts) {
   has_list_ = false;
 }
 
-ShapeContacts BodyContacts::contacts(const SurfacePlaces& places) {
+ShapeContacts BodyContacts::contacts(const SurfacePlaces& poses) {
   if (!has_list_) return kept_;
   ShapeContacts out;
   out.numbers = held_.numbers();
   if (!held_.exists()) return out;
-  place(places, Instant::now, 0);
-  const KeptContacts rows = held_.contacts(listed(places));
+  place(poses, Instant::now, 0);
+  const KeptContacts rows = held_.contacts(listed(poses));
   for (Index i = 0; i < store_.owned; ++i)
     out.shapes.insert(out.shapes.end(), static_cast<std::size_t>(rows.contacts(i)), items_[i].surface);
   out.keys = rows.keys, out.values = rows.values;
@@ -228,14 +230,14 @@ void BodyContacts::accept() {
 
 void BodyContacts::reopen() { std::swap(held_, found_); }
 
-void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
+void BodyContacts::place(const SurfacePlaces& poses, Instant when, Real h) {
   const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
   store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
   for (const Item& item : items_) {
-    const PlacedSurface& s = (at_start ? places.start : places.placed)[corners_.surface_of(item.surface)];
+    const PlacedSurface& s = (at_start ? poses.start : poses.placed)[corners_.surface_of(item.surface)];
     const Body& body = model_.bodies[static_cast<std::size_t>(carrier_of(item.surface))];
     const bool is_corner = corners_.has(item.surface);
-    const PlacedCorner at = is_corner ? placed_corner(s, places.frames[s.frame],
+    const PlacedCorner at = is_corner ? placed_corner(s, poses.frames[s.frame],
                                                       corners_.position_of(item.surface), at_start, snap_)
                                       : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
     store_.position.push_back(vec4(at.point + image_shift(item.image, period_), s.radius));
@@ -246,10 +248,10 @@ void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
 }
 
 // Sets the start arrays; the items are left at the start of the step.
-void BodyContacts::place_start(const SurfacePlaces& places, Real h) {
-  place(places, Instant::now, h);
+void BodyContacts::place_start(const SurfacePlaces& poses, Real h) {
+  place(poses, Instant::now, h);
   mean_spin_ = store_.angular_velocity;
-  place(places, Instant::start, 0);
+  place(poses, Instant::start, 0);
   start_position_ = store_.position, start_velocity_ = store_.velocity;
   start_spin_ = store_.angular_velocity;
 }
@@ -266,14 +268,14 @@ ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const 
   return views;
 }
 
-void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
+void BodyContacts::find_loads(const SurfacePlaces& poses, Real h) {
   const bool in_step = h > 0 && held_.exists();
   if (!in_step) h = 0;
   if (in_step) found_ = held_, has_step_ = true;
   const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
-  place(places, Instant::now, h);
+  place(poses, Instant::now, h);
   entries_.find_loads(
-      places, store_, list_.surfaces,
+      poses, store_, list_.surfaces,
       {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
   kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
@@ -281,21 +283,21 @@ void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
   if (in_step) found_.accepted();
 }
 
-void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
-  place_start(places, h);
-  place(places, Instant::now, 0);
+void BodyContacts::find_steps(const SurfacePlaces& poses, Real h) {
+  place_start(poses, h);
+  place(poses, Instant::now, 0);
   steps_.resize(static_cast<std::size_t>(store_.owned));
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
   const StepStart start = step_start(h);
   if (held_.exists()) found_ = held_, has_step_ = true;
   if (model_.rotates()) {
-    RubbingStart rubbing{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
-    entries_.find_rubs(places, store_, list_.surfaces, rubbing, found_.views());
-    rubbing.on_bodies = entries_.rubs();
-    kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data(), to);
+    RubbingStart friction{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
+    entries_.find_rubs(poses, store_, list_.surfaces, friction, found_.views());
+    friction.on_bodies = entries_.rubs();
+    kernels_->body_rubs(views(found_.views()), store_.owned, friction, arm_.data(), steps_.data(), to);
   } else {
-    entries_.find_steps(places, store_, list_.surfaces, start, found_.views());
+    entries_.find_steps(poses, store_, list_.surfaces, start, found_.views());
     kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
   }
   if (held_.exists()) found_.accepted();
@@ -317,10 +319,11 @@ void BodyContacts::find_pairs() {
       const Vec3 towards = -contact.slopes.normal;
       pairs_.add(touched(i, towards), touched(contact.other, -towards), contact.slopes);
     }
-  entries_.for_each_slope(list_.surfaces, [&](Index item, Index surface, Vec3 place, const auto& slopes) {
-    if (surfaces_.is_on_body(surface))
-      pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).carrier, place}, slopes);
-  });
+  entries_.for_each_slope(
+      list_.surfaces, [&](Index item, Index surface, Vec3 contact_point, const auto& slopes) {
+        if (surfaces_.is_on_body(surface))
+          pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).carrier, contact_point}, slopes);
+      });
 }
 
 void BodyContacts::add_sums(std::vector<InstantSums>& to) const {
@@ -353,15 +356,15 @@ BodyStep BodyContacts::step_totals() const {
   return sum;
 }
 
-void BodyContacts::book_loads(const SurfacePlaces& places, Real h) {
-  entries_.book_loads(places, store_, list_.surfaces, h);
+void BodyContacts::book_loads(const SurfacePlaces& poses, Real h) {
+  entries_.book_loads(poses, store_, list_.surfaces, h);
 }
 
-void BodyContacts::book_steps(const SurfacePlaces& places) {
+void BodyContacts::book_steps(const SurfacePlaces& poses) {
   if (model_.rotates())
-    entries_.book_rubs(places, store_, list_.surfaces);
+    entries_.book_rubs(poses, store_, list_.surfaces);
   else
-    entries_.book_steps(places, store_, list_.surfaces);
+    entries_.book_steps(poses, store_, list_.surfaces);
 }
 
 std::vector<TriangleSums> BodyContacts::triangle_sums() const {
@@ -375,9 +378,9 @@ ContactSum BodyContacts::on_wall(int wall) {
   return make_wall_contact(sums);
 }
 
-std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& places) {
+std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& poses) {
   const HistoryViews history = held_.views().only_read();
-  const std::vector<ShownContact> of_surfaces = entries_.shown(places, store_, list_.surfaces, history);
+  const std::vector<ShownContact> of_surfaces = entries_.shown(poses, store_, list_.surfaces, history);
   std::vector<Index> counts(static_cast<std::size_t>(store_.owned));
   std::vector<ContactLine> lines =
       contact_lines(*kernels_, views(history),

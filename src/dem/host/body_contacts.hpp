@@ -56,14 +56,14 @@ class BodyContacts {
   BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain);
 
   // Packs the contact history by keys before surfaces are wrapped into the periodic box for another list.
-  void leave_list(const SurfacePlaces& places);
+  void leave_list(const SurfacePlaces& poses);
   // Finds possible contacts until some surface has moved by half the skin [m]. Called on rank 0 only.
-  void build(const SurfacePlaces& places, Real skin);
+  void build(const SurfacePlaces& poses, Real skin);
 
   // Evaluates the contacts at an instant (h = 0), or over the explicit step of length h that ends now; and
-  // over an implicit step that began at places.start.
-  void find_loads(const SurfacePlaces& places, Real h);
-  void find_steps(const SurfacePlaces& places, Real h);
+  // over an implicit step that began at `poses.start`.
+  void find_loads(const SurfacePlaces& poses, Real h);
+  void find_steps(const SurfacePlaces& poses, Real h);
   // Adds the sums of the last evaluation; a surface may occur twice.
   void add_sums(std::vector<InstantSums>& to) const;
   void add_sums(std::vector<StepSums>& to) const;
@@ -74,12 +74,12 @@ class BodyContacts {
   // Load of shapes on a static wall at the last evaluation at an instant. wall: index into Model::walls.
   ContactSum on_wall(int wall);
   // Contacts of `find_loads` at an instant, each one once.
-  std::vector<ContactLine> lines(const SurfacePlaces& places);
+  std::vector<ContactLine> lines(const SurfacePlaces& poses);
 
   // Accumulates the dissipation of the last evaluation at the triangles of meshes: over an explicit step of
   // length h, and over an implicit one.
-  void book_loads(const SurfacePlaces& places, Real h);
-  void book_steps(const SurfacePlaces& places);
+  void book_loads(const SurfacePlaces& poses, Real h);
+  void book_steps(const SurfacePlaces& poses);
   std::vector<std::int64_t> works() const { return entries_.works(); }
   void clear_works() { entries_.load_works({}); }
 
@@ -90,7 +90,7 @@ class BodyContacts {
   void reopen();
   // Packed history of the contacts; that of another law is ignored. load: before the first list.
   void load(const ShapeContacts& contacts);
-  ShapeContacts contacts(const SurfacePlaces& places);
+  ShapeContacts contacts(const SurfacePlaces& poses);
 
  private:
   // A shape, one of its periodic images, or a vertex of a mesh.
@@ -101,21 +101,21 @@ class BodyContacts {
   };
   std::vector<std::vector<Item>> find_partners(std::span<const PlacedSurface> placed, Real skin) const;
   // Spheres, then vertices near planes, by number.
-  std::vector<Index> find_shapes(const SurfacePlaces& places, Real skin) const;
+  std::vector<Index> find_shapes(const SurfacePlaces& poses, Real skin) const;
   int carrier_of(Index shape) const { return surfaces_.at(corners_.surface_of(shape)).carrier; }
-  void find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
+  void find_surfaces(const SurfacePlaces& poses, Real skin, const std::vector<Index>& shapes,
                      SurfaceRows& rows) const;
-  void take_contacts(const SurfacePlaces& places);
+  void take_contacts(const SurfacePlaces& poses);
   void list_items(const std::vector<Index>& shapes, const std::vector<std::vector<Item>>& partners);
   // Sets positions and velocities of the items to those of now, or of the start of the step. h: length of the
   // step that ends now [s], for mid-step velocities; 0: velocities of the instant.
   enum class Instant { now, start };
-  void place(const SurfacePlaces& places, Instant when, Real h);
-  void place_start(const SurfacePlaces& places, Real h);
+  void place(const SurfacePlaces& poses, Instant when, Real h);
+  void place_start(const SurfacePlaces& poses, Real h);
   StepStart step_start(Real h) const;
   void find_pairs();
-  CpuHistory::Listed listed(const SurfacePlaces& places) const {
-    return {store_, list_, places, entries_.numbers()};
+  CpuHistory::Listed listed(const SurfacePlaces& poses) const {
+    return {store_, list_, poses, entries_.numbers()};
   }
   ContactViews<PackedRows> views(const HistoryViews& history) const;
 

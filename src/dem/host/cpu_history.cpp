@@ -114,9 +114,9 @@ void CpuHistory::take_row(const Listed& at, Index i) {
   const std::int64_t end = kept_.offsets[static_cast<std::size_t>(i) + 1];
   const auto take = [&](std::vector<Vec4>& records, Index slot, const auto& key) {
     if (k == end) return;
-    const std::int64_t wanted = key();
-    while (k < end && kept_.keys[static_cast<std::size_t>(k)] < wanted) ++k;
-    if (k < end && kept_.keys[static_cast<std::size_t>(k)] == wanted) put(records, slot, k);
+    const std::int64_t sought = key();
+    while (k < end && kept_.keys[static_cast<std::size_t>(k)] < sought) ++k;
+    if (k < end && kept_.keys[static_cast<std::size_t>(k)] == sought) put(records, slot, k);
   };
   const SurfaceRows& surfaces = at.list.surfaces;
   const Vec3 p = xyz(at.store.position[i]);
@@ -136,12 +136,12 @@ void CpuHistory::take_row(const Listed& at, Index i) {
 void CpuHistory::take_mesh(const Listed& at, Index i, Index entry) {
   const SurfaceRows& surfaces = at.list.surfaces;
   const Vec3 p = xyz(at.store.position[i]);
-  const std::int64_t wanted = mesh_key(at, p, entry, surface_id(surfaces.surfaces[entry]));
+  const std::int64_t sought = mesh_key(at, p, entry, surface_id(surfaces.surfaces[entry]));
   Index slot = entry;
   for (std::int64_t k = kept_.offsets[static_cast<std::size_t>(i)];
        k < kept_.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
     const std::int64_t key = kept_.keys[static_cast<std::size_t>(k)];
-    if (!is_surface(key) || without_feature(key) != wanted) continue;
+    if (!is_surface(key) || without_feature(key) != sought) continue;
     if (slot == surfaces.offsets[i + 1] || !surfaces.alike(entry, slot)) return;
     features_[slot] = beside_mesh(at, p, slot).remembered(key);
     if (!is_alone()) put(bodies_, slot, k);
@@ -176,13 +176,13 @@ void CpuHistory::reorder(const std::vector<Index>& from) {
   if (exists()) kept_ = kept_.rows(from);
 }
 
-void CpuHistory::migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& leaving,
-                         const std::vector<Index>& staying) {
+void CpuHistory::migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& departing,
+                         const std::vector<Index>& remaining) {
   if (!exists()) return;
   std::vector<KeptContacts> to;
-  for (const std::vector<Index>& particles : leaving) to.push_back(kept_.rows(particles));
+  for (const std::vector<Index>& particles : departing) to.push_back(kept_.rows(particles));
   const KeptContacts arriving = deal_out(ranks, to);
-  reorder(staying);
+  reorder(remaining);
   for (std::int64_t i = 0; i < arriving.particles(); ++i) kept_.add_row(arriving, i);
 }
 

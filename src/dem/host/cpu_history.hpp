@@ -49,8 +49,8 @@ class CpuHistory {
   void load(const KeptContacts& contacts, Index owned);
   void reorder(const std::vector<Index>& from);
   // leaving[r]: particles for rank r; `staying` keep their order, and arriving ones are appended. Collective.
-  void migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& leaving,
-               const std::vector<Index>& staying);
+  void migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& departing,
+               const std::vector<Index>& remaining);
 
  private:
   static HistoryViews sides_alone(std::vector<Index>& of, std::vector<Index>& ahead);

@@ -24,7 +24,7 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
 
 // The planes under the particles are scattered in memory: each is prefetched some groups ahead of its use.
 template <bool kReaches, bool kSheets>
-void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
+void touch_with_prefetch(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
   constexpr Index kAhead = 8;
   const SurfaceViews& in = item.in;
   for (Index g = 0; g < groups; ++g) {
@@ -50,45 +50,45 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, const C
       work_sums_(works_.sums({})),
       moves_(model.rotates()) {}
 
-SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& places, const ParticleStore& store,
-                                      const SurfaceRows& rows, const SurfaceLook& look) const {
-  return {look.position,
-          look.velocity,
+SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& poses, const ParticleStore& store,
+                                      const SurfaceRows& rows, const SurfaceLook& query) const {
+  return {query.position,
+          query.velocity,
           store.material.data(),
           rows.entries(),
-          places.placed.data(),
-          places.frames.data(),
+          poses.placed.data(),
+          poses.frames.data(),
           numbers(),
-          {rows.groups.data(), rows.triangles.data(), places.meshes.data()},
+          {rows.groups.data(), rows.triangles.data(), poses.meshes.data()},
           touches_.data(),
           touches_before_.data(),
           box_,
-          look.history,
+          query.history,
           records_of(kernels_.history()),
-          look.spin,
-          look.h,
+          query.spin,
+          query.h,
           reach_,
           masses_.empty() ? nullptr : masses_.data(),
           law_radii()};
 }
 
-void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
-                             const SurfaceLook& look) {
+void CpuSurfaces::find_loads(const SurfacePlaces& poses, const ParticleStore& store, SurfaceRows& rows,
+                             const SurfaceLook& query) {
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
-    const SurfaceViews views = entry_views(places, store, rows, look);
+    const SurfaceViews views = entry_views(poses, store, rows, query);
     const auto groups = static_cast<Index>(rows.groups.size());
     if (reach_ > 0 && sheets_)
-      touch_ahead(MeshTouchItem<true, true>{views, touches_.data(), rows.standings.data()}, groups);
+      touch_with_prefetch(MeshTouchItem<true, true>{views, touches_.data(), rows.standings.data()}, groups);
     else if (reach_ > 0)
-      touch_ahead(MeshTouchItem<true, false>{views, touches_.data(), rows.standings.data()}, groups);
+      touch_with_prefetch(MeshTouchItem<true, false>{views, touches_.data(), rows.standings.data()}, groups);
     else if (sheets_)
-      touch_ahead(MeshTouchItem<false, true>{views, touches_.data(), rows.standings.data()}, groups);
+      touch_with_prefetch(MeshTouchItem<false, true>{views, touches_.data(), rows.standings.data()}, groups);
     else
-      touch_ahead(MeshTouchItem<false, false>{views, touches_.data(), rows.standings.data()}, groups);
+      touch_with_prefetch(MeshTouchItem<false, false>{views, touches_.data(), rows.standings.data()}, groups);
   }
-  kernels_.surface_loads(entry_views(places, store, rows, look), static_cast<Index>(rows.by_surface.size()),
+  kernels_.surface_loads(entry_views(poses, store, rows, query), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
 }
 
@@ -110,24 +110,24 @@ void CpuSurfaces::make_room(const SurfaceRows& rows) {
     touches_.resize(rows.surfaces.size()), touches_before_.resize(rows.surfaces.size());
 }
 
-void CpuSurfaces::find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::find_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                              const StepStart& start, const HistoryViews& history) {
   steps_.resize(rows.surfaces.size()), make_room(rows);
   const SurfaceViews views =
-      entry_views(places, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
-  touch_over_step(views, rows, start, places.start.data());
-  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
+      entry_views(poses, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
+  touch_over_step(views, rows, start, poses.start.data());
+  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, poses.start.data(),
                          steps_.data());
 }
 
-void CpuSurfaces::find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::find_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                             const RubbingStart& start, const HistoryViews& history) {
   rubs_.resize(rows.surfaces.size()), make_room(rows);
   const SurfaceViews views =
-      entry_views(places, store, rows,
+      entry_views(poses, store, rows,
                   {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
-  touch_over_step(views, rows, start.step, places.start.data());
-  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
+  touch_over_step(views, rows, start.step, poses.start.data());
+  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, poses.start.data(),
                         rubs_.data());
 }
 
@@ -141,11 +141,11 @@ std::vector<StepSums> CpuSurfaces::rub_sums(const SurfaceRows& rows) const {
   return sums_of<StepSums>(rubs_, rows, numbers());
 }
 
-std::vector<ShownContact> CpuSurfaces::shown(const SurfacePlaces& places, const ParticleStore& store,
+std::vector<ShownContact> CpuSurfaces::shown(const SurfacePlaces& poses, const ParticleStore& store,
                                              const SurfaceRows& rows, const HistoryViews& history) const {
   std::vector<ShownContact> shown(rows.surfaces.size());
   const SurfaceViews views =
-      entry_views(places, store, rows,
+      entry_views(poses, store, rows,
                   {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
   kernels_.shown_surfaces(views, static_cast<Index>(rows.by_surface.size()), loads_.data(), shown.data());
   return shown;
@@ -156,11 +156,11 @@ std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) co
 }
 
 template <class Works>
-void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::book(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                        const Works& works) {
   if (!works_.exist()) return;
   struct Add {
-    static void add(std::int64_t& word, std::int64_t piece) { word += piece; }
+    static void add(std::int64_t& limb, std::int64_t term) { limb += term; }
   };
   const TriangleWorkTable table{works_.first().data(), works_.wear().empty() ? nullptr : works_.wear().data(),
                                 works_.materials()};
@@ -168,22 +168,21 @@ void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, 
     for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
   for_each(
       Serial{}, static_cast<Index>(rows.groups.size()),
-      TriangleBookItem<Works, Add>{entry_views(places, store, rows, {}), table, works, work_sums_.data()});
+      TriangleBookItem<Works, Add>{entry_views(poses, store, rows, {}), table, works, work_sums_.data()});
 }
 
-void CpuSurfaces::book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::book_loads(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                              Real h) {
-  book(places, store, rows, ExplicitWorks{loads_.data(), h, moves_});
+  book(poses, store, rows, ExplicitWorks{loads_.data(), h, moves_});
 }
 
-void CpuSurfaces::book_steps(const SurfacePlaces& places, const ParticleStore& store,
+void CpuSurfaces::book_steps(const SurfacePlaces& poses, const ParticleStore& store,
                              const SurfaceRows& rows) {
-  book(places, store, rows, ImplicitWorks{steps_.data()});
+  book(poses, store, rows, ImplicitWorks{steps_.data()});
 }
 
-void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& store,
-                            const SurfaceRows& rows) {
-  book(places, store, rows, ImplicitRubbingWorks{rubs_.data()});
+void CpuSurfaces::book_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows) {
+  book(poses, store, rows, ImplicitRubbingWorks{rubs_.data()});
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,

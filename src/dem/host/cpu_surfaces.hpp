@@ -24,13 +24,13 @@ class CpuSurfaces {
 
   // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
   // of `look`.
-  void find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
-                  const SurfaceLook& look);
+  void find_loads(const SurfacePlaces& poses, const ParticleStore& store, SurfaceRows& rows,
+                  const SurfaceLook& query);
   // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
-  void find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+  void find_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                   const StepStart& start, const HistoryViews& history);
   // Contacts over an implicit step with friction.
-  void find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+  void find_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
                  const RubbingStart& start, const HistoryViews& history);
   // Sums of the last evaluation, per surface in contact.
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
@@ -53,15 +53,15 @@ class CpuSurfaces {
     }
   }
   // Output of the contacts of the last find_loads() at an instant; per entry.
-  std::vector<ShownContact> shown(const SurfacePlaces& places, const ParticleStore& store,
+  std::vector<ShownContact> shown(const SurfacePlaces& poses, const ParticleStore& store,
                                   const SurfaceRows& rows, const HistoryViews& history) const;
   // Sums per triangle of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
   // Accumulates at the triangles the dissipation of the contacts that were evaluated last, over a closed
   // step: the explicit one of length h, or the implicit one.
-  void book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, Real h);
-  void book_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
-  void book_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
+  void book_loads(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows, Real h);
+  void book_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows);
+  void book_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows);
   std::vector<std::int64_t> works() const {
     return works_.exist() ? works_.words(work_sums_) : std::vector<std::int64_t>{};
   }
@@ -75,10 +75,10 @@ class CpuSurfaces {
 
  private:
   const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
-  SurfaceViews entry_views(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
-                           const SurfaceLook& look) const;
+  SurfaceViews entry_views(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
+                           const SurfaceLook& query) const;
   template <class Works>
-  void book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+  void book(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
             const Works& works);
   void make_room(const SurfaceRows& rows);  // for contacts with meshes
   // Finds the contacts with meshes at both ends of a step that began at start_placed.

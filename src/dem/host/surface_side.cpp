@@ -116,14 +116,15 @@ Real SurfaceSide::place() {
     const Vec3 point = moved_by_periods(with_body, {-image.x, -image.y, -image.z}, subdomain_.period());
     PlacedSurface& placed = placed_[s];
     step_[s] = point - placed.point;
-    const Vec3 turned = placed.turn;
+    const Vec3 previous_rotation = placed.turn;
     placed = {surface.kind, surface.material, surface.radius,    point, surface.normal,
               arm,          body.velocity,    global_spin(body), {},    {},
               placed.frame};
     if (!keeps_travel()) continue;
     placed.travel = with_body - point_with(step_start_, s);
     placed.turn = turn_between(step_start_[surface.carrier], body);
-    step_turn_[s] = (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - turned);
+    step_turn_[s] =
+        (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - previous_rotation);
   }
   turn_frames();
   return largest_displacement(step_, before, kMeshWear);

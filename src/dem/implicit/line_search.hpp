@@ -18,7 +18,7 @@ class LineSearch {
   void open(Real along) { share_ = 1, start_slope_ = -along, slope_ = 0; }
 
   // Whether the correction may still be shortened.
-  bool is_open() const { return share_ > kLeastShare; }
+  bool is_open() const { return share_ > kMinFraction; }
 
   // Updates the slope while the search is open. along: sum of SlopeItem at the iterate.
   void look(Real along) { slope_ = -along; }
@@ -46,7 +46,7 @@ class LineSearch {
   static constexpr Real kMostSlope = 0.5;
   // Where the slope jumps from below 0 to far above it no fraction is good enough. The search then ends at
   // this fraction, and the next correction starts from there.
-  static constexpr Real kLeastShare = 0.05;
+  static constexpr Real kMinFraction = 0.05;
   // Far past a kink the slope is so large that regula falsi would discard nearly all of the correction.
   static constexpr Real kLeastFactor = 0.1;
 
@@ -61,7 +61,7 @@ class ResidualSearch {
  public:
   // Begins after the full correction was applied. residual: at its start.
   void open(Real residual) { share_ = 1, start_ = residual, residual_ = 0; }
-  bool is_open() const { return share_ > kLeastShare; }
+  bool is_open() const { return share_ > kMinFraction; }
   void look(Real residual) { residual_ = residual; }
   bool overshoots() const { return is_open() && residual_ > kMostGrowth * start_; }
   // Halves the fraction; returns its change, to be applied to the correction.
@@ -73,7 +73,7 @@ class ResidualSearch {
 
  private:
   static constexpr Real kMostGrowth = 1;
-  static constexpr Real kLeastShare = 0.1;
+  static constexpr Real kMinFraction = 0.1;
 
   Real share_ = 0, start_ = 0, residual_ = 0;
 };

@@ -123,9 +123,9 @@ struct RubbingContact {
 
 // Evaluates a contact over the step. turning(at_end): sum of both partners' spins times their arms at one end
 // of the step; even [m/s]; called for laws with a dashpot.
-template <class Law, class Turning>
+template <class Law, class ArmSpin>
 SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, const ContactHistory& old,
-                                        bool resolve_events, const Turning& turning) {
+                                        bool resolve_events, const ArmSpin& arm_spin) {
   RubbingContact out{};
   out.slot = c.slot;
   out.acts = OverRubbingStep::closed(c), out.lasts = c.step.acts_at_end();
@@ -148,8 +148,8 @@ SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, co
     const auto rate = [](Real leverage, Vec3 velocity, Vec3 both, Vec3 across_normal) {
       return across(leverage * velocity - cross(both, across_normal), across_normal);
     };
-    step.slip_rate0 = rate(c.leverage0, c.velocity0, turning(false), c.normal0);
-    step.slip_rate1 = rate(c.motion.leverage, c.velocity1, turning(true), c.normal1);
+    step.slip_rate0 = rate(c.leverage0, c.velocity0, arm_spin(false), c.normal0);
+    step.slip_rate1 = rate(c.motion.leverage, c.velocity1, arm_spin(true), c.normal1);
   }
   out.rub = step_rub(law, step, old.spring);
   out.history.spring = out.rub.spring;
@@ -164,9 +164,9 @@ struct RubbingContactOf {
   SCREE_HD RubbingContact operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
     return rubbing_contact(law, c, old, start.step.resolve_events, [&](bool at_end) {
       const Vec4* spins = at_end ? spin : start.spin;
-      Vec3 turning = c.motion.arm_i * xyz(spins[c.i]);
-      if (c.j != RubbingPath::kWall) turning = turning + c.motion.arm_j * xyz(spins[c.j]);
-      return turning;
+      Vec3 sum = c.motion.arm_i * xyz(spins[c.i]);
+      if (c.j != RubbingPath::kWall) sum = sum + c.motion.arm_j * xyz(spins[c.j]);
+      return sum;
     });
   }
   template <class Views>
@@ -184,12 +184,12 @@ SCREE_HD RubbingBooks rubbing_books(const Law& law, const RubbingPath& c, const 
                                     bool resolve_events) {
   if (!at.acts) return {{}, 0, false, false, {}};
   RubbingBooks out{StepBooksOf{{resolve_events}}(law, c), 0, true, at.lasts, at.history};
-  const StepRub& rub = at.rub;
-  const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
-  const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
+  const StepRub& friction = at.rub;
+  const Vec3 force = at.leverage0 * friction.start + at.leverage * friction.step;
+  const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
   const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel - c.step.h * c.slide));
-  const Real lost = rub.losses.sum();
-  out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
+  const Real lost = friction.losses.sum();
+  out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
   out.friction = lost;
   return out;
 }

@@ -19,9 +19,9 @@ struct StepTorques {
 
 // Sums over the contacts of one particle; moments over its radius.
 struct RubbingSums {
-  Vec3 step_force, end_force;            // [N]
-  Vec3 start_turn, step_turn, end_turn;  // [N]
-  Real magnitude = 0;                    // [N]
+  Vec3 step_force, end_force;                  // [N]
+  Vec3 start_moment, step_moment, end_moment;  // [N]
+  Real magnitude = 0;                          // [N]
 
   SCREE_HD static RubbingSums of(const RubbingContact& c) {
     const Vec3 n = c.normal.normal;
@@ -40,7 +40,7 @@ struct RubbingSums {
   }
   SCREE_HD RubbingSums& operator+=(const RubbingSums& part) {
     step_force += part.step_force, end_force += part.end_force;
-    start_turn += part.start_turn, step_turn += part.step_turn, end_turn += part.end_turn;
+    start_moment += part.start_moment, step_moment += part.step_moment, end_moment += part.end_moment;
     magnitude += part.magnitude;
     return *this;
   }
@@ -62,7 +62,7 @@ struct RubbingSystemItem {
   using Self = typename RubbingWalk<Laws, Rows>::Self;
   struct Total {
     RubbingSums sums;
-    Real sharpest = 0;
+    Real largest_phase = 0;
     Index entries = 0;  // in the row of the matrix
   };
 
@@ -82,10 +82,10 @@ struct RubbingSystemItem {
   SCREE_HD void add_neighbors(const Self& self, Total& total) const {
     if constexpr (kShared<Rows>) {
       total.entries = walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self),
-                                                SharedContact{*this, total.sharpest}, total.sums);
+                                                SharedContact{*this, total.largest_phase}, total.sums);
     } else {
       walk.neighbors(self, contact_of(), [&](const RubbingContact& c, Index j) {
-        total.sums += take(c, self.i, j, total.entries++, total.sharpest);
+        total.sums += take(c, self.i, j, total.entries++, total.largest_phase);
       });
     }
   }
@@ -94,46 +94,47 @@ struct RubbingSystemItem {
     RubbingSums& sums = total.sums;
     Index surfaces = 0;
     walk.surfaces(self, contact_of(), [&](const RubbingContact& c, Index surface) {
-      sums += RubbingSums::of(c), sharpen(c, i, total.sharpest);
-      const Index placed = walk.in.numbers.at_rest(surface) ? RubbingPath::kWall : static_cast<Index>(c.slot);
-      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = RubbingEntry::of(c, weights, placed);
+      sums += RubbingSums::of(c), update_phase(c, i, total.largest_phase);
+      const Index partner =
+          walk.in.numbers.at_rest(surface) ? RubbingPath::kWall : static_cast<Index>(c.slot);
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = RubbingEntry::of(c, weights, partner);
     });
     const Real radius = walk.in.position[i].w;
     matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;
     out.step_force[i] = sums.step_force, out.end_force[i] = sums.end_force;
     out.magnitude[i] = sums.magnitude;
-    torques.start[i] = radius * sums.start_turn, torques.step[i] = radius * sums.step_turn;
-    torques.end[i] = radius * sums.end_turn;
-    sharpness[i] = total.sharpest;
+    torques.start[i] = radius * sums.start_moment, torques.step[i] = radius * sums.step_moment;
+    torques.end[i] = radius * sums.end_moment;
+    sharpness[i] = total.largest_phase;
   }
 
  private:
   // Evaluates contacts of any row; k: index of the contact in its row.
   struct SharedContact {
     const RubbingSystemItem& item;
-    Real& sharpest;
+    Real& largest_phase;
 
     SCREE_HD RubbingSums operator()(Index i, Index j, std::int64_t slot, Index k) const {
-      return item.take(item.walk.contact_at(item.contact_of(), i, j, slot), i, j, k, sharpest);
+      return item.take(item.walk.contact_at(item.contact_of(), i, j, slot), i, j, k, largest_phase);
     }
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
   SCREE_HD RubbingContactOf contact_of() const { return {walk.look.start, walk.in.spin}; }
   // Stores the k-th contact of row i as an entry of the matrix. Returns its contribution to the sums.
-  SCREE_HD RubbingSums take(const RubbingContact& c, Index i, Index j, Index k, Real& sharpest) const {
+  SCREE_HD RubbingSums take(const RubbingContact& c, Index i, Index j, Index k, Real& largest_phase) const {
     const std::int64_t slot = walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride();
     if (!c.acts) {
       matrix.entries.put_none(slot);
       return RubbingSums::nothing();
     }
-    matrix.entries.put(slot, RubbingEntry::of(c, weights, j)), sharpen(c, i, sharpest);
+    matrix.entries.put(slot, RubbingEntry::of(c, weights, j)), update_phase(c, i, largest_phase);
     return RubbingSums::of(c);
   }
-  SCREE_HD void sharpen(const RubbingContact& c, Index i, Real& sharpest) const {
+  SCREE_HD void update_phase(const RubbingContact& c, Index i, Real& largest_phase) const {
     const Real h = walk.look.start.step.h;
-    const Real sharp = 2 * c.normal.step.stiffness * h * h / walk.in.velocity[i].w;
-    sharpest = sharp > sharpest ? sharp : sharpest;
+    const Real phase = 2 * c.normal.step.stiffness * h * h / walk.in.velocity[i].w;
+    largest_phase = phase > largest_phase ? phase : largest_phase;
   }
 };
 
@@ -177,15 +178,15 @@ struct RubbingBooksItem {
   SCREE_HD_CALLER
   SCREE_HD void add_neighbors(const Self& self, RubbingBookSums& sum) const {
     if constexpr (kShared<Rows>) {
-      walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self), SharedBooks{*this}, sum);
+      walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self), SharedLosses{*this}, sum);
     } else {
-      walk.template neighbors<true>(self, books_of(), [&](const RubbingBooks& one, Index) {
+      walk.template neighbors<true>(self, evaluator(), [&](const RubbingBooks& one, Index) {
         if (one.acts) sum += RubbingBookSums::of(one, kPairShare);
       });
     }
   }
   SCREE_HD void finish(const Self& self, RubbingBookSums& sum) const {
-    walk.template surfaces<true>(self, books_of(),
+    walk.template surfaces<true>(self, evaluator(),
                                  [&](const RubbingBooks& one, Index) { sum += RubbingBookSums::of(one, 1); });
     to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
     to.friction[self.i] += sum.friction;
@@ -193,11 +194,11 @@ struct RubbingBooksItem {
 
  private:
   // Accounts for contacts of any row.
-  struct SharedBooks {
+  struct SharedLosses {
     const RubbingBooksItem& item;
 
     SCREE_HD RubbingBookSums operator()(Index i, Index j, std::int64_t slot) const {
-      const RubbingBooks one = item.walk.contact_at(item.books_of(), i, j, slot);
+      const RubbingBooks one = item.walk.contact_at(item.evaluator(), i, j, slot);
       const auto& history = item.walk.in.history;
       if (one.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, one.history);
       return one.acts ? RubbingBookSums::of(one, kPairShare) : RubbingBookSums::nothing();
@@ -205,7 +206,7 @@ struct RubbingBooksItem {
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
-  SCREE_HD RubbingBooksOf books_of() const { return {{walk.look.start, walk.in.spin}}; }
+  SCREE_HD RubbingBooksOf evaluator() const { return {{walk.look.start, walk.in.spin}}; }
 };
 
 // Stores the friction limits of particle i's contacts at the iterate, including limits that are already

@@ -52,30 +52,30 @@ struct RubbingEntry {
   // to terms of the order of overlap over radius and of the rotation in a step. Vector: Vec3, or Vec3f in a
   // solve, whose directions have their own unit.
   template <class Vector>
-  SCREE_HD TwistOf<Vector> pull(Vector apart, Vector turning, bool consistent) const {
+  SCREE_HD TwistOf<Vector> pull(Vector relative_displacement, Vector rotation_sum, bool consistent) const {
     const Vector n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
-    const auto approach = dot(n, apart);
-    const Vector slip = apart - approach * n - cross(turning, n);
+    const auto approach = dot(n, relative_displacement);
+    const Vector slip = relative_displacement - approach * n - cross(rotation_sum, n);
     Vector force = shear.across * (slip - dot(t, slip) * t);
     Vector along = (slide.along * approach) * n;
     if (consistent) {
       const Vector growth{shear.x, shear.y, shear.z};
-      force = force - approach * growth, along = along + dot(n, growth) * apart;
+      force = force - approach * growth, along = along + dot(n, growth) * relative_displacement;
     }
     return {along + force, -cross(n, force)};
   }
   // Adds the symmetric part to the block of i.
   SCREE_HD void add_to(Block6& block) const {
     const Vec3 n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z}, c = cross(n, t);
-    const Real k = shear.across, slides = dot(t, t);
+    const Real k = shear.across, is_sliding = dot(t, t);
     block.move += outer(slide.along, n);
-    if (slides > Real(0.5)) {  // only the direction c is left, together with the rotation about t
+    if (is_sliding > Real(0.5)) {  // only the direction c is left, together with the rotation about t
       block.move += outer(k, c), block.turn += outer(k, t), block.mixed += outer(k, c, t);
       return;
     }
-    Sym3 plane = outer(-k, n);
-    plane += Sym3{k, 0, 0, k, 0, k};
-    block.move += plane, block.turn += plane;
+    Sym3 tangent = outer(-k, n);
+    tangent += Sym3{k, 0, 0, k, 0, k};
+    block.move += tangent, block.turn += tangent;
     block.mixed += Mat3{{0, -k * n.z, k * n.y}, {k * n.z, 0, -k * n.x}, {-k * n.y, k * n.x, 0}};
   }
 };
@@ -140,15 +140,15 @@ struct BlockSlices {
   }
   SCREE_HD Block6f operator[](Index i) const {
     Block6f block;
-    for (int k = 0; k < Block6f::kNumbers; ++k) block.value[k] = numbers[place(i, k)];
+    for (int k = 0; k < Block6f::kNumbers; ++k) block.value[k] = numbers[index(i, k)];
     return block;
   }
   SCREE_HD void put(Index i, const Block6f& block) const {
-    for (int k = 0; k < Block6f::kNumbers; ++k) numbers[place(i, k)] = block.value[k];
+    for (int k = 0; k < Block6f::kNumbers; ++k) numbers[index(i, k)] = block.value[k];
   }
 
  private:
-  SCREE_HD static std::int64_t place(Index i, int k) {
+  SCREE_HD static std::int64_t index(Index i, int k) {
     return (std::int64_t{i / kRows} * Block6f::kNumbers + k) * kRows + i % kRows;
   }
 };

@@ -264,9 +264,9 @@ struct VerletFinishItem {
     const Vec3 a = reciprocal(v.w) * forces.force[i];
     if constexpr (LawOf<Laws>::kMoves) {
       const Vec4 w = forces.walk.in.spin[i];
-      const Vec3 turning = forces.angular_acceleration[i];
+      const Vec3 angular_acceleration = forces.angular_acceleration[i];
       state.velocity[i] = vec4(verlet_half_kick(state.h, xyz(v), a), v.w);
-      state.spin[i] = vec4(verlet_half_kick(state.h, xyz(w), turning), w.w);
+      state.spin[i] = vec4(verlet_half_kick(state.h, xyz(w), angular_acceleration), w.w);
       state.contact_loss[i] += state.h * forces.loss_power[i];
       total.losses.book(state.losses, i);
     } else {
@@ -292,7 +292,7 @@ struct VerletAdvanceItem {
   SCREE_HD Real advance(Index i, const Total& total) const {
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
-    if constexpr (LawOf<Laws>::kMoves) return advance_turning(i, total, a);
+    if constexpr (LawOf<Laws>::kMoves) return advance_rotating(i, total, a);
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
     state.acceleration[i] = a;
     if (total.loss_power != 0) {
@@ -303,15 +303,16 @@ struct VerletAdvanceItem {
   }
 
  private:
-  SCREE_HD Real advance_turning(Index i, const Total& total, Vec3 a) const {
+  SCREE_HD Real advance_rotating(Index i, const Total& total, Vec3 a) const {
     const auto& in = forces.walk.in;
     const Vec4 v = in.velocity[i], w = in.spin[i];
-    const Vec3 turning = reciprocal(w.w) * total.torque;
+    const Vec3 angular_acceleration = reciprocal(w.w) * total.torque;
     if (total.loss_power != 0) state.contact_loss[i] += state.h * total.loss_power;
     total.losses.book(state.losses, i);
-    return verlet_open(state, i,
-                       {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,
-                        vec4(verlet_half_kick(state.h, xyz(w), turning), w.w), turning});
+    return verlet_open(
+        state, i,
+        {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,
+         vec4(verlet_half_kick(state.h, xyz(w), angular_acceleration), w.w), angular_acceleration});
   }
 };
 

@@ -20,14 +20,14 @@ struct TurningViews {
 // the rotation over the step takes the role of the displacement.
 struct TurnItem {
   StepViews step;
-  TurningViews turning;
+  TurningViews rotation;
 
   SCREE_HD void operator()(Index i) const {
-    const Vec4 w = turning.start_spin[i];
-    const Vec3 a0 = turning.start_acceleration[i], a1 = turning.acceleration[i];
-    turning.spin[i] = vec4(newmark_velocity(step.hht, step.h, xyz(w), a0, a1), w.w);
+    const Vec4 w = rotation.start_spin[i];
+    const Vec3 a0 = rotation.start_acceleration[i], a1 = rotation.acceleration[i];
+    rotation.spin[i] = vec4(newmark_velocity(step.hht, step.h, xyz(w), a0, a1), w.w);
     const Vec3 turn = newmark_displacement(step.hht, step.h, xyz(w), a0, a1);
-    turning.mean_spin[i] = vec4((1 / step.h) * turn, w.w);
+    rotation.mean_spin[i] = vec4((1 / step.h) * turn, w.w);
   }
 };
 
@@ -35,7 +35,7 @@ struct TurnItem {
 // Newton matrix and the inverse of its block.
 struct RubbingResidualItem {
   StepViews step;
-  TurningViews turning;
+  TurningViews rotation;
   StepForces forces;
   StepTorques torques;
   Twist* residual;  // [N]
@@ -47,11 +47,11 @@ struct RubbingResidualItem {
   SCREE_HD void operator()(Index i, const RubbingMatrix& matrix, const Rows& rows,
                            Index first_surface) const {
     const Real weight = hht_inertia_weight(step.hht), radius = step.position[i].w;
-    const Real m = step.velocity[i].w, inertia = turning.start_spin[i].w;
+    const Real m = step.velocity[i].w, inertia = rotation.start_spin[i].w;
     const Vec3 force =
         -hht_residual(step.hht, m, step.acceleration[i], forces.step_force[i], step.start_force[i]);
     const Vec3 torque =
-        -hht_residual(step.hht, inertia, turning.acceleration[i], torques.step[i], torques.start[i]);
+        -hht_residual(step.hht, inertia, rotation.acceleration[i], torques.step[i], torques.start[i]);
     residual[i] = {force, (1 / radius) * torque};
     const ScaledMass masses{weight * m, weight * inertia / (radius * radius)};
     mass[i] = masses;
@@ -78,12 +78,12 @@ struct RubbingNormsItem {
 
   SCREE_HD RubbingNorms operator()(Index i) const {
     const Real move = norm(residual[i].move), turn = norm(residual[i].turn);
-    const Real by_move = move / mass[i].move, by_turn = turn / mass[i].turn;
+    const Real by_move = move / mass[i].move, by_rotation = turn / mass[i].turn;
     const Real gain = newmark_position_gain(step.hht, step.h) / step.position[i].w;
     const Real at_start = norm(step.start_force[i]) + step.velocity[i].w * norm(step.start_acceleration[i]);
     RubbingNorms out;
     out.residual = move > turn ? move : turn;
-    out.correction_bound = gain * (by_move > by_turn ? by_move : by_turn);
+    out.correction_bound = gain * (by_move > by_rotation ? by_move : by_rotation);
     out.force = magnitude[i] + at_start;
     out.stiffening = stiffening[i], out.sharpness = sharpness[i];
     return out;
@@ -130,15 +130,15 @@ struct SubtractRubbingItem {
 
   SCREE_HD void operator()(Index i) const {
     const Twistf own = d[i];
-    Twistf pulls{};
+    Twistf products{};
     matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) {
       const Twistf other = d[entry.normal.neighbor];
-      pulls += entry.pull(own.move - other.move, own.turn + other.turn, consistent);
+      products += entry.pull(own.move - other.move, own.turn + other.turn, consistent);
     });
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
-      pulls += matrix.surface_entries[surface_offsets[i] + k].pull(own.move, own.turn, consistent);
+      products += matrix.surface_entries[surface_offsets[i] + k].pull(own.move, own.turn, consistent);
     const Twist of_mass{mass[i].move * in_double(own.move), mass[i].turn * in_double(own.turn)};
-    residual[i] -= unit * (of_mass + in_double(pulls));
+    residual[i] -= unit * (of_mass + in_double(products));
   }
 };
 
@@ -160,12 +160,12 @@ struct TwistDirectionItem {
 // Local error of position or rotation of an implicit step over the radius.
 struct TurningErrorItem {
   StepViews step;
-  TurningViews turning;
+  TurningViews rotation;
 
   SCREE_HD Real operator()(Index i) const {
     const Real move = StepErrorItem{step}(i);
     const Real turn =
-        hht_position_error(step.hht, step.h, turning.start_acceleration[i], turning.acceleration[i], 1);
+        hht_position_error(step.hht, step.h, rotation.start_acceleration[i], rotation.acceleration[i], 1);
     return move > turn ? move : turn;
   }
 };
@@ -175,32 +175,32 @@ struct TurningErrorItem {
 // permanently, and a pile without rolling resistance would creep.
 struct BalanceItem {
   StepViews step;
-  TurningViews turning;
+  TurningViews rotation;
   StepForces forces;
   StepTorques torques;
 
   SCREE_HD void operator()(Index i) const {
     step.acceleration[i] =
         hht_acceleration(step.hht, step.velocity[i].w, forces.step_force[i], step.start_force[i]);
-    turning.acceleration[i] =
-        hht_acceleration(step.hht, turning.spin[i].w, torques.step[i], torques.start[i]);
+    rotation.acceleration[i] =
+        hht_acceleration(step.hht, rotation.spin[i].w, torques.step[i], torques.start[i]);
   }
 };
 
 // Closes the rotation of an implicit step, see `AcceptItem`.
 struct AcceptTurnItem {
   StepViews step;
-  TurningViews turning;
+  TurningViews rotation;
   StepTorques torques;
   Quaternion* orientation;
   Real* integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
-    const Vec4 w0 = turning.start_spin[i];
-    const Vec3 mean = xyz(turning.mean_spin[i]);
-    integrator_loss[i] += ::scree::integrator_loss(w0.w, step.h * mean, xyz(w0), xyz(turning.spin[i]),
+    const Vec4 w0 = rotation.start_spin[i];
+    const Vec3 mean = xyz(rotation.mean_spin[i]);
+    integrator_loss[i] += ::scree::integrator_loss(w0.w, step.h * mean, xyz(w0), xyz(rotation.spin[i]),
                                                    torques.start[i], torques.step[i]);
-    turning.acceleration[i] += hht_event_acceleration(step.hht, w0.w, torques.step[i], torques.end[i]);
+    rotation.acceleration[i] += hht_event_acceleration(step.hht, w0.w, torques.step[i], torques.end[i]);
     orientation[i] = turned_by(orientation[i], mean, step.h);
   }
 };

@@ -54,7 +54,7 @@ class ContactKernels {
                              const PlacedSurface* start_placed, SurfaceStep* steps) const = 0;
   // Contacts of n shapes of bodies with each other and with surfaces: at an instant or over an explicit step,
   // and over an implicit one, without friction and with it. The history of a step is stored.
-  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
+  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& query,
                           BodyLoad* out) const = 0;
   virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                           const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;

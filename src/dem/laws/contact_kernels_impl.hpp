@@ -56,14 +56,14 @@ class CpuContactKernels : public ContactKernels {
                      const PlacedSurface* start_placed, SurfaceStep* steps) const override {
     for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
   }
-  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& query,
                   BodyLoad* out) const override {
     if constexpr (LawOf<Laws>::kMoves)
-      if (look.h > 0) {
+      if (query.h > 0) {
         using Item = BodyLoadItem<Laws, PackedRows, OverMotion>;
-        return for_each(Serial{}, n, Item{{in, laws_, {look.h}}, look.arm, out});
+        return for_each(Serial{}, n, Item{{in, laws_, {query.h}}, query.arm, out});
       }
-    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, look.arm, out});
+    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, query.arm, out});
   }
   void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
                   BodyStep* out, const ShapeContactsTo& to) const override {

@@ -25,27 +25,28 @@
 // them with each update_halo.
 // clang-format off
 #define SCREE_PARTICLE_FIELDS(FIELD, PACKED)                                                                 \
-  PACKED(position, "m", "centre, within the periodic sides unless the particle drifts", kState,              \
+  PACKED(position, "m", "centre, wrapped into the periodic box unless it drifts", kState,                    \
          radius, "m", "radius", kConstant | kOutput)                                                         \
   PACKED(velocity, "m/s", "velocity", kState | kOutput, mass, "kg", "mass", kConstant | kOutput)             \
   PACKED(angular_velocity, "rad/s", "angular velocity", kState | kRotation | kOutput, moment_of_inertia,     \
-         "kg m^2", "moment of inertia about the centre", kConstant | kRotation)                    \
-  FIELD(material, int, "1", "place of its material among the deck's", kConstant | kGhost | kOutput)          \
+         "kg m^2", "moment of inertia about the centre", kConstant | kRotation)                              \
+  FIELD(material, int, "1", "index of its material in the deck, from 0", kConstant | kGhost | kOutput)       \
   FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState | kOutput)        \
   FIELD(force, Vec3, "N", "gravity and contacts", kState)                                                    \
-  FIELD(contact_loss, Real, "J", "dissipated in its share of its contacts since t = 0", kState | kOutput)    \
-  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts", kState | kOutput)             \
-  FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState | kOutput)                        \
-  FIELD(image, ImageCount, "1", "periods that were taken off the position", kState | kOutput)                \
-  FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)                        \
+  FIELD(contact_loss, Real, "J", "energy dissipated in its share of its contacts since t = 0",               \
+        kState | kOutput)                                                                                    \
+  FIELD(loss_power, Real, "W", "power dissipated in its share of its contacts", kState | kOutput)            \
+  FIELD(integrator_loss, Real, "J", "numerical dissipation of HHT since t = 0", kState | kOutput)            \
+  FIELD(image, ImageCount, "1", "numbers of periods subtracted from the position", kState | kOutput)         \
+  FIELD(drifting, std::uint8_t, "1", "1 if it drifts, outside the domain beyond an open side", kState)       \
   FIELD(angular_acceleration, Vec3, "rad/s^2", "angular acceleration that the next step starts from",        \
         kState | kRotation | kOutput)                                                                        \
-  FIELD(orientation, Quaternion, "1", "turn since t = 0, as a unit quaternion w, x, y, z",                   \
+  FIELD(orientation, Quaternion, "1", "rotation since t = 0, as a unit quaternion w, x, y, z",               \
         kState | kRotation | kOutput)                                                                        \
-  FIELD(friction_loss, Real, "J", "the part of contact_loss that friction took", kState | kRotation | kOutput) \
-  FIELD(rolling_loss, Real, "J", "the part of contact_loss that resistance to rolling took",                 \
+  FIELD(friction_loss, Real, "J", "part of contact_loss by friction", kState | kRotation | kOutput)          \
+  FIELD(rolling_loss, Real, "J", "part of contact_loss by rolling resistance",                               \
         kState | kRotation | kRolling | kOutput)                                                             \
-  FIELD(twisting_loss, Real, "J", "the part of contact_loss that resistance to twisting took",               \
+  FIELD(twisting_loss, Real, "J", "part of contact_loss by twisting resistance",                             \
         kState | kRotation | kRolling | kOutput)
 // clang-format on
 

@@ -118,7 +118,8 @@ struct ContactLineItem {
     Index count = 0;
     const auto add = [&](GlobalId second, const ShownContact& contact) {
       if (to.lines != nullptr)
-        to.lines[to.offsets[i] - to.first_line + count] = {id_of(own_key), second, place_of(self.p), contact};
+        to.lines[to.offsets[i] - to.first_line + count] = {id_of(own_key), second, wrapped_position(self.p),
+                                                           contact};
       ++count;
     };
     const ShownContactOf of{to.of_surfaces};
@@ -131,7 +132,7 @@ struct ContactLineItem {
   }
 
  private:
-  SCREE_HD Vec3 place_of(Vec4 p) const {
+  SCREE_HD Vec3 wrapped_position(Vec4 p) const {
     ImageCount unused;
     return wrap(to.box_min, to.period, xyz(p), unused);
   }

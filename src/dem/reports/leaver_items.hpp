@@ -27,7 +27,7 @@ struct Leaver {
 // Whether an item is outside the domain, while all particles of the rows are in the search. All ranks agree,
 // because ghosts have their particles' positions.
 template <class Rows>
-struct Leaves {
+struct IsEscaped {
   const ContactViews<Rows>& in;
   const OpenBox& box;
   SCREE_HD bool operator()(Index j) const { return !box.inside(xyz(in.position[j])); }
@@ -42,8 +42,8 @@ struct LeaverEnergyItem {
   Leaver* leavers;
 
   SCREE_HD void operator()(Index k) const {
-    const Leaves<Rows> leaves{walk.in, box};
-    const auto share = [&](Index j) { return leaves(j) ? kPairShare : Real(1); };
+    const IsEscaped<Rows> is_escaped{walk.in, box};
+    const auto share = [&](Index j) { return is_escaped(j) ? kPairShare : Real(1); };
     leavers[k].elastic = touch_sums(walk, leavers[k].local_index, share).energy;
   }
 };
@@ -72,36 +72,36 @@ struct DepartureItem {
 
   SCREE_HD void operator()(Index i) const {
     if (start.drifting[i]) return;
-    const Leaves<Rows> leaves{walk.in, box};
+    const IsEscaped<Rows> is_escaped{walk.in, box};
     const auto self = walk.self(i);
     const Real mass = self.u.w;
-    if (leaves(i)) {
-      begin_from(i, mass, mass * gravity);
-      if constexpr (LawOf<Laws>::kMoves) turn_from(i, self.spin.w, {});
+    if (is_escaped(i)) {
+      set_start(i, mass, mass * gravity);
+      if constexpr (LawOf<Laws>::kMoves) set_rotation_start(i, self.spin.w, {});
       if (start.loss_power != nullptr) start.loss_power[i] = 0;
       return;
     }
     Vec3 ended_force, ended_torque;
     Real ended_loss = 0;
     Index ended = 0;
-    walk.neighbors_if(self, leaves, LoadOf{}, [&](const auto& load, Index) {
+    walk.neighbors_if(self, is_escaped, LoadOf{}, [&](const auto& load, Index) {
       ended_force += load.force, ended_torque += load.torque_i, ended_loss += load.loss, ++ended;
     });
     if (ended == 0) return;
-    begin_from(i, mass, start.force[i] - ended_force);
+    set_start(i, mass, start.force[i] - ended_force);
     if constexpr (LawOf<Laws>::kMoves)
-      turn_from(i, self.spin.w, start.angular_acceleration[i] - (1 / self.spin.w) * ended_torque);
+      set_rotation_start(i, self.spin.w, start.angular_acceleration[i] - (1 / self.spin.w) * ended_torque);
     if (start.loss_power != nullptr) start.loss_power[i] -= kPairShare * ended_loss;
   }
 
-  SCREE_HD void turn_from(Index i, Real inertia, Vec3 after) const {
+  SCREE_HD void set_rotation_start(Index i, Real inertia, Vec3 after) const {
     const Vec3 before = start.angular_acceleration[i];
     start.angular_acceleration[i] = after;
     start.integrator_loss[i] += verlet_energy_shift(start.verlet_step, inertia, after) -
                                 verlet_energy_shift(start.verlet_step, inertia, before);
   }
 
-  SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {
+  SCREE_HD void set_start(Index i, Real mass, Vec3 force) const {
     const Vec3 a0 = start.acceleration[i];
     const Vec3 a1 = a0 + hht_event_acceleration(start.hht, mass, start.force[i], force);
     start.force[i] = force, start.acceleration[i] = a1;

@@ -48,13 +48,13 @@ const std::vector<OutputField>& output_fields() {
 }
 
 std::vector<OutputField> wanted_fields(const Output& output) {
-  std::vector<OutputField> wanted;
+  std::vector<OutputField> fields;
   for (const std::string& name : output.fields) {
     const OutputField* const field = find_field(name);
     if (field == nullptr) throw std::logic_error("no output field is named " + name);
-    wanted.push_back(*field);
+    fields.push_back(*field);
   }
-  return wanted;
+  return fields;
 }
 
 std::vector<OutputField> computed_fields(const Output& output) {
@@ -78,7 +78,7 @@ void check_output_fields(const Deck& deck) {
 
 std::string output_fields_text() {
   std::string text =
-      "Output fields (output.fields), beside the position and the global id that every snapshot has:\n";
+      "Output fields (output.fields), besides the position and the global id, which every snapshot has:\n";
   for (const OutputField& field : output_fields())
     text += fmt::format("  {:<16} [{}] {}.\n", field.head.name, field.head.unit, field.head.description);
   return text;
@@ -86,8 +86,10 @@ std::string output_fields_text() {
 
 std::string output_fields_markdown() {
   std::string text =
-      "<a id=\"output_fields\"></a>\n\n## Output fields\n\nFor [`output.fields`](#output.fields), beside the "
-      "position and the global id that every snapshot has.\n\n| field | unit | what it is |\n|---|---|---|\n";
+      "<a id=\"output_fields\"></a>\n\n## Output fields\n\nFor [`output.fields`](#output.fields), besides "
+      "the "
+      "position and the global id, which every snapshot has.\n\n| field | unit | what it is "
+      "|\n|---|---|---|\n";
   for (const OutputField& field : output_fields())
     text += fmt::format("| `{}` | {} | {} |\n", field.head.name, field.head.unit, field.head.description);
   return text;

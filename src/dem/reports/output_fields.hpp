@@ -120,7 +120,7 @@ struct StressOutput {
 // Group of a particle, known from its global id and the deck: added where snapshots are written, not by a
 // backend.
 inline constexpr OutputHead kGroupOutput{
-    "group", "1", "group of particles that it belongs to, counted from 0 in the deck's order"};
+    "group", "1", "group of particles to which it belongs, from 0 in the order of the deck"};
 
 using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput, StressOutput>;
 
@@ -160,7 +160,7 @@ struct ContactOutputItem {
   SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, walk, order != nullptr ? order[k] : k); }
 };
 
-// Request for the values of n particles; out: room for n values of the field's type.
+// Request for the values of n particles; out: space for n values of the field's type.
 struct OutputRequest {
   OutputSource in;
   const Index* order;

@@ -52,9 +52,9 @@ struct ExplicitWorks {
     const SurfaceLoad& contact = loads[entry];
     const Real lost = h * contact.load.loss;
     if (!moves) return {lost, 0};
-    const RubbingLosses& rubbed = contact.losses;
-    return {lost - (rubbed.of[kFrictionLoss] + rubbed.of[kRollingLoss] + rubbed.of[kTwistingLoss]),
-            rubbed.of[kFrictionLoss]};
+    const RubbingLosses& losses = contact.losses;
+    return {lost - (losses.of[kFrictionLoss] + losses.of[kRollingLoss] + losses.of[kTwistingLoss]),
+            losses.of[kFrictionLoss]};
   }
 };
 struct ImplicitWorks {

@@ -82,8 +82,8 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
         const Index j = near_.items[k];
         const Vec4 q = store.position[j];
         const Vec3 d = xyz(p) - xyz(q);
-        const Real reach = p.w + q.w + past_touch(list.skin);
-        if (dot(d, d) < reach * reach && j != i) list.neighbors.push_back(j);
+        const Real distance = p.w + q.w + past_touch(list.skin);
+        if (dot(d, d) < distance * distance && j != i) list.neighbors.push_back(j);
       }
 }
 

@@ -56,8 +56,8 @@ class EntryFinder {
   }
   void add_near_sphere(Index s, Vec3 shift, Entry entry) {
     const PlacedSurface& surface = placed(s);
-    const Real reach = surface.radius + sorted_.largest_radius + search_.skin;
-    for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, reach), [&](Index i) {
+    const Real range = surface.radius + sorted_.largest_radius + search_.skin;
+    for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, range), [&](Index i) {
       const SurfacePair pair = surface_pair(surface, shift, position(i));
       if (pair.geometry.overlap > -search_.skin && may_touch(i, s)) add(entry, i, 1);
     });
@@ -75,13 +75,13 @@ class EntryFinder {
     for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
       if (!may_touch(i, s)) return;
       triangles_.clear();
-      const MeshSight sight = sight_of(search_.places, s, position(i), shift, skin);
-      sight.for_each_triangle([&](Index t) { triangles_.push_back(t); });
+      const MeshSight query = sight_of(search_.places, s, position(i), shift, skin);
+      query.for_each_triangle([&](Index t) { triangles_.push_back(t); });
       const auto count = static_cast<Index>(triangles_.size());
       if (count == 0) return;
       const Index remembered = search_.remembered ? search_.remembered(i, entry.surface) : 0;
-      const RowKind kind = kind_of_row(sight.mesh, triangles_.data(), count);
-      add(entry, i, sight.entries(kind, triangles_.data(), count, remembered));
+      const RowKind kind = kind_of_row(query.mesh, triangles_.data(), count);
+      add(entry, i, query.entries(kind, triangles_.data(), count, remembered));
     });
   }
   void add(Entry entry, Index particle, Index times) {
@@ -136,12 +136,12 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
            rows.images[end] == rows.images[entry])
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
-    const MeshSight sight =
+    const MeshSight query =
         sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
                  image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
-    sight.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
+    query.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
-    const RowKind kind = kind_of_row(sight.mesh, rows.triangles.data() + first, last - first);
+    const RowKind kind = kind_of_row(query.mesh, rows.triangles.data() + first, last - first);
     rows.groups.push_back({entry, end - entry, first, last - first, kind});
   }
   rows.standings.assign(rows.groups.size(), kNoStanding);
@@ -151,27 +151,27 @@ Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; 
 
 }  // namespace
 
-Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin) {
+Box box_near(const SurfacePlaces& poses, Index s, Vec3 shift, Real radius, Real skin) {
   constexpr Real kRoundOff = 1e-9;  // of the rotated box, with a wide margin
-  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
-  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
-  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+  const PlacedSurface& surface = poses.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = poses.meshes[static_cast<std::size_t>(frame.mesh)];
   const MeshBox& of_mesh = mesh.boxes[mesh.level_start[mesh.levels - 1]];
   const Vec3 half = Real(0.5) * (of_mesh.max - of_mesh.min);
   const Vec3 middle = surface.point + shift + frame.axes * (of_mesh.min + half);
-  const Vec3 turned{dot(magnitudes(frame.axes.x), half), dot(magnitudes(frame.axes.y), half),
-                    dot(magnitudes(frame.axes.z), half)};
-  const Real reach = radius + mesh_skin(radius, skin) + kRoundOff * (norm(half) + norm(middle));
-  const auto along = [&](Real size, Real period) { return period != 0 ? kInfinity : size + reach; };
-  const Vec3 to_sides{along(turned.x, frame.spanned.x), along(turned.y, frame.spanned.y),
-                      along(turned.z, frame.spanned.z)};
+  const Vec3 half_extents{dot(magnitudes(frame.axes.x), half), dot(magnitudes(frame.axes.y), half),
+                          dot(magnitudes(frame.axes.z), half)};
+  const Real range = radius + mesh_skin(radius, skin) + kRoundOff * (norm(half) + norm(middle));
+  const auto along = [&](Real size, Real period) { return period != 0 ? kInfinity : size + range; };
+  const Vec3 to_sides{along(half_extents.x, frame.spanned.x), along(half_extents.y, frame.spanned.y),
+                      along(half_extents.z, frame.spanned.z)};
   return {middle - to_sides, middle + to_sides};
 }
 
-MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin) {
-  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
-  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
-  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+MeshSight sight_of(const SurfacePlaces& poses, Index s, Vec4 p, Vec3 shift, Real skin) {
+  const PlacedSurface& surface = poses.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = poses.meshes[static_cast<std::size_t>(frame.mesh)];
   return {surface, frame, mesh, p, shift, mesh_skin(p.w, skin)};
 }
 

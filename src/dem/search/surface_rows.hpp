@@ -49,9 +49,9 @@ struct SortedParticles {
 struct CellRange {
   CellPlace lower, upper;
 };
-SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real reach) {
-  return {grid.nearest_place(p - Vec3{reach, reach, reach}),
-          grid.nearest_place(p + Vec3{reach, reach, reach})};
+SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real range) {
+  return {grid.nearest_place(p - Vec3{range, range, range}),
+          grid.nearest_place(p + Vec3{range, range, range})};
 }
 // Range of cells of a box.
 inline CellRange cells_near(const CellGrid& grid, const Box& box) {
@@ -60,7 +60,7 @@ inline CellRange cells_near(const CellGrid& grid, const Box& box) {
 
 // Box with the centres of all particles of at most `radius` that come within `skin` of the mesh of the placed
 // surface s, shifted by `shift` [m]. It is infinite along periods that the mesh spans.
-Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin);
+Box box_near(const SurfacePlaces& poses, Index s, Vec3 shift, Real radius, Real skin);
 
 // Number of contacts of a particle with a surface in the history; empty: no history.
 using RememberedCount = std::function<Index(Index particle, Index surface)>;
@@ -78,7 +78,7 @@ struct SurfaceSearch {
 };
 
 // A particle at p (x, y, z, radius) and the mesh of the placed surface s, for the search within skin.
-MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin);
+MeshSight sight_of(const SurfacePlaces& poses, Index s, Vec4 p, Vec3 shift, Real skin);
 
 // owned: particles with a row, of which the first `active` are in the search.
 void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows);

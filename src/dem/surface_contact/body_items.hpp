@@ -104,13 +104,13 @@ struct BodyLoadItem {
     BodyLoad sum;
     const auto self = walk.self(i);
     walk.template neighbors<kAccepts>(self, BodyLoadOf{}, [&](const BodyLoadOf::Found& found, Index) {
-      add(found.contact, place_of(i, self.p.w, found.normal), kPairShare, sum);
+      add(found.contact, application_point(i, self.p.w, found.normal), kPairShare, sum);
     });
     walk.template surfaces<kAccepts>(self, BodyLoadOf{}, [&](const auto& found, Index) {
       if constexpr (std::is_same_v<decltype(found), const SurfaceLoad&>)
-        add(turned(found), arm[i], 1, sum);
+        add(from_surface(found), arm[i], 1, sum);
       else
-        add(found.contact, place_of(i, self.p.w, found.normal), 1, sum);
+        add(found.contact, application_point(i, self.p.w, found.normal), 1, sum);
     });
     out[i] = sum;
   }
@@ -118,15 +118,15 @@ struct BodyLoadItem {
  private:
   // Application point of the force, from the body's centre; laws with `kMoves` act at the shape's centre with
   // a couple.
-  SCREE_HD Vec3 place_of(Index i, Real radius, Vec3 normal) const {
+  SCREE_HD Vec3 application_point(Index i, Real radius, Vec3 normal) const {
     return LawOf<Laws>::kMoves ? arm[i] : arm[i] - radius * normal;
   }
-  SCREE_HD static SurfaceLoad turned(SurfaceLoad contact) {
+  SCREE_HD static SurfaceLoad from_surface(SurfaceLoad contact) {
     contact.load = contact.load.exchanged(), contact.slide_power = 0;
     return contact;
   }
-  SCREE_HD static void add(SurfaceLoad contact, Vec3 place, Real share, BodyLoad& sum) {
-    contact.arm = place;
+  SCREE_HD static void add(SurfaceLoad contact, Vec3 point, Real share, BodyLoad& sum) {
+    contact.arm = point;
     sum.sums.add_contact(contact);
     sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
     if constexpr (!LawOf<Laws>::kMoves) return;
@@ -202,7 +202,7 @@ struct BodyRubItem {
     const BodyRubOf of{{walk.look.start, walk.in.spin}};
     const auto add = [&](const auto& found, Real share) {
       if (!found.books.acts) return;
-      sum.sums.add_contact(SurfaceRub{true, turned(found.contact), {}, arm[i], self.p.w, {}, {}});
+      sum.sums.add_contact(SurfaceRub{true, from_surface(found.contact), {}, arm[i], self.p.w, {}, {}});
       sum.books.add(found.books, share), sum.friction += share * found.books.friction;
     };
     walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
@@ -215,7 +215,7 @@ struct BodyRubItem {
 
  private:
   // The contact from the surface's side: quantities that are odd under exchange change sign.
-  SCREE_HD static RubbingContact turned(RubbingContact c) {
+  SCREE_HD static RubbingContact from_surface(RubbingContact c) {
     c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
     c.rub.start = -c.rub.start, c.rub.step = -c.rub.step, c.rub.end = -c.rub.end;
     return c;

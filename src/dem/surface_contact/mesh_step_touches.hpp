@@ -21,34 +21,34 @@ struct MeshStepTouchItem {
     const SurfaceFrame& frame = in.frames[surface.frame];
     const MeshView& mesh = in.meshes.meshes[frame.mesh];
     const Vec4 p = in.position[i];
-    const Vec3 place = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
-               place0 = place - (xyz(p) - xyz(start_position[i]));
-    const Sight end{frame.axes, transposed_times(frame.axes, place - surface.point), p.w},
-        start{frame.before, transposed_times(frame.before, place0 - surface0.point), p.w};
+    const Vec3 position = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
+               position0 = position - (xyz(p) - xyz(start_position[i]));
+    const SphereInMesh end{frame.axes, transposed_times(frame.axes, position - surface.point), p.w},
+        start{frame.before, transposed_times(frame.before, position0 - surface0.point), p.w};
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
     MeshContact now[kMeshSlots];
     RememberedTouches old;
     int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
     old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
-    if (is_sheet<kSheets>(mesh)) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
+    if (is_sheet<kSheets>(mesh)) count = track_sides(group, {mesh, end.c, start.c}, now, count, old);
     for (int k = 0; k < old.count; ++k)
-      old.entry[k] = remembering(group, remembered_feature<kSheets>(mesh, old.contact[k]));
+      old.entry[k] = entry_of_feature(group, remembered_feature<kSheets>(mesh, old.contact[k]));
     // The contacts at the end of the step come first, whether they existed at the start or not.
     bool matched[kMeshSlots] = {};
-    for (const Kinship kin : {Kinship::same, Kinship::same_patch})
+    for (const Kinship match : {Kinship::same, Kinship::same_patch})
       for (int k = 0; k < count && k < group.entries; ++k) {
         if (matched[k]) continue;
-        const int at = find_kin(mesh, now[k], old, kin, 0);
+        const int at = find_kin(mesh, now[k], old, match, 0);
         if (at < 0) continue;
         put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
         matched[k] = true, old.take_out(at);
       }
-    Overlaps gone{}, come{};  // of the nearest contacts that exist at one end only
+    Overlaps ending{}, beginning{};  // of the nearest contacts that exist at one end only
     for (int k = 0; k < count && k < group.entries; ++k) {
       if (matched[k]) continue;
       const MeshContact was = mesh_feature_at(mesh, now[k].feature, start.c, now[k].normal);
       put(group.entry + k, mesh, now[k], was, {end, start}, -1);
-      if (k == 0) come = overlaps_at(group.entry);
+      if (k == 0) beginning = overlaps_at(group.entry);
       open(before[group.entry + k].geometry);
     }
     Index next = count;
@@ -56,11 +56,11 @@ struct MeshStepTouchItem {
       const MeshContact& was = old.contact[k];
       put(group.entry + next, mesh, mesh_feature_at(mesh, was.feature, end.c, was.normal), was, {end, start},
           old.entry[k]);
-      if (k == 0) gone = overlaps_at(group.entry + next);
+      if (k == 0) ending = overlaps_at(group.entry + next);
       open(touches[group.entry + next].geometry);
     }
-    if (!mesh.sheet && (come.at_end > p.w || gone.at_start > p.w))
-      change_over(group.entry + count, gone, group.entry, come);
+    if (!mesh.sheet && (beginning.at_end > p.w || ending.at_start > p.w))
+      change_over(group.entry + count, ending, group.entry, beginning);
     for (; next < group.entries; ++next) touches[group.entry + next].set_none();
     if (is_sheet<kSheets>(mesh))
       for (Index k = 0; k < group.entries; ++k)
@@ -69,31 +69,31 @@ struct MeshStepTouchItem {
 
  private:
   // A sphere in the frame of a mesh.
-  struct Sight {
+  struct SphereInMesh {
     const Mat3& axes;
     Vec3 c;
     Real radius;
   };
-  struct Sights {
-    const Sight &end, &start;
+  struct SphereAtEnds {
+    const SphereInMesh &end, &start;
   };
   // Sphere centre in the frame of an open surface, at both ends of the step.
-  struct Passage {
+  struct CentreAtEnds {
     const MeshView& mesh;
     Vec3 c, c0;
   };
   SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
   // Tracks the sides of the contacts at the start, then of those at the end, which continue them.
-  SCREE_HD int keep_sides(const MeshGroup& group, const Passage& of, MeshContact* now, int count,
-                          RememberedTouches& old) const {
+  SCREE_HD int track_sides(const MeshGroup& group, const CentreAtEnds& of, MeshContact* now, int count,
+                           RememberedTouches& old) const {
     old.count = SideKeeper(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
     RememberedSides sides;
     for (int k = 0; k < old.count; ++k) sides.add(sided_feature(of.mesh, old.contact[k]));
     return SideKeeper(of.mesh, of.c, sides).keep(now, count);
   }
   SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
-                    const Sights& sights, Index from) const {
-    const Sight &end = sights.end, &start = sights.start;
+                    const SphereAtEnds& ends, Index from) const {
+    const SphereInMesh &end = ends.end, &start = ends.start;
     const FeaturePair pair = feature_pair<kSheets>(mesh, now, end.axes, end.c, end.radius),
                       pair0 = feature_pair<kSheets>(mesh, was, start.axes, start.c, start.radius);
     touches[entry] = {true,
@@ -116,12 +116,13 @@ struct MeshStepTouchItem {
   // A sphere whose centre is inside a closed mesh (overlap above its radius) touches the nearest face only.
   // Where that face changes within the step, the contact does not begin or end at touch: it changes over
   // where both faces are equally near, with linear interpolation of their overlaps.
-  SCREE_HD void change_over(Index ends, const Overlaps& gone, Index begins, const Overlaps& come) const {
-    const Real nearer0 = come.at_start - gone.at_start, nearer1 = gone.at_end - come.at_end;
-    if (!(nearer0 > 0 && nearer1 > 0 && gone.at_start > 0 && come.at_end > 0)) return;
+  SCREE_HD void change_over(Index ends, const Overlaps& ending, Index begins,
+                            const Overlaps& beginning) const {
+    const Real nearer0 = beginning.at_start - ending.at_start, nearer1 = ending.at_end - beginning.at_end;
+    if (!(nearer0 > 0 && nearer1 > 0 && ending.at_start > 0 && beginning.at_end > 0)) return;
     const Real share = nearer0 / (nearer0 + nearer1);
-    const Real overlap = gone.at_start + share * (gone.at_end - gone.at_start);
-    touches[ends].geometry.overlap = gone.at_end, before[begins].geometry.overlap = come.at_start;
+    const Real overlap = ending.at_start + share * (ending.at_end - ending.at_start);
+    touches[ends].geometry.overlap = ending.at_end, before[begins].geometry.overlap = beginning.at_start;
     before[ends].change = {Changeover::Kind::ends, overlap, share};
     before[begins].change = {Changeover::Kind::begins, overlap, 1 - share};
   }
@@ -130,7 +131,7 @@ struct MeshStepTouchItem {
     if (geometry.overlap > 0) geometry.overlap = 0;
   }
   // Entry with the history of the contact with a feature; -1: none.
-  SCREE_HD Index remembering(const MeshGroup& group, Index feature) const {
+  SCREE_HD Index entry_of_feature(const MeshGroup& group, Index feature) const {
     if (in.history.bodies != nullptr)
       for (Index e = group.entry; e < group.entry + group.entries; ++e)
         if (in.history.bodies[std::int64_t{e} * in.records].w == in.history.step &&

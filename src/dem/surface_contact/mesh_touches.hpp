@@ -55,14 +55,14 @@ struct SideMemory {
   int records;
 
   SCREE_HD bool is_alone() const { return history.bodies == nullptr && history.features != nullptr; }
-  SCREE_HD bool remembers(Index entry) const {
+  SCREE_HD bool has_history(Index entry) const {
     if (history.bodies != nullptr) return history.bodies[std::int64_t{entry} * records].w == history.step;
     return history.features != nullptr && history.features[entry] != kNoFeature;
   }
   SCREE_HD RememberedSides of(const MeshGroup& group) const {
     RememberedSides sides;
     for (Index e = group.entry; e < group.entry + group.entries; ++e)
-      if (remembers(e)) sides.add(history.features[e]);
+      if (has_history(e)) sides.add(history.features[e]);
     return sides;
   }
   SCREE_HD void keep(Index entry, Index sided) const {
@@ -87,18 +87,18 @@ struct RememberedTouches {
 // number; then, over a sharp edge, one on a neighbouring patch that acted close by. The result does not
 // depend on the order of entries.
 enum class Kinship { same, same_patch, neighbour };
-SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old, Kinship kin,
-                      Real contact_radius) {
+SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old,
+                      Kinship match, Real contact_radius) {
   int best = -1;
   for (int k = 0; k < old.count; ++k) {
     const MeshContact& c = old.contact[k];
     if (best >= 0 && !(c.feature < old.contact[best].feature)) continue;
-    const Vec3 apart = now.normal - c.normal;
-    const bool related = kin == Kinship::same ? c.feature == now.feature
-                         : kin == Kinship::same_patch
+    const Vec3 difference = now.normal - c.normal;
+    const bool related = match == Kinship::same ? c.feature == now.feature
+                         : match == Kinship::same_patch
                              ? same_cluster(mesh, now, c)
                              : on_neighbouring_patches(mesh, now.feature, c.feature) &&
-                                   dot(apart, apart) < contact_radius * contact_radius;
+                                   dot(difference, difference) < contact_radius * contact_radius;
     if (related) best = k;
   }
   return best;
@@ -123,11 +123,11 @@ struct MeshTouchItem {
   SCREE_HD Nearest stay(Index g, MeshTouch& first) const {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
-    const Standing standing = standings[g];
-    if (!standing.holds(sphere.c)) return Nearest::unclear;
+    const Standing cached = standings[g];
+    if (!cached.holds(sphere.c)) return Nearest::unclear;
     MeshContact contact;
     const Nearest found =
-        standing.triangle >= 0 && is_over_within(sphere, standing, contact) ? Nearest::one : Nearest::none;
+        cached.triangle >= 0 && is_over_within(sphere, cached, contact) ? Nearest::one : Nearest::none;
     return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
   }
 
@@ -137,30 +137,31 @@ struct MeshTouchItem {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
     const MeshView& mesh = sphere.mesh;
-    const Real reach = searched(sphere.radius);
+    const Real range = searched(sphere.radius);
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
-    Seen seen{Nearest::unclear, {}};
+    QueryResult result{Nearest::unclear, {}};
     if (group.kind != RowKind::any)
-      seen.found = NearestContact(mesh, sphere.c, reach)
-                       .find(triangles, group.triangles, touches[group.entry].triangle, team, seen.contact);
+      result.found =
+          NearestContact(mesh, sphere.c, range)
+              .find(triangles, group.triangles, touches[group.entry].triangle, team, result.contact);
     if (team.leads()) {
-      if (seen.found != Nearest::unclear &&
-          !write(group, sphere, seen.found, seen.contact, touches[group.entry]))
-        seen.found = Nearest::unclear;
-      if (seen.found == Nearest::unclear) seen.found = look_in_full(group, sphere, seen.contact);
+      if (result.found != Nearest::unclear &&
+          !write(group, sphere, result.found, result.contact, touches[group.entry]))
+        result.found = Nearest::unclear;
+      if (result.found == Nearest::unclear) result.found = query_in_full(group, sphere, result.contact);
     }
-    seen = team.of_leader(seen);
-    const StandingRow<Team> row{mesh, group.kind, triangles, group.triangles, sphere.c, reach, team};
-    const bool on_face = seen.found == Nearest::one && is_face(mesh, seen.contact.feature);
-    const Standing standing = seen.found == Nearest::none ? row.clear()
-                              : on_face                   ? row.over(seen.contact.triangle)
+    result = team.of_leader(result);
+    const StandingRow<Team> row{mesh, group.kind, triangles, group.triangles, sphere.c, range, team};
+    const bool on_face = result.found == Nearest::one && is_face(mesh, result.contact.feature);
+    const Standing cached = result.found == Nearest::none ? row.clear()
+                            : on_face                     ? row.over(result.contact.triangle)
                                                           : kNoStanding;
-    if (team.leads()) standings[g] = standing;
+    if (team.leads()) standings[g] = cached;
   }
 
  private:
   // Result of a query; `contact` is defined for exactly one contact.
-  struct Seen {
+  struct QueryResult {
     Nearest found;
     MeshContact contact;
   };
@@ -201,7 +202,7 @@ struct MeshTouchItem {
     to.from = -1;
   }
   // Full search for several contacts; a single one is also returned.
-  SCREE_HD Nearest look_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
+  SCREE_HD Nearest query_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
     const MeshView& mesh = sphere.mesh;
     MeshContact found[kMeshSlots];
     int count = min_of(find_mesh_contacts(mesh, sphere.c, searched(sphere.radius),
@@ -211,7 +212,7 @@ struct MeshTouchItem {
     if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, sphere.c, memory().of(group)).keep(found, count);
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].set_none();
     for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
-    if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
+    if (is_sheet<kSheets>(mesh) && in.h > 0) store_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
     if (count == 1) only_one = found[0];
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
@@ -235,7 +236,7 @@ struct MeshTouchItem {
     for (Index k = is_one ? 1 : 0; k < group.entries; ++k) touches[group.entry + k].set_none();
     if (is_one) {
       put(first, sphere, contact);
-      if (in.history.bodies != nullptr) go_on_alone(first, sphere, before, contact);
+      if (in.history.bodies != nullptr) continue_sides_only(first, sphere, before, contact);
     }
     if (is_sheet<kSheets>(mesh) && in.h > 0)
       for (Index k = 0; k < group.entries; ++k)
@@ -243,13 +244,13 @@ struct MeshTouchItem {
     return true;
   }
   SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
-  SCREE_HD void keep_sides(const MeshGroup& group, int count) const {
+  SCREE_HD void store_sides(const MeshGroup& group, int count) const {
     for (Index k = 0; k < group.entries; ++k)
       memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
   // Search radius for contacts of a sphere of this radius [m].
   SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
-  SCREE_HD bool remembers(Index entry) const {
+  SCREE_HD bool has_history(Index entry) const {
     return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
   }
   // Previous contacts of a group: their number, and the last one's entry and feature.
@@ -259,7 +260,8 @@ struct MeshTouchItem {
   SCREE_HD Before before_of(const MeshGroup& group) const {
     Before before;
     for (Index e = group.entry; e < group.entry + group.entries; ++e)
-      if (memory().remembers(e)) ++before.entries, before.entry = e, before.feature = in.history.features[e];
+      if (memory().has_history(e))
+        ++before.entries, before.entry = e, before.feature = in.history.features[e];
     return before;
   }
   // Whether the contact continues its own history, or none exists. Sets the side on which a contact with an
@@ -271,8 +273,8 @@ struct MeshTouchItem {
     if (before.feature != sided_feature(mesh, contact)) turn_over(contact);
     return true;
   }
-  SCREE_HD static void go_on_alone(MeshTouch& touch, const Sphere& sphere, const Before& before,
-                                   const MeshContact& contact) {
+  SCREE_HD static void continue_sides_only(MeshTouch& touch, const Sphere& sphere, const Before& before,
+                                           const MeshContact& contact) {
     touch.from = before.entry;
     const bool has_side = is_sheet<kSheets>(sphere.mesh) && before.entries > 0;
     touch.normal0 = sphere.normal0_of(
@@ -287,21 +289,21 @@ struct MeshTouchItem {
     const MeshView& mesh = sphere.mesh;
     RememberedTouches old;
     for (Index e = group.entry; e < group.entry + group.entries; ++e) {
-      if (!remembers(e)) continue;
-      const Index remembered = in.history.features[e],
-                  feature = is_sheet<kSheets>(mesh) ? without_side(remembered) : remembered;
+      if (!has_history(e)) continue;
+      const Index stored = in.history.features[e],
+                  feature = is_sheet<kSheets>(mesh) ? without_side(stored) : stored;
       const bool has_side = is_sheet<kSheets>(mesh) && !is_open(mesh, feature);
-      const Vec3 side = has_side ? side_direction(mesh, remembered) : side_of(found, mesh, feature);
+      const Vec3 side = has_side ? side_direction(mesh, stored) : side_of(found, mesh, feature);
       old.entry[old.count] = e;
       old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side);
     }
-    for (const Kinship kin : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
+    for (const Kinship match : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
       for (int k = 0; k < found.count && old.count > 0; ++k) {
         MeshTouch& out = touches[group.entry + k];
         if (out.from >= 0) continue;
         const Real overlap = out.geometry.overlap;
         const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / sphere.radius);
-        const int before = find_kin(mesh, found.contacts[k], old, kin, close);
+        const int before = find_kin(mesh, found.contacts[k], old, match, close);
         if (before < 0) continue;
         out.from = old.entry[before];
         out.normal0 = sphere.normal0_of(old.contact[before]);

@@ -9,10 +9,10 @@ namespace scree {
 
 // Displacement of the point `place` of a body, relative to its centre, for a unit displacement along the
 // body's k-th coordinate (x, y, z, rx, ry, rz).
-SCREE_HD Vec3 moved_by_unit(Vec3 place, int k) {
+SCREE_HD Vec3 moved_by_unit(Vec3 point, int k) {
   const Vec3 axis{k % 3 == 0 ? Real(1) : Real(0), k % 3 == 1 ? Real(1) : Real(0),
                   k % 3 == 2 ? Real(1) : Real(0)};
-  return k < 3 ? axis : cross(axis, place);
+  return k < 3 ? axis : cross(axis, point);
 }
 
 // Terms of the wrench and its blocks. The friction force acts at the centre of a sphere with a couple, as
@@ -24,14 +24,14 @@ SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
   const Vec3 n = normal.normal;
   if (k < 2 * kWrenchTerms) {
     const bool at_end = k < kWrenchTerms;
-    const Vec3 rub = at_end ? c.contact.rub.end : c.contact.rub.step;
-    if (k % kWrenchTerms == kBlockRows) return c.contact.leverage * dot(rub, c.slide);
-    const Vec3 force = c.contact.leverage * rub - (at_end ? normal.end_force : normal.step.force) * n;
-    return component(force, cross(c.arm, force) + c.radius * cross(n, rub), k % kWrenchTerms);
+    const Vec3 friction = at_end ? c.contact.rub.end : c.contact.rub.step;
+    if (k % kWrenchTerms == kBlockRows) return c.contact.leverage * dot(friction, c.slide);
+    const Vec3 force = c.contact.leverage * friction - (at_end ? normal.end_force : normal.step.force) * n;
+    return component(force, cross(c.arm, force) + c.radius * cross(n, friction), k % kWrenchTerms);
   }
   const BlockPlace at = block_place(k);
-  const Vec3 place = c.arm + c.radius * n;
-  const Vec3 a = moved_by_unit(place, at.row), b = moved_by_unit(place, at.column);
+  const Vec3 contact_point = c.arm + c.radius * n;
+  const Vec3 a = moved_by_unit(contact_point, at.row), b = moved_by_unit(contact_point, at.column);
   const Real along = dot(n, a) * dot(n, b);
   if (!at.is_stiffness) return normal.step.damping * along;
   const Vec3 t = c.contact.rub.direction;
@@ -55,12 +55,13 @@ struct SurfaceRubItem {
     const PlacedSurface &surface = in.placed[in.surface_of(entry)],
                         &before = start_placed[in.surface_of(entry)];
     SurfaceRub& out = rubs[entry];
-    const SurfacePath way = surface_path(in, surface, before, entry, in.position[i], start.step.position[i]);
-    if (surface.kind == SurfaceKind::mesh && !(way.now.touches || way.start.touches)) {
+    const SurfacePath kinematics =
+        surface_path(in, surface, before, entry, in.position[i], start.step.position[i]);
+    if (surface.kind == SurfaceKind::mesh && !(kinematics.now.touches || kinematics.start.touches)) {
       out.touches = false;
       return in.template remember_none<Law>(entry);
     }
-    const RubbingPath path = path_of(way, surface, before, entry, i);
+    const RubbingPath path = path_of(kinematics, surface, before, entry, i);
     out.touches = OverRubbingStep::closed(path);
     if (!out.touches) return in.template remember_none<Law>(entry);
     const Law& law = laws.get(in.material[i], surface.material);
@@ -73,11 +74,12 @@ struct SurfaceRubItem {
     });
     out.books = rubbing_books(law, path, out.contact, resolve_events);
     if (out.contact.acts && surface.turns())
-      out.books.integrator += carrier_work(law, path, out.contact, carrier_excess(way, surface, before)) +
-                              slide_work(surface, path, out.contact);
-    out.arm = way.now.is_sphere ? surface.arm : surface.arm + way.now.pair.contact;
-    out.radius = way.now.is_sphere ? surface.radius : 0;
-    out.contact_arm = way.now.is_sphere ? Vec3{} : way.now.pair.contact;
+      out.books.integrator +=
+          parent_work(law, path, out.contact, carrier_excess(kinematics, surface, before)) +
+          belt_work(surface, path, out.contact);
+    out.arm = kinematics.now.is_sphere ? surface.arm : surface.arm + kinematics.now.pair.contact;
+    out.radius = kinematics.now.is_sphere ? surface.radius : 0;
+    out.contact_arm = kinematics.now.is_sphere ? Vec3{} : kinematics.now.pair.contact;
     out.slide = path.slide;
     if (!out.contact.lasts) return in.template remember_none<Law>(entry);
     in.template remember<Law>(surface, entry, out.contact.history);
@@ -85,51 +87,53 @@ struct SurfaceRubItem {
 
  private:
   // Adds the conveyor velocity of the surface to the kinematics of the contact.
-  SCREE_HD static void run_along(const SurfaceFrame& frame, RubbingPath& path) {
+  SCREE_HD static void add_conveyor_motion(const SurfaceFrame& frame, RubbingPath& path) {
     add_slide(path.motion, frame.middle_slide());
-    const Vec3 slide = frame.axes * frame.slide;
-    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= slide;
-    path.slide = across(slide, path.normal1);
+    const Vec3 surface_velocity = frame.axes * frame.slide;
+    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= surface_velocity;
+    path.slide = across(surface_velocity, path.normal1);
   }
   // Correction of the work on the parent, `CarrierExcess::work()`, for all forces.
-  SCREE_HD static Real carrier_work(const Law& law, const RubbingPath& path, const RubbingContact& contact,
-                                    const CarrierExcess& excess) {
+  SCREE_HD static Real parent_work(const Law& law, const RubbingPath& path, const RubbingContact& contact,
+                                   const CarrierExcess& excess) {
     const Real force0 = start_force(law.normal.of_pair(path.size), path.step);
     return excess.work(force0 * path.normal0 - contact.leverage0 * contact.rub.start,
                        contact.normal.step.force * path.normal1 - contact.leverage * contact.rub.step);
   }
   // Correction of the belt work [J]: the accounting of the belt uses its velocity at the start for the force
   // there.
-  SCREE_HD Real slide_work(const PlacedSurface& surface, const RubbingPath& path,
-                           const RubbingContact& contact) const {
+  SCREE_HD Real belt_work(const PlacedSurface& surface, const RubbingPath& path,
+                          const RubbingContact& contact) const {
     if (path.slide == Vec3{}) return 0;
     const SurfaceFrame& frame = in.frames[surface.frame];
-    const Vec3 slide0 = across(frame.before * frame.slide, path.normal0);
-    return path.step.h / 2 * contact.leverage0 * dot(contact.rub.start, path.slide - slide0);
+    const Vec3 surface_velocity0 = across(frame.before * frame.slide, path.normal0);
+    return path.step.h / 2 * contact.leverage0 * dot(contact.rub.start, path.slide - surface_velocity0);
   }
-  SCREE_HD RubbingPath path_of(const SurfacePath& way, const PlacedSurface& surface,
+  SCREE_HD RubbingPath path_of(const SurfacePath& kinematics, const PlacedSurface& surface,
                                const PlacedSurface& before, Index entry, Index i) const {
     const Vec4 p = in.position[i], w = start.mean_spin[i];
-    const ContactGeometry &end = way.now.pair.geometry, &begin = way.start.pair.geometry;
-    const bool is_sphere = way.now.is_sphere;
-    const Vec3 place = is_sphere ? Vec3{} : way.now.pair.contact,
-               place0 = is_sphere ? Vec3{} : way.start.pair.contact;
+    const ContactGeometry &end = kinematics.now.pair.geometry, &begin = kinematics.start.pair.geometry;
+    const bool is_sphere = kinematics.now.is_sphere;
+    const Vec3 contact_point = is_sphere ? Vec3{} : kinematics.now.pair.contact,
+               contact_point0 = is_sphere ? Vec3{} : kinematics.start.pair.contact;
     const Real h = start.step.h, arm = is_sphere ? surface.radius : 0;
     const TurningPartner one{xyz(w), p.w, w.w}, other{reciprocal(h) * surface.turn, arm};
     RubbingPath out{};
-    out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at(place0);
-    out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(place);
-    static_cast<ContactPath&>(out) = OverStep{start.step}.path(
-        end, out.velocity1, begin, out.velocity0, way.travel, surface_size(in, entry, p, in.velocity[i]));
-    out.step.change = way.change;
+    out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at(contact_point0);
+    out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(contact_point);
+    static_cast<ContactPath&>(out) =
+        OverStep{start.step}.path(end, out.velocity1, begin, out.velocity0, kinematics.travel,
+                                  surface_size(in, entry, p, in.velocity[i]));
+    out.step.change = kinematics.change;
     if (is_sphere)
-      out.motion = sphere_motion(end, way.travel, one, other, h);
+      out.motion = sphere_motion(end, kinematics.travel, one, other, h);
     else
-      out.motion = motion_over(surface, way.now, out.normal0, way.travel, one, other, h);
-    if (!is_sphere && in.frames[surface.frame].runs()) run_along(in.frames[surface.frame], out);
-    const Real reach = p.w + arm;
-    out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);
-    out.curvature = way.now.is_face ? 0 : out.motion.leverage / reach;
+      out.motion = motion_over(surface, kinematics.now, out.normal0, kinematics.travel, one, other, h);
+    if (!is_sphere && in.frames[surface.frame].runs()) add_conveyor_motion(in.frames[surface.frame], out);
+    const Real radius_sum = p.w + arm;
+    out.leverage0 =
+        kinematics.now.is_face ? 1 : out.motion.leverage * end.distance / (radius_sum - out.step.overlap0);
+    out.curvature = kinematics.now.is_face ? 0 : out.motion.leverage / radius_sum;
     out.turning = h * (one.arm * one.spin + other.arm * other.spin);
     out.i = i, out.j = RubbingPath::kWall;
     OverRubbingStep{start}.at_entry(out, entry);
@@ -154,12 +158,12 @@ struct RubbingShiftItem {
     for (Index k = 0; k < matrix.surface_count[i]; ++k) {
       const RubbingEntry& of = matrix.surface_entries[surface_offsets[i] + k];
       if (of.normal.neighbor == RubbingPath::kWall) continue;
-      const SurfaceRub& rub = rubs[of.normal.neighbor];
+      const SurfaceRub& contact = rubs[of.normal.neighbor];
       const Index surface = numbers.placed(surfaces[of.normal.neighbor]);
       const Vec3 move = moves.move[surface], turn = moves.turn[surface];
-      residual[i] -= rub.radius > 0
+      residual[i] -= contact.radius > 0
                          ? of.pull(-scale * move, scale * turn, consistent)
-                         : of.pull(-scale * (move + cross(turn, rub.contact_arm)), Vec3{}, consistent);
+                         : of.pull(-scale * (move + cross(turn, contact.contact_arm)), Vec3{}, consistent);
     }
   }
 };

@@ -92,11 +92,11 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
 // normal0: the contact's normal then; apart: displacement of the sphere's centre relative to the surface's
 // point since. On a face and an edge the contact is below the centre; at a vertex it is the vertex.
 SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
-                            Vec3 apart) {
-  const Vec3 place = touch.pair.contact, normal1 = touch.pair.geometry.normal();
-  if (touch.is_face) return place - apart + radius * (normal1 - normal0);
-  const Vec3 centre = place - apart + touch.pair.geometry.distance * normal1;
-  const Vec3 material = frame.before * transposed_times(frame.axes, place);
+                            Vec3 point_displacement) {
+  const Vec3 contact_point = touch.pair.contact, normal1 = touch.pair.geometry.normal();
+  if (touch.is_face) return contact_point - point_displacement + radius * (normal1 - normal0);
+  const Vec3 centre = contact_point - point_displacement + touch.pair.geometry.distance * normal1;
+  const Vec3 material = frame.before * transposed_times(frame.axes, contact_point);
   return material + across(centre - material, normal0);
 }
 // Corrects a mid-step velocity along the contact's normal at the end of the step, so that its normal
@@ -199,7 +199,7 @@ struct SurfaceLoadItem {
     } else {
       InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
       if (!touch.is_sphere && in.frames[surface.frame].runs())
-        at.slip_rate -= pair.motion.leverage * slide_at(touch, surface);
+        at.slip_rate -= pair.motion.leverage * conveyor_velocity(touch, surface);
       take(law.load(at, before), entry);
       loads[entry].energy = EnergyOf{}(law, at, before);
     }
@@ -211,37 +211,37 @@ struct SurfaceLoadItem {
                                   Index entry) const {
     const Index i = in.entries.particles[entry];
     const TurningPartner one{xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
-    const bool at_rest = !(in.h > 0);
-    const Vec3 turning = at_rest ? surface.spin : reciprocal(in.h) * surface.turn;
+    const bool is_instant = !(in.h > 0);
+    const Vec3 surface_spin = is_instant ? surface.spin : reciprocal(in.h) * surface.turn;
     if (touch.is_sphere) {
-      const Vec3 travel = at_rest ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.travel;
-      state.velocity = at_rest ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * travel;
-      return {state, sphere_motion(state.geometry, travel, one, {turning, surface.radius}, in.h)};
+      const Vec3 travel = is_instant ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.travel;
+      state.velocity = is_instant ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * travel;
+      return {state, sphere_motion(state.geometry, travel, one, {surface_spin, surface.radius}, in.h)};
     }
     const SurfaceFrame& frame = in.frames[surface.frame];
     const Vec3 normal0 = surface.kind == SurfaceKind::mesh ? in.touches[entry].normal0
-                         : at_rest                         ? surface.normal
+                         : is_instant                      ? surface.normal
                                                            : frame.before * frame.normal;
-    if (!at_rest) {
-      const Vec3 apart = in.h * xyz(in.velocity[i]) - surface.travel,
-                 from = start_contact(touch, frame, one.arm, normal0, apart);
+    if (!is_instant) {
+      const Vec3 point_displacement = in.h * xyz(in.velocity[i]) - surface.travel,
+                 from = start_contact(touch, frame, one.arm, normal0, point_displacement);
       state.velocity = xyz(in.velocity[i]) -
                        reciprocal(in.h) * (surface.travel + frame.travel_under(touch.pair.contact, from));
     }
     const ContactMotion motion =
-        motion_over(surface, touch, normal0, in.h * state.velocity, one, {turning}, in.h);
+        motion_over(surface, touch, normal0, in.h * state.velocity, one, {surface_spin}, in.h);
     // The normal dashpot acts on the overlap rate.
-    if (!at_rest && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
+    if (!is_instant && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
     return {state, motion};
   }
   // Conveyor velocity of a surface at the contact [m/s].
-  SCREE_HD Vec3 slide_at(const SurfaceTouch& touch, const PlacedSurface& surface) const {
+  SCREE_HD Vec3 conveyor_velocity(const SurfaceTouch& touch, const PlacedSurface& surface) const {
     const SurfaceFrame& frame = in.frames[surface.frame];
     return across(frame.axes * frame.slide, touch.pair.geometry.normal());
   }
   SCREE_HD Real slide_power(const SurfaceTouch& touch, const PlacedSurface& surface, Vec3 force) const {
     if (touch.is_sphere || !in.frames[surface.frame].runs()) return 0;
-    return -dot(force, slide_at(touch, surface));
+    return -dot(force, conveyor_velocity(touch, surface));
   }
   SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
     loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();

@@ -27,10 +27,10 @@ const CornerSet::OfMesh& CornerSet::mesh_of(Index corner) const {
 
 namespace {
 
-bool is_near(const SurfacePlaces& places, std::span<const WallPlane> planes, Vec3 p, Real margin) {
+bool is_near(const SurfacePlaces& poses, std::span<const WallPlane> planes, Vec3 p, Real margin) {
   for (const WallPlane& wall : planes) {
     const PlacedSurface* const placed =
-        wall.placed < 0 ? nullptr : &places.placed[static_cast<std::size_t>(wall.placed)];
+        wall.placed < 0 ? nullptr : &poses.placed[static_cast<std::size_t>(wall.placed)];
     if (placed != nullptr && placed->kind != SurfaceKind::plane) continue;
     const Vec3 point = placed != nullptr ? placed->point : wall.point;
     if (dot(p - point, placed != nullptr ? placed->normal : wall.normal) < margin) return true;
@@ -40,15 +40,14 @@ bool is_near(const SurfacePlaces& places, std::span<const WallPlane> planes, Vec
 
 }  // namespace
 
-void CornerSet::add_near_planes(const SurfacePlaces& places, std::span<const WallPlane> planes, Real margin,
+void CornerSet::add_near_planes(const SurfacePlaces& poses, std::span<const WallPlane> planes, Real margin,
                                 std::vector<Index>& to) const {
   for (const OfMesh& mesh : meshes_) {
-    const PlacedSurface& placed = places.placed[static_cast<std::size_t>(mesh.surface)];
-    const Mat3& axes = places.frames[static_cast<std::size_t>(placed.frame)].axes;
-    if (!is_near(places, planes, placed.point + axes * mesh.hull->middle, mesh.hull->reach + margin))
-      continue;
+    const PlacedSurface& placed = poses.placed[static_cast<std::size_t>(mesh.surface)];
+    const Mat3& axes = poses.frames[static_cast<std::size_t>(placed.frame)].axes;
+    if (!is_near(poses, planes, placed.point + axes * mesh.hull->middle, mesh.hull->reach + margin)) continue;
     for (std::size_t k = 0; k < mesh.hull->corners.size(); ++k)
-      if (is_near(places, planes, placed.point + axes * mesh.hull->corners[k], margin))
+      if (is_near(poses, planes, placed.point + axes * mesh.hull->corners[k], margin))
         to.push_back(mesh.first + static_cast<Index>(k));
   }
 }
@@ -74,9 +73,9 @@ Contact CornerSet::with_own_materials(Contact contact) const {
 
 // Along periodic axes positions are multiples of the domain's quantum, so that they do not depend on the
 // image of the mesh in the periodic box.
-PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 place, bool at_start,
+PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 position, bool at_start,
                            Vec3 snap_constant) {
-  const Vec3 before = frame.before * place, turned = at_start ? before : frame.axes * place;
+  const Vec3 before = frame.before * position, turned = at_start ? before : frame.axes * position;
   const Vec3 from_point = snap(turned, snap_constant);
   return {mesh.point + from_point, mesh.arm + turned, mesh.velocity_at(turned),
           mesh.travel + (from_point - snap(before, snap_constant))};

@@ -41,8 +41,8 @@ struct MeshSight {
   // Centres in the frame of the mesh.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_centre(const Visit& visit) const {
-    for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-      visit(transposed_times(frame.axes, (place - shift) - surface.point));
+    for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 position) {
+      visit(transposed_times(frame.axes, (position - shift) - surface.point));
     });
   }
 };

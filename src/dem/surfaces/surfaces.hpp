@@ -149,17 +149,17 @@ SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& fra
 SCREE_HD_CALLER template <class Visit>
 SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p,
                                     Real margin, const Visit& visit) {
-  const Vec3 period = frame.spanned, place = place_beside(surface, frame, p);
-  visit(place);
+  const Vec3 period = frame.spanned, position = place_beside(surface, frame, p);
+  visit(position);
   if (period == Vec3{}) return;
-  const Vec3 from_middle = place - (surface.point + frame.to_middle);
+  const Vec3 from_middle = position - (surface.point + frame.to_middle);
   const auto beyond = [&](Real x, Real length) { return std::abs(x) > length / 2 + margin; };
   for_each_shift(period, [&](Vec3 shift, std::int8_t image) {
     const Vec3 x = from_middle + shift;
     if (image == kNoShift || (shift.x != 0 && beyond(x.x, period.x)) ||
         (shift.y != 0 && beyond(x.y, period.y)) || (shift.z != 0 && beyond(x.z, period.z)))
       return;
-    visit(place + shift);
+    visit(position + shift);
   });
 }
 
@@ -181,9 +181,9 @@ struct SurfacePair {
 
 SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4 p) {
   if (surface.kind == SurfaceKind::plane) {
-    const Vec3 place = xyz(p) - shift;
-    const ContactGeometry g = plane_pair(place, p.w, surface.point, surface.normal);
-    return {g, place - p.w * g.direction - surface.point};
+    const Vec3 position = xyz(p) - shift;
+    const ContactGeometry g = plane_pair(position, p.w, surface.point, surface.normal);
+    return {g, position - p.w * g.direction - surface.point};
   }
   const ContactGeometry g = sphere_pair(xyz(p) - (surface.point + shift), p.w + surface.radius);
   return {g, surface.radius * g.normal()};

@@ -7,10 +7,11 @@ namespace {
 
 void add_contact(const SurfaceLoad& contact, const MeshTouch& touch, TriangleSums& sums) {
   const Vec3 normal = touch.geometry.normal();  // away from the surface
-  const Real pressing = dot(contact.load.force, normal);
-  const Vec3 dragging = pressing * normal - contact.load.force;
-  sums.normal.add(pressing);
-  sums.tangential[0].add(dragging.x), sums.tangential[1].add(dragging.y), sums.tangential[2].add(dragging.z);
+  const Real normal_force = dot(contact.load.force, normal);
+  const Vec3 tangential_force = normal_force * normal - contact.load.force;
+  sums.normal.add(normal_force);
+  sums.tangential[0].add(tangential_force.x), sums.tangential[1].add(tangential_force.y),
+      sums.tangential[2].add(tangential_force.z);
 }
 
 }  // namespace
