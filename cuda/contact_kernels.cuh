@@ -286,7 +286,7 @@ class DeviceContactKernels {
 };
 
 // Kernels of one type of law. Each type is compiled in a source file of its own, contact_kernels_*.cu,
-// because the kernels of one take long.
+// because compilation takes long.
 template <class Law>
 std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials);
 
