@@ -1,4 +1,4 @@
-// The program: signals, MPI, and the exit code of what its words ask for.
+// The program: signals, MPI, and the exit code of the command.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -40,8 +40,8 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
   }
 }
 
-// A process that is started alone starts MPI with its command line in one variable of the environment, and
-// the system refuses one of 128 KiB. Says so, or nothing.
+// Without a launcher, MPI passes the command line on in one environment variable, which the system limits to
+// 128 KiB. Returns the error message for a longer command line, else an empty text.
 std::string length_trouble(int count, char** values) {
   constexpr std::size_t kLongest = 110000, kShown = 80;  // [B]
   std::size_t length = 0;
@@ -52,7 +52,8 @@ std::string length_trouble(int count, char** values) {
   }
   if (length <= kLongest) return "";
   return fmt::format(
-      "--set or another word, {}: the command line has {} bytes; allowed are {}, a deck has no limit",
+      "--set or another argument, {}: the command line has {} bytes, at most {} are allowed; the length of a "
+      "deck is not limited",
       shortened(std::string(longest), kShown), length, kLongest);
 }
 
@@ -65,7 +66,7 @@ int main(int count, char** values) {
     return static_cast<int>(scree::ExitCode::bad_input);
   }
   const bool runs = count > 1 && std::string_view(values[1]) == "run";
-  if (runs) scree::catch_signals();  // before MPI starts, which takes a while, too
+  if (runs) scree::catch_signals();  // already before MPI starts, which takes a while
   if (scree::launched_with_others()) scree::start_mpi();
   const scree::ExitCode code =
       scree::guarded([&] { return scree::carry_out(scree::read_words(count, values, scree::version_text)); });

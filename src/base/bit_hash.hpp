@@ -1,4 +1,4 @@
-// A hash over the bits of values, 64 at a time. A change of any one value changes it.
+// A hash over the bits of values, 64 at a time. A change of any single value changes the hash.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@ class BitHash {
  public:
   void add(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
   void add(Real value) { add(std::bit_cast<std::int64_t>(value)); }
-  // The product carries every bit upwards, the shift brings them down again.
+  // The product carries every bit upwards; the shift carries them down again.
   void add(std::int64_t value) {
     hash_ = (hash_ ^ static_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15u;
     hash_ ^= hash_ >> 32;
   }
-  // Bytes in words of 8; what is left over is a word with zeros.
+  // Adds bytes in groups of 8; zeros fill up the last group.
   void add(const void* values, std::size_t bytes) {
     for (std::size_t at = 0; at < bytes; at += 8) {
       std::int64_t word = 0;

@@ -1,4 +1,4 @@
-// The two kinds of wrong (and a failing disk): each is an exception with its own exit code.
+// Exceptions by kind of error, each with its exit code: of the user, of the simulation, of files.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace scree {
 
-// Exit codes of the program; listed in --help and in jobs/using.md.
+// Exit codes of the program, listed in --help and in jobs/using.md.
 enum class ExitCode : int {
   done = 0,
   bad_input = 2,
@@ -17,19 +17,20 @@ enum class ExitCode : int {
   stopped_by_signal = 5
 };
 
-// The user's: bad usage or deck, or a deck that is too large for the machine. The message names file, line,
-// key, value and what is allowed.
+// Error of the user: in the usage or the deck, or a deck that is too large for the machine. The message names
+// file, line, key, value and the allowed values.
 struct InputError : std::runtime_error {
-  // The message may quote anything.
+  // The message may contain any text, also unprintable.
   explicit InputError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
-// Ours, or a simulation that cannot go on. The message names stage, rank and global id or joint.
+// Error of the program, or a simulation that cannot continue. The message names stage, rank and global id or
+// joint.
 struct SimulationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The GPU or its memory fails: no shorter step helps.
+// Failure of the GPU or its memory, which no shorter step can avoid.
 struct DeviceError : SimulationError {
   using SimulationError::SimulationError;
 };

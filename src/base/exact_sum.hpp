@@ -1,5 +1,5 @@
-// Sum of doubles as integers, without a pass for the scale first: the same bits in any order and for any
-// split.
+// Sum of doubles as integers, without a preceding pass for the scale: the same bits for any order and any
+// partition of the terms.
 #pragma once
 
 #include <bit>
@@ -12,14 +12,14 @@
 
 namespace scree {
 
-// The binary places of all doubles are cut into bins of 32, counted from the smallest. The sum keeps the bin
-// of the largest term's leading bit and the two below it; bits further down (2^-65 of that term at most) are
-// cut off every term alike. Which bins those are, and what each term adds to them, depends on no order: sums
-// of parts add up to the bits of the whole. Up to 2^31 terms. Cf. Demmel and Nguyen, IEEE Trans. Comput. 64,
-// 2015.
+// The binary digits of all doubles are divided into bins of 32 digits, counted from the smallest. The sum
+// keeps the bin with the leading bit of the largest term and the two bins below it; lower bits (below 2^-65
+// of that term) are cut off each term. The bins, and what a term adds to them, do not depend on the order:
+// sums of parts add up to the bits of the whole. Up to 2^31 terms. Cf. Demmel and Nguyen, IEEE Trans. Comput.
+// 64, 2015.
 class ExactSum {
  public:
-  // Not finite terms make the sum a NaN.
+  // Terms that are not finite make the sum a NaN.
   SCREE_HD void add(Real term) {
     std::int64_t bits;
     std::memcpy(&bits, &term, sizeof bits);
@@ -28,9 +28,9 @@ class ExactSum {
     raise(exponent == kExponentMask ? kNotFinite : exponent / kBinBits);
     if (top_ == kNotFinite) return;
     const std::uint64_t mantissa = (static_cast<std::uint64_t>(bits) & kMantissaMask) | kHiddenBit;
-    // The mantissa with its last bit at place exponent - 52 of all; bin k starts at place 32 k.
-    const int past = static_cast<int>(exponent % kBinBits);  // place of the leading bit in its bin
-    const int below = kMantissaBits - past;                  // bits below that bin
+    // The last bit of the mantissa is at digit `exponent` - 52 of all digits; bin k starts at digit 32 k.
+    const int past = static_cast<int>(exponent % kBinBits);  // position of the leading bit in its bin
+    const int below = kMantissaBits - past;                  // number of bits below that bin
     const std::int64_t sign = bits < 0 ? -1 : 1;
     const std::int64_t depth = top_ - exponent / kBinBits;
     add_piece(depth, sign * static_cast<std::int64_t>(mantissa >> below));
@@ -55,7 +55,7 @@ class ExactSum {
     const __int128 whole = ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
     const std::int64_t exponent = kBinBits * (top_ - kBins + 1) - kExponentBias;
     const Real rounded = static_cast<Real>(whole);
-    // A power of two that is a normal number: the product is what ldexp() gives, sooner.
+    // Where the power of two is a normal number, the product equals ldexp() and is faster.
     if (exponent > -kExponentBias)
       return rounded * std::bit_cast<Real>((exponent + kExponentBias) << kMantissaBits);
     return std::ldexp(rounded, static_cast<int>(exponent));

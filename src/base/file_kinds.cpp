@@ -18,8 +18,8 @@ struct Kind {
 
 constexpr auto kKinds = std::to_array<Kind>({
     {kHdf5, "an HDF5 file"},
-    {"PK\x03\x04"sv, "a ZIP archive, as spreadsheets are (.xlsx, .ods)"},
-    {"\xd0\xcf\x11\xe0"sv, "a spreadsheet or document of an old office program (.xls)"},
+    {"PK\x03\x04"sv, "a ZIP archive, e.g. a spreadsheet (.xlsx, .ods)"},
+    {"\xd0\xcf\x11\xe0"sv, "an old office file (.xls, .doc)"},
     {"\x1f\x8b"sv, "compressed with gzip"},
     {"BZh"sv, "compressed with bzip2"},
     {"\xfd\x37zXZ"sv, "compressed with xz"},
@@ -34,17 +34,17 @@ constexpr auto kKinds = std::to_array<Kind>({
     {"\xff\xfe"sv, "text in UTF-16; it must be in UTF-8"},
     {"\xfe\xff"sv, "text in UTF-16; it must be in UTF-8"},
     {"# vtk DataFile"sv, "a legacy VTK file"},
-    {"ITEM: TIMESTEP"sv, "a dump of LAMMPS or LIGGGHTS"},
+    {"ITEM: TIMESTEP"sv, "a LAMMPS or LIGGGHTS dump"},
     {"ply\n"sv, "a triangle mesh (PLY)"},
     {"ply\r"sv, "a triangle mesh (PLY)"},
     {"solid "sv, "a triangle mesh (STL)"},
 });
 
-// Of elements behind comments and declarations as far as the beginning shows them.
+// Kind of an XML file by its elements, as far as comments and declarations leave them within the beginning.
 std::string kind_of_xml(std::string_view text) {
-  if (text.find("<robot") != text.npos) return "a robot (URDF)";
-  if (text.find("<mujoco") != text.npos) return "a model of MuJoCo (XML)";
-  if (text.find("<sdf") != text.npos) return "a world of Gazebo (SDF)";
+  if (text.find("<robot") != text.npos) return "a robot model (URDF)";
+  if (text.find("<mujoco") != text.npos) return "a MuJoCo model (XML)";
+  if (text.find("<sdf") != text.npos) return "a Gazebo world (SDF)";
   if (text.find("<VTKFile") != text.npos) return "a VTK file (XML)";
   if (text.find("<Xdmf") != text.npos) return "an XDMF file";
   if (text.find("<html") != text.npos || text.find("<!DOCTYPE html") != text.npos) return "a web page";

@@ -1,5 +1,4 @@
-// What kind of file begins with some bytes: for messages on files that are no input of the kind that was
-// wanted.
+// Recognizes the kind of a file by its first bytes, for messages on input files of a wrong kind.
 #pragma once
 
 #include <string>
@@ -7,16 +6,16 @@
 
 namespace scree {
 
-// So many first bytes are enough.
+// Number of bytes that suffice.
 inline constexpr std::size_t kFileBeginning = 512;
 
 bool is_hdf5(std::string_view beginning);
 
-// "an HDF5 file", "a ZIP archive, as spreadsheets are (.xlsx, .ods)", "XML", ...; "" of text that may be
-// anything. beginning: the first kFileBeginning bytes, or all.
+// "an HDF5 file", "a ZIP archive, e.g. a spreadsheet (.xlsx, .ods)", "XML", ...; empty for other text.
+// beginning: the first kFileBeginning bytes, or the complete file.
 std::string kind_of_file(std::string_view beginning);
 
-// The first kFileBeginning bytes of a file, or what it has; "" where it cannot be read.
+// The first kFileBeginning bytes of a file, or all of a shorter one; empty if it cannot be read.
 std::string beginning_of_file(const std::string& path);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// Sum of doubles at binary places that never move: as long as a run and beyond it, the same bits in any order
-// and for any split, over ranks, restarts, and threads that add at the same time.
+// Sum of doubles in fixed-point format, usable over a complete run and beyond: the same bits for any order
+// and any partition of the terms, over ranks, restarts, and threads that add concurrently.
 #pragma once
 
 #include <cmath>
@@ -11,29 +11,30 @@
 
 namespace scree {
 
-// Limbs of 32 binary places, the lowest of them 2^-96; each term is cut there, adds a whole number to three
-// limbs at most, and must be below 2^32 in size. Beside the limbs stands how many terms were not, or not
-// finite: the sum is then a NaN. Limbs take kMostTerms between one normalize() and the next. Unlike ExactSum
-// it need not know the largest term, and words of parts add up by integer addition, atomic or not.
+// Limbs of 32 binary digits, the lowest digit 2^-96. Each term is truncated there, adds an integer to at most
+// three limbs, and must be below 2^32 in magnitude. Beside the limbs is the number of terms that are larger
+// or not finite, which make the sum a NaN. Between two calls of normalize() the limbs can take kMostTerms
+// terms. Unlike ExactSum it does not depend on the largest term, and the limbs of partial sums are combined
+// by integer addition, atomic or not.
 class FixedSum {
  public:
   static constexpr int kLimbs = 4, kBad = kLimbs, kWords = kLimbs + 1;
   static constexpr std::int64_t kMostTerms = (std::int64_t{1} << 31) - 1;  // between two normalize()
 
-  // Calls put(word, whole number) for what the term adds to the words.
+  // Calls put(limb, integer) for what the term adds to the limbs.
   template <class Put>
   SCREE_HD static void for_each_piece(Real term, const Put& put) {
     std::int64_t bits;
     std::memcpy(&bits, &term, sizeof bits);
     const auto exponent = static_cast<int>(bits >> kMantissaBits & kExponentMask);
     if (exponent >= kTooLarge) return put(kBad, std::int64_t{1});
-    int place = exponent - kLowestPlace;  // of the mantissa's last bit, counted from the lowest
+    int place = exponent - kLowestPlace;  // of the mantissa's last bit, counted from the lowest digit
     if (exponent == 0 || place <= -kMantissaBits - 1) return;
     std::uint64_t mantissa = (static_cast<std::uint64_t>(bits) & kMantissaMask) | kHiddenBit;
     if (place < 0) mantissa >>= -place, place = 0;
     const int first = place / kLimbBits, shift = place % kLimbBits;
     const std::int64_t sign = bits < 0 ? -1 : 1;
-    // Its 84 bits at most, from the first limb on.
+    // The mantissa's at most 84 digits, from the first limb on.
     const std::uint64_t pieces[] = {mantissa << shift & kLimbMask,
                                     mantissa >> (kLimbBits - shift) & kLimbMask,
                                     mantissa >> kLimbBits >> (kLimbBits - shift)};
@@ -47,7 +48,8 @@ class FixedSum {
   void add(const FixedSum& part) {
     for (int k = 0; k < kWords; ++k) word[k] += part.word[k];
   }
-  // Carries what limbs have past their places upwards: the same number, of which there is one such form.
+  // Carries the digits beyond the size of a limb to the next limb; the result is the unique normalized form
+  // of the number.
   SCREE_HD void normalize() {
     for (int k = 0; k + 1 < kLimbs; ++k) {
       const std::int64_t past = word[k] >> kLimbBits;  // rounded down
@@ -63,11 +65,11 @@ class FixedSum {
     whole = (whole << kLimbBits) + sum.word[2], whole = (whole << kLimbBits) + sum.word[1];
     const bool fits = whole >> 94 == 0 || whole >> 94 == -1;
     if (fits) return std::ldexp(static_cast<Real>((whole << kLimbBits) + sum.word[0]), -3 * kLimbBits);
-    // The lowest limb is past the last of 94 bits: all that counts is whether it is zero.
+    // The lowest limb is below the 94 leading bits: for rounding it matters only whether it is zero.
     return std::ldexp(static_cast<Real>(whole | (sum.word[0] != 0)), -2 * kLimbBits);
   }
 
-  std::int64_t word[kWords] = {};  // limbs, the lowest first; number of bad terms
+  std::int64_t word[kWords] = {};  // limbs, the lowest first; number of invalid terms
 
  private:
   static constexpr int kMantissaBits = 52, kLimbBits = 32, kExponentBias = 1023, kExponentMask = 0x7ff;

@@ -1,4 +1,4 @@
-// The loop over items. The CUDA room has a function of the same name that launches a kernel.
+// The serial loop over items. The CUDA code has a function of the same name that launches a kernel.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ void for_each(Serial, Index n, const Item& item) {
   for (Index i = 0; i < n; ++i) item(i);
 }
 
-// The same for items that return a number: the largest of them, at least 0. A NaN makes the result a NaN.
+// Largest of the values item(i) for i = 0 ... n-1, at least 0. A NaN makes the result a NaN.
 template <class Item>
 Real max_over(Serial, Index n, const Item& item) {
   Real largest = 0;

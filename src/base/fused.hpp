@@ -1,5 +1,5 @@
-// Sums of products that round once, a b + c, with the same bits on host and device: fewer operations where a
-// contact takes many. Every function negates exactly with its arguments.
+// Fused multiply-add, a b + c with a single rounding, for Real and Vec3, with the same bits on host and
+// device. It saves operations in contact evaluations. All functions change sign exactly with their arguments.
 #pragma once
 
 #include <cmath>

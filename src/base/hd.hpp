@@ -1,8 +1,8 @@
-// The one place that knows whether a compiler builds for host only or for host and device.
+// Markers of functions for host and device; empty unless CUDA compiles the file.
 #pragma once
 
-// SCREE_HD_CALLER: before a template for both that calls what it is given, and may be given a function of the
-// host alone where only the host calls it.
+// SCREE_HD_CALLER precedes a template for host and device whose callable may be a host function if only the
+// host calls the template.
 #ifdef __CUDACC__
 #define SCREE_HD __host__ __device__ inline
 #define SCREE_HD_CALLER _Pragma("nv_exec_check_disable")

@@ -12,14 +12,14 @@ namespace scree {
 
 namespace {
 
-// Version 1 writes "no limit" as a number near 2^63.
+// Version 1 of control groups expresses "no limit" by a number near 2^63.
 constexpr Real kNoLimit = 1e18;
 
 void tighten(MemoryBound& bound, Real bytes, const std::string& set_by) {
   if (bytes < bound.bytes) bound = {std::max(bytes, Real(0)), set_by};
 }
 
-// The number behind a word at the start of a line; of a file of one number, with an empty word.
+// The number that follows a word at the start of a line; with an empty word the only number of a file.
 std::optional<Real> number_in(const std::string& path, const std::string& word = "") {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
@@ -32,10 +32,10 @@ std::optional<Real> number_in(const std::string& path, const std::string& word =
 }
 
 struct GroupFiles {
-  std::string limit, usage, cache;  // names; the last is a word of memory.stat: pages that can be given back
+  std::string limit, usage, cache;  // file names; the last is an entry of memory.stat: reclaimable pages
 };
 
-// Of the groups from `path` up to the root of the hierarchy that is mounted at `mount`.
+// Applies the limits of the groups from `path` up to the root of the hierarchy mounted at `mount`.
 void tighten_by_groups(MemoryBound& bound, const std::string& mount, std::string path,
                        const GroupFiles& files) {
   for (;; path = path.substr(0, path.rfind('/'))) {
@@ -51,7 +51,7 @@ void tighten_by_groups(MemoryBound& bound, const std::string& mount, std::string
   }
 }
 
-// Lines "5:memory:/group" of version 1 and "0::/group" of version 2.
+// Parses lines "5:memory:/group" of version 1 and "0::/group" of version 2.
 void tighten_by_control_groups(MemoryBound& bound, const std::string& root) {
   const std::string mount = root + "/sys/fs/cgroup";
   std::ifstream file(root + "/proc/self/cgroup");
@@ -67,7 +67,7 @@ void tighten_by_control_groups(MemoryBound& bound, const std::string& root) {
   }
 }
 
-// used: a line of /proc/self/status, in kB.
+// used: key of a line of /proc/self/status, in kB.
 void tighten_by_limit(MemoryBound& bound, const std::string& root, int resource, const std::string& used,
                       const std::string& set_by) {
   rlimit limit{};

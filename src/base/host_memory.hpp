@@ -1,4 +1,4 @@
-// The memory of the host that this process can still get.
+// Host memory that this process can still allocate.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// One bound, and what sets it, in words: "MemAvailable of /proc/meminfo".
+// A bound [B], and the text on its origin: "MemAvailable of /proc/meminfo".
 struct MemoryBound {
   Real bytes = kInfinity;
   std::string set_by;
@@ -15,12 +15,12 @@ struct MemoryBound {
 
 struct FreeMemory {
   MemoryBound host;     // for all processes of the host, or of this process's control group, together
-  MemoryBound process;  // for this process alone: the limits of its shell
+  MemoryBound process;  // for this process alone: resource limits of its shell
 };
 
-// The tightest bounds now: the host's available memory, the limits of the control groups that this process is
-// in (version 1 and 2) less what they use, and the limits on the address space and on the data segment. A
-// bound that cannot be read counts as none. root: where proc/ and sys/ are, for tests.
+// The tightest bounds at present: available memory of the host, limits of this process's control groups
+// (version 1 and 2) less their usage, and limits on address space and data segment. A bound that cannot be
+// read is ignored. root: folder with proc/ and sys/, for tests.
 FreeMemory free_memory(const std::string& root = "");
 
 }  // namespace scree

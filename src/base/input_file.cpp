@@ -10,7 +10,7 @@ namespace scree {
 
 namespace {
 
-// The first line of every pointer, without the version's number.
+// The first line of every pointer file, without the version number.
 constexpr std::string_view kLfsBeginning = "version https://git-lfs.github.com/spec/";
 
 }  // namespace
@@ -22,7 +22,7 @@ std::string input_file_trouble(const std::string& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return "cannot be read: " + error.message();
   if (std::filesystem::is_directory(status)) return "is a folder; must be a file";
-  if (!std::filesystem::is_regular_file(status)) return "is no regular file";
+  if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::string("cannot be read: ") + std::strerror(errno);

@@ -1,4 +1,4 @@
-// Files that a user gives as input, before anything is known of their format.
+// Checks of input files that do not depend on their format.
 #pragma once
 
 #include <string>
@@ -6,15 +6,15 @@
 
 namespace scree {
 
-// Whether a file that begins with these bytes is what Git leaves in place of a file that Git LFS has not
-// fetched: a few lines of text that name it (https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md).
+// Whether the file is a Git LFS pointer, a few lines of text in place of a file that has not been fetched
+// (https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md). beginning: its first bytes.
 bool is_lfs_pointer(std::string_view beginning);
 inline constexpr const char* kLfsPointerTrouble =
-    "is a pointer of Git LFS, not the file itself, which \"git lfs pull\" fetches";
+    "is a Git LFS pointer in place of the file; \"git lfs pull\" fetches the file";
 
-// Why a file is no input, whatever it is meant to hold, as the end of a sentence on it: "cannot be read: No
-// such file or directory", "is a folder; must be a file", "is no regular file", kLfsPointerTrouble; ""
-// where it can be read. Input is read more than once, so that pipes and devices are none.
+// Why a file cannot serve as input, as the end of a sentence: "cannot be read: No such file or directory",
+// "is a folder; must be a file", "is not a regular file", kLfsPointerTrouble; empty if it can be read. Pipes
+// and devices are refused, because input is read more than once.
 std::string input_file_trouble(const std::string& path);
 
 }  // namespace scree

@@ -11,11 +11,11 @@ namespace scree {
 
 namespace {
 
-// Whether standard output is the terminal that this process runs on. mpirun gives its ranks another one, and
-// copies what they write there, perhaps into the log of a batch job.
+// Whether standard output is the terminal of this process. mpirun gives its ranks another terminal, whose
+// output it copies, perhaps into the log of a batch job.
 bool on_own_terminal() { return tcgetpgrp(STDOUT_FILENO) == getpgrp(); }
 
-// Columns of the terminal; none where it does not say.
+// Number of columns of the terminal; 0 if it is not known.
 std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
@@ -23,10 +23,10 @@ std::size_t terminal_width() {
 
 constexpr std::size_t kLongest = 1200;  // of a warning or an error [B]
 constexpr std::size_t kMostOfAKind = 10, kShownOfFirst = 120;
-constexpr std::size_t kTelling = 60;  // bytes of common words that tell one kind from others
+constexpr std::size_t kTelling = 60;  // length of the common beginning that identifies a kind [B]
 
-// What warnings of one kind have in common: their first words, less what stands in quotes, words with digits
-// and the place in the deck but for its table ("deck.toml:3:1: bodies.arm.mass").
+// The common beginning of warnings of one kind: the first words without quoted texts, words with digits, and
+// positions in the deck after the name of the table ("deck.toml:3:1: bodies.arm.mass").
 std::string common_words(const std::string& message) {
   std::string words, word;
   char quote = 0;
@@ -92,7 +92,7 @@ void Log::tell_left_out() {
     if (kind.left_out == 0) continue;
     warnings_.push_back(std::to_string(kind.left_out) +
                         (kind.left_out == 1 ? " more warning" : " more warnings") +
-                        " as this one: " + shortened(printable(kind.first), kShownOfFirst));
+                        " like this one: " + shortened(printable(kind.first), kShownOfFirst));
     complain("warning", warnings_.back());
     kind.left_out = 0;
   }
@@ -103,7 +103,7 @@ void Log::error(const std::string& message) { complain("error", message); }
 void Log::progress(const std::string& line, bool force) {
   if (quiet_) return;
   if (on_own_terminal()) {
-    // A line that wraps could not be rewritten.
+    // A line that wraps cannot be rewritten.
     const std::size_t width = terminal_width();
     const std::string fitting = width > 1 ? line.substr(0, width - 1) : line;
     std::fprintf(stdout, "\r%s\033[K", fitting.c_str());

@@ -1,4 +1,4 @@
-// Messages to the user: warnings are kept for the run record, information goes to the terminal.
+// Messages to the user: warnings are stored for the run record, information goes to the terminal.
 #pragma once
 
 #include <map>
@@ -7,22 +7,22 @@
 
 namespace scree {
 
-// "error: no such file\n": one printable line of bounded length, whatever the message holds.
+// "error: no such file\n": one printable line of limited length, whatever the message contains.
 std::string message_line(const std::string& kind, const std::string& message);
 
 class Log {
  public:
-  // quiet: nothing goes to the terminal (ranks other than 0, tests).
+  // quiet: without output to the terminal (ranks other than 0, tests).
   explicit Log(bool quiet = false) : quiet_(quiet) {}
 
   void info(const std::string& message);  // to standard output
-  // To standard error, and kept. Of warnings that differ in names and numbers alone only the first ten are
-  // shown and kept; tell_left_out() says how many more there were, in a warning each, and begins to count
-  // anew.
+  // To standard error, and stored. Of warnings that differ only in names and numbers the first ten are shown
+  // and stored; tell_left_out() issues a warning with the number of the others per kind, and resets the
+  // counts.
   void warning(const std::string& message);
   void tell_left_out();
   void error(const std::string& message);  // to standard error
-  // Rewrites the progress line in place on a terminal; elsewhere prints a line if `force`, or nothing.
+  // Rewrites the progress line on a terminal; elsewhere prints a line only with `force`.
   void progress(const std::string& line, bool force = false);
   const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -34,10 +34,10 @@ class Log {
   bool progress_line_open_ = false;
   struct Kind {
     std::size_t shown = 0, left_out = 0;
-    std::string first;  // of its warnings
+    std::string first;  // first warning of this kind
   };
   std::vector<std::string> warnings_;
-  std::map<std::string, Kind> kinds_;  // by what their warnings have in common
+  std::map<std::string, Kind> kinds_;  // by the common beginning of the warnings
 };
 
 }  // namespace scree

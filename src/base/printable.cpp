@@ -14,7 +14,7 @@ struct Character {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
-// The first character of a text that is not empty.
+// The first character of a text, which must not be empty.
 Character first_of(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text.front());
   if (lead < 0x80) return {lead, 1};
@@ -30,7 +30,7 @@ Character first_of(std::string_view text) {
   return too_long || surrogate || code > 0x10ffff ? Character{} : Character{code, bytes};
 }
 
-// Control characters, ends of lines, and the marks that turn the direction of writing.
+// Control characters, line ends, and marks that change the writing direction.
 bool is_hidden(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x200b && code <= 0x200f) ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f) || code == 0xfeff;
@@ -40,7 +40,7 @@ std::string escaped(const Character& character, char byte) {
   if (character.code == '\n' && character.bytes > 0) return "\\n";
   if (character.code == '\t' && character.bytes > 0) return "\\t";
   char text[16];
-  if (character.code < 0x80)  // or a byte that is not UTF-8
+  if (character.code < 0x80)  // also a byte that is not UTF-8
     std::snprintf(text, sizeof text, "\\x%02x", static_cast<unsigned char>(byte));
   else
     std::snprintf(text, sizeof text, "\\u%04x", static_cast<unsigned>(character.code));

@@ -1,4 +1,4 @@
-// Text of others (decks, files, command lines) made fit for messages.
+// Makes text from outside (decks, files, command lines) suitable for messages.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace scree {
 
-// With \n, \x1b and the like in place of control characters, of bytes that are not UTF-8, and of the marks
-// that turn the direction of writing.
+// Escapes control characters, bytes that are not UTF-8, and marks that change the writing direction: \n,
+// \x1b.
 std::string printable(std::string_view text);
-// Without the middle where it is longer than most bytes, for one line of a log.
+// Removes the middle of a text longer than `most` bytes, for one line of a log.
 std::string shortened(const std::string& text, std::size_t most);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// Compiled for every x86-64 (CMakeLists.txt). Nothing here may use templates or inline functions of other
-// headers: the linker might take what another file has made of them.
+// Compiled for every x86-64 (CMakeLists.txt). The code must not use templates or inline functions of other
+// headers, because the linker might choose the version that another file has compiled for newer processors.
 #include "base/processor.hpp"
 
 #if defined(__x86_64__)
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBadInput = 2;  // ExitCode::bad_input
 
-// What the operating system keeps of a process when another one has the processor: bits of XCR0.
+// Register states that the operating system saves when it switches processes: bits of XCR0.
 unsigned kept_state() {
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
   constexpr unsigned kOsxsave = 1u << 27;
@@ -47,7 +47,7 @@ void say_number(unsigned number) {
   say(digit);
 }
 
-// The first of them by name, the others by their number.
+// Ends the program with a message that names the first missing instruction sets and counts the others.
 [[noreturn]] void refuse(unsigned missing) {
   constexpr unsigned kNamed = 3;
   say("error: this program was built for a processor with ");
@@ -59,13 +59,13 @@ void say_number(unsigned number) {
     if (++named == kNamed) break;
   }
   if (missing > named) say(" and "), say_number(missing - named), say(" more");
-  say(missing == 1 ? ", which this one has not" : ", none of which this one has");
-  say(": it was configured with -march=native on another machine; configure it here, or with -D "
-      "SCREE_NATIVE=OFF for every processor\n");
+  say(missing == 1 ? ", which this processor lacks" : ", all of which this processor lacks");
+  say(": it was configured with -march=native on another machine; configure it on this machine, or for every "
+      "processor with -D SCREE_NATIVE=OFF\n");
   for (;;) syscall(SYS_exit_group, kBadInput);
 }
 
-// 101 is the first of the priorities that are not the compiler's own.
+// 101 is the first priority that is not reserved for the compiler.
 __attribute__((constructor(101))) void check_processor() {
   unsigned missing = 0;
   for (const ProcessorFeature* feature = kWantedFeatures; feature->name != nullptr; ++feature)

@@ -1,18 +1,17 @@
-// The instructions that the compiler was allowed to use, and whether this processor has them: the program
-// ends with one line, and not with SIGILL, where it was built for a processor of another kind.
+// Instruction sets of the build, and whether this processor has them: on a processor of another kind the
+// program ends with one line of explanation, and not with SIGILL.
 //
-// The check runs before anything else of the program, static objects included, and its own code
-// (processor.cpp) is compiled for every x86-64, whatever the rest is compiled for. It is linked into every
-// program that asks for wanted_instructions().
+// The check runs before all other code, including constructors of static objects, and is itself compiled for
+// every x86-64 (processor.cpp). It is linked into every program that calls wanted_instructions().
 #pragma once
 
 namespace scree {
 
 enum ProcessorRegister { kEax, kEbx, kEcx, kEdx };
-// Registers that the operating system must keep for instructions that use them.
+// Register states that the operating system must save for an instruction set.
 enum ProcessorState { kAlways, kYmm, kZmm };
 
-// A set of instructions, and the bit that says of a processor that it has them.
+// An instruction set, and the CPUID bit of processors that have it.
 struct ProcessorFeature {
   const char* name;  // nullptr ends a list
   unsigned leaf, subleaf;
@@ -21,10 +20,10 @@ struct ProcessorFeature {
   ProcessorState state;
 };
 
-// Those that the build wants beyond what every x86-64 has, the newest first: constants, no code.
+// The instruction sets that the build requires beyond every x86-64, the newest first: constants without code.
 extern const ProcessorFeature kWantedFeatures[];
 
-// The same list; empty where the build is for every processor.
+// kWantedFeatures; empty if the build is for every processor.
 const ProcessorFeature* wanted_instructions();
 
 }  // namespace scree

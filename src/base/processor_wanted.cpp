@@ -1,6 +1,6 @@
-// What the compiler was told to use, as its macros say: this file is compiled like the rest of the program,
-// but has no code. Listed are instructions that compilers use unasked, not those that only a program can ask
-// for (AES, SHA, RDSEED, CLZERO): without these another processor does as well.
+// Instruction sets of the build according to the compiler's macros: this file is compiled like the rest of
+// the program, but contains no code. It lists the sets that compilers use on their own. Sets that only
+// explicit calls use (AES, SHA, RDSEED, CLZERO) are left out, because the program runs without them.
 #include "base/processor.hpp"
 
 namespace scree {

@@ -1,4 +1,4 @@
-// Sum of many doubles that gives the same bits in any order and for any split over ranks or threads.
+// Sum of many doubles with the same bits for any order and any partition over ranks or threads.
 #pragma once
 
 #include <cmath>
@@ -10,20 +10,20 @@
 
 namespace scree {
 
-// Terms are rounded to multiples of a quantum 2^-62 below the largest magnitude and added as integers.
-// Two passes: the maximum (exact in any order), then the integers (exact in any order). Up to 2^64 terms.
+// Terms are rounded to multiples of a quantum, 2^-62 of the largest magnitude, and added as integers. Two
+// passes: the maximum, then the integers, both exact in any order. Up to 2^64 terms.
 class ReproducibleScale {
  public:
-  // largest: an upper bound on |term|, the same on every rank.
+  // largest: an upper bound of |term|, equal on every rank.
   ReproducibleScale() = default;
   SCREE_HD explicit ReproducibleScale(Real largest) : usable_(std::isfinite(largest)) {
-    constexpr int kLargestShift = 1000;  // tinier terms than this resolves are as good as zero
+    constexpr int kLargestShift = 1000;  // terms far below the resolution count as zero
     int exponent = 0;
     if (usable_) std::frexp(largest, &exponent);
     const int shift = 62 - exponent < kLargestShift ? 62 - exponent : kLargestShift;
     scale_ = std::ldexp(Real(1), shift), inverse_ = std::ldexp(Real(1), -shift);
   }
-  // |term * scale| < 2^62: it fits into 64 bits, the sum into 128.
+  // |term * scale| < 2^62: a term fits into 64 bits, the sum into 128 bits.
   SCREE_HD std::int64_t quanta(Real term) const {
     return usable_ ? static_cast<std::int64_t>(term * scale_) : 0;
   }
@@ -34,14 +34,14 @@ class ReproducibleScale {
   Real scale_ = 1, inverse_ = 1;
 };
 
-// Where the items of one process are all there are.
+// Reduction over a single process.
 struct OneProcess {
   void max(std::span<Real>) const {}
   void sum(std::span<__int128>) const {}
 };
 
-// Sums of N terms each: item(i).value[k] for i = 0 ... n-1, evaluated twice. over: what takes the maxima and
-// the sums over all processes, each with items of its own; every one of them gets the sums.
+// Sums of N terms each: item(i).value[k] for i = 0 ... n-1, which are evaluated twice. over: reduces maxima
+// and sums over all processes, each with its own items; all of them get the sums.
 template <int N, class Item, class Over = OneProcess>
 void reproducible_sums(Index n, const Item& item, Real (&sums)[N], const Over& over = {}) {
   Real largest[N] = {};
@@ -49,7 +49,7 @@ void reproducible_sums(Index n, const Item& item, Real (&sums)[N], const Over& o
     const auto terms = item(i);
     for (int k = 0; k < N; ++k) {
       const Real magnitude = std::abs(terms.value[k]);
-      if (!(magnitude <= largest[k]) && !std::isnan(largest[k])) largest[k] = magnitude;  // a NaN sticks
+      if (!(magnitude <= largest[k]) && !std::isnan(largest[k])) largest[k] = magnitude;  // a NaN persists
     }
   }
   over.max(std::span<Real>(largest));
@@ -64,7 +64,7 @@ void reproducible_sums(Index n, const Item& item, Real (&sums)[N], const Over& o
   for (int k = 0; k < N; ++k) sums[k] = scale[k].value(quanta[k]);
 }
 
-// The same of one term, a function of i.
+// Sum of a single term, which is a function of i.
 template <class Term>
 Real reproducible_sum(Index n, const Term& term) {
   struct One {

@@ -1,4 +1,4 @@
-// Square root and reciprocal, exact to the last bit on host and device.
+// Square root and reciprocal, correctly rounded on host and device.
 #pragma once
 
 #include <cmath>
@@ -16,13 +16,13 @@ struct RootAndInverse {
 
 #ifdef __CUDA_ARCH__
 
-// The compiler's own double-precision root and division branch for special cases, which keeps a GPU from
-// working on two at once. These do not: Newton's iteration from the hardware's estimate, with the last step
-// in the form that rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results
-// are normal.
+// The compiler's double-precision root and division branch for special cases, which keeps a GPU from
+// overlapping two of them. These functions do not branch: Newton's iteration starts from the hardware's
+// estimate, and its last step has the form that rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990).
+// Arguments and results must be normal numbers.
 
-// The one divisor for which that form may be wrong has a mantissa of ones: its reciprocal lies just above the
-// middle between a power of two and the next number, which it is rounded to.
+// The only divisor for which that form can be wrong has a mantissa of ones: its reciprocal lies just above
+// the midpoint between a power of two and the next number, and is rounded to the latter.
 __device__ inline Real rounded_reciprocal(Real x, Real near) {
   constexpr long long kMantissa = (1ll << 52) - 1;
   const bool ones = (__double_as_longlong(x) & kMantissa) == kMantissa;
@@ -30,7 +30,7 @@ __device__ inline Real rounded_reciprocal(Real x, Real near) {
 }
 
 __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
-  Real y;  // 1 / sqrt(x), some 20 bits at first
+  Real y;  // 1 / sqrt(x), about 20 bits at first
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
   for (int pass = 0; pass < 2; ++pass) {
     const Real error = __fma_rn(-x * y, y, 1.0);
@@ -43,7 +43,7 @@ __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
   return {root, rounded_reciprocal(root, inverse)};
 }
 
-// In single precision to some last bits.
+// Single precision, accurate to a few units in the last place.
 __device__ inline RootAndInverse<float> root_and_inverse(float x) {
   const float y = rsqrtf(x), root = x * y;
   return {__fmaf_rn(__fmaf_rn(-root, root, x), 0.5f * y, root), y};

@@ -1,4 +1,4 @@
-// Rotation about z: the one place that turns vectors between a body's frame and the global one.
+// Rotation about z between a body's frame and the global frame.
 #pragma once
 
 #include <cmath>
@@ -15,11 +15,11 @@ struct Rotation {
   Rotation() = default;
   explicit Rotation(Real angle) : cosine(std::cos(angle)), sine(std::sin(angle)) {}  // [rad]
 
-  // A v: from the body's frame to the global one.
+  // A v: from the body's frame to the global frame.
   Vec3 turn(Vec3 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z}; }
 };
 
-// Velocity [m/s] at `arm` [m] from the centre of a body that turns with `rate` [rad/s]: A' s for arm = A s.
+// Velocity [m/s] at `arm` [m] from the centre of a body that rotates with `rate` [rad/s]: A' s for arm = A s.
 inline Vec3 turning_velocity(Real rate, Vec3 arm) { return {-rate * arm.y, rate * arm.x, 0}; }
 
 }  // namespace scree

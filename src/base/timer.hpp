@@ -1,4 +1,4 @@
-// Wall time per stage of the step. The stage names are the timer names and the columns of the run record.
+// Wall time per stage of a step. The names of the stages are used for the timers and in the run record.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ inline constexpr std::array<const char*, static_cast<int>(Stage::count)> kStageN
     "update_halo",      "broadcast_motion", "contact_force", "reduce_wrench", "mbs_correct",
     "particle_correct", "accept",           "output"};
 
-// Those of a neighbour list.
+// The stages of a neighbour list build.
 inline constexpr std::array kListStages = {Stage::migrate, Stage::sort_cells, Stage::exchange_halo,
                                            Stage::neighbors};
 
@@ -43,7 +43,7 @@ class StageTimers {
     std::int64_t calls = 0;
   };
 
-  // Adds the lifetime of the returned object to the stage.
+  // Adds the lifetime of the returned object to the stage's time.
   class Scope {
    public:
     Scope(Entry& entry) : entry_(entry), start_(Clock::now()) {}
@@ -62,7 +62,7 @@ class StageTimers {
 
   Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)]); }
   const Entry& operator[](Stage stage) const { return entries_[static_cast<int>(stage)]; }
-  // What part of the time of all stages but output these took.
+  // Share of these stages in the time of all stages except output.
   double share(std::span<const Stage> stages) const {
     double all = -(*this)[Stage::output].seconds, these = 0;
     for (const Entry& entry : entries_) all += entry.seconds;

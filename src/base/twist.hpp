@@ -1,4 +1,4 @@
-// Six numbers of a particle that moves and turns, and symmetric 6 x 6 blocks.
+// 6-vectors of particles that translate and rotate, and symmetric 6 x 6 blocks.
 #pragma once
 
 #include <type_traits>
@@ -8,7 +8,8 @@
 
 namespace scree {
 
-// Of one unit: what belongs to the rotation is scaled by the radius. Aligned for loads of two numbers each.
+// Translational and rotational part in the same unit: the rotational part is scaled by the radius. Aligned
+// for loads of two numbers each.
 struct alignas(16) Twist {
   Vec3 move, turn;
 };
@@ -19,8 +20,8 @@ SCREE_HD Twist operator*(Real s, Twist a) { return {s * a.move, s * a.turn}; }
 SCREE_HD Twist& operator+=(Twist& a, Twist b) { return a = a + b; }
 SCREE_HD Twist& operator-=(Twist& a, Twist b) { return a = a - b; }
 
-// In single precision: what a linear solve goes along. A spare number behind each part: compilers move
-// structures with padding byte by byte.
+// In single precision, for vectors of linear solvers. A spare number follows each part, because compilers
+// copy structures with padding byte by byte.
 struct alignas(16) Twistf {
   Vec3f move;
   float spare = 0;
@@ -37,17 +38,17 @@ SCREE_HD Twistf operator*(float s, Twistf a) { return {s * a.move, s * a.turn}; 
 SCREE_HD Twistf operator+(Twistf a, Twistf b) { return {a.move + b.move, a.turn + b.turn}; }
 SCREE_HD Twistf& operator+=(Twistf& a, Twistf b) { return a = a + b; }
 
-// Of parts that are such vectors, Vec3 or Vec3f.
+// The 6-vector with parts of type Vector, Vec3 or Vec3f.
 template <class Vector>
 using TwistOf = std::conditional_t<std::is_same_v<Vector, Vec3>, Twist, Twistf>;
 
-// The larger of the two parts.
+// The larger norm of the two parts.
 SCREE_HD Real largest_part(Twist a) {
   const Real move = norm(a.move), turn = norm(a.turn);
   return move > turn ? move : turn;
 }
 
-// 3 x 3, by rows.
+// 3 x 3 matrix by rows.
 struct Mat3 {
   Vec3 x, y, z;
 };
@@ -60,14 +61,14 @@ SCREE_HD Mat3& operator+=(Mat3& a, const Mat3& b) {
 // s a b^T.
 SCREE_HD Mat3 outer(Real s, Vec3 a, Vec3 b) { return {(s * a.x) * b, (s * a.y) * b, (s * a.z) * b}; }
 
-// Symmetric: [move, mixed; mixed^T, turn].
+// Symmetric block [move, mixed; mixed^T, turn].
 struct Block6 {
   Sym3 move, turn;
   Mat3 mixed;
 };
 
-// Largest sum of |entries| over the rows, row and column k scaled by the root of 1 / mass of its part: bounds
-// the eigenvalues of the block over the masses.
+// Largest sum of |entries| over the rows, with row and column k scaled by the root of 1 / mass of its part:
+// an upper bound of the eigenvalues of the block relative to the masses.
 SCREE_HD Real largest_row(const Block6& a, Real mass, Real inertia) {
   const Real between = 1 / std::sqrt(mass * inertia);
   const auto size = [](Vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
@@ -85,12 +86,12 @@ SCREE_HD Real largest_row(const Block6& a, Real mass, Real inertia) {
   return move > turn ? move : turn;
 }
 
-// The same in single precision: for preconditioners.
+// A symmetric 6 x 6 block in single precision, for preconditioners.
 struct Block6f {
   static constexpr int kNumbers = 21;
   float value[kNumbers];
 
-  // Its inverse, of a positive definite block, through the Schur complement of `move`.
+  // Inverse of a positive definite block, through the Schur complement of `move`.
   SCREE_HD static Block6f inverse_of(const Block6& a) {
     const Sym3 first = inverse(a.move);
     const auto column = [&](Real x, Real y, Real z) { return first * Vec3{x, y, z}; };

@@ -15,7 +15,7 @@ struct Vec3 {
 SCREE_HD Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 SCREE_HD Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 SCREE_HD Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-// -a, in which nothing is -0: what two partners of a contact find each for itself is both times +0.
+// -a without negative zeros: the results of both partners of a contact are then +0.
 SCREE_HD Vec3 opposite(Vec3 a) { return {0 - a.x, 0 - a.y, 0 - a.z}; }
 SCREE_HD Vec3 operator*(Real s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
 SCREE_HD Vec3& operator+=(Vec3& a, Vec3 b) { return a = a + b; }
@@ -28,7 +28,7 @@ SCREE_HD Vec3 cross(Vec3 a, Vec3 b) {
 SCREE_HD Real norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 SCREE_HD bool is_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
-// Position and radius [m] in one aligned load; w is also used for other per-particle scalars.
+// Position and radius [m] in one aligned load; w also holds other scalars of particles.
 struct alignas(32) Vec4 {
   Real x = 0, y = 0, z = 0, w = 0;
 };
@@ -36,8 +36,8 @@ struct alignas(32) Vec4 {
 SCREE_HD Vec3 xyz(Vec4 a) { return {a.x, a.y, a.z}; }
 SCREE_HD Vec4 vec4(Vec3 a, Real w) { return {a.x, a.y, a.z, w}; }
 
-// Three-vector in single precision. Its functions are found through their arguments alone, so that braces
-// mean a Vec3.
+// Three-vector in single precision. Its functions are friends, found by argument-dependent lookup alone, so
+// that braces always construct a Vec3.
 struct Vec3f {
   float x = 0, y = 0, z = 0;
 

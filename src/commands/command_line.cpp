@@ -15,13 +15,14 @@ namespace scree {
 namespace {
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
-    "4 a file could not be read or written,\n"
+    "Exit codes: 0 done, 2 bad usage or deck, or too little memory, 3 simulation failed,\n"
+    "4 file could not be read or written,\n"
     "5 stopped by a signal (SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU) after writing a\n"
-    "checkpoint, or without one where the model was still being built, or its picture drawn.\n"
-    "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
+    "checkpoint; without one if the model was still being built, or its picture drawn.\n"
+    "Arguments after -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
-// The program's words; those for PETSc go into the order.
+// Splits the arguments into those of the program, which it returns, and those for PETSc, which go into the
+// order.
 std::vector<std::string> split(int count, char** values, Order& order) {
   std::vector<std::string> words;
   bool petsc = false;
@@ -41,13 +42,13 @@ constexpr const char* kEmpty = "is empty; is a variable of a script not set?";
 
 bool is_blank(const std::string& word) { return word.find_first_not_of(" \t") == word.npos; }
 
-// Of every option that takes a name or a path.
+// Validator for options that take a name or a path.
 CLI::Validator named() {
   return {[](const std::string& word) { return is_blank(word) ? std::string(kEmpty) : std::string(); }, "",
           "named"};
 }
 
-// An option that ends in "=" would take the next word.
+// Without this check an option that ends in "=" would take the next argument as its value.
 void refuse_empty_values(const std::vector<std::string>& words) {
   for (const std::string& word : words)
     if (word.starts_with("--") && word.find('=') == word.size() - 1)
@@ -57,8 +58,7 @@ void refuse_empty_values(const std::vector<std::string>& words) {
 void declare_deck(CLI::App& command, Order& order) {
   command.add_option("deck", order.deck, "input deck (TOML)")->required()->check(named());
   command
-      .add_option("--set", order.overrides,
-                  "replace a value of the deck, once for each: --set time.step=1e-4")
+      .add_option("--set", order.overrides, "replace a value of the deck (repeatable): --set time.step=1e-4")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all()
@@ -66,34 +66,35 @@ void declare_deck(CLI::App& command, Order& order) {
 }
 
 void declare_run(CLI::App& app, Order& order) {
-  CLI::App* command = app.add_subcommand(
-      "run", "run a deck; results go to HDF5 files, and `scree status` tells how far it is");
+  CLI::App* command =
+      app.add_subcommand("run", "run a deck; results go to HDF5 files, `scree status` shows the progress");
   declare_deck(*command, order);
   command
-      ->add_option("--output", order.output,
-                   "folder for the results, from the current one (default: the deck's output.directory, or "
-                   "results/DECK's name)")
+      ->add_option(
+          "--output", order.output,
+          "folder for the results, relative to the current one (default: the deck's output.directory, "
+          "or results/ plus the deck's name)")
       ->type_name("DIR")
       ->check(named());
   order.backend = word_of(BackendChoice::automatic);
   command
       ->add_option(
           "--backend", order.backend,
-          "cpu; cuda: the GPU; auto: the GPU if there is one and the particles are enough to gain by it "
+          "cpu; cuda: the GPU; auto: the GPU if there is one and the number of particles makes it faster "
           "(default: auto)")
       ->check(CLI::IsMember(words_of<BackendChoice>()));
   CLI::Option* restart =
       command
           ->add_option("--restart", order.restart,
-                       "continue from this checkpoint. Where it lies in the output folder, the history and "
-                       "snapshots there go on, what was written after it is cut off, and other checkpoints "
-                       "become NAME.earlier; with another folder they begin anew there, at its time")
+                       "continue from this checkpoint. In the checkpoint's own folder the history and the "
+                       "snapshots are continued, what was written after the checkpoint is cut off, and other "
+                       "checkpoints become NAME.earlier; in another folder new files begin at its time")
           ->type_name("FILE")
           ->check(named());
   command
       ->add_flag("--allow-changes", order.allow_changes,
-                 "with --restart: also where the deck is another one than the checkpoint's; the run is then "
-                 "not bit for bit")
+                 "with --restart: continue although the deck differs from the checkpoint's; the results are "
+                 "then not bit for bit those of either deck")
       ->needs(restart);
   command->add_flag("--overwrite", order.overwrite,
                     "remove the results of an earlier run from the output folder (default: refuse)");
@@ -102,24 +103,23 @@ void declare_run(CLI::App& app, Order& order) {
 }
 
 void declare_check(CLI::App& app, Order& order) {
-  CLI::App* command = app.add_subcommand("check", "build and check a deck's model; run nothing");
+  CLI::App* command = app.add_subcommand("check", "build and check a deck's model without running it");
   declare_deck(*command, order);
   command
       ->add_option("--picture", order.picture,
-                   "draw the start, too, with scree-post: a .png, .jpg, .pdf or .svg")
+                   "also draw the start with scree-post, as .png, .jpg, .pdf or .svg")
       ->type_name("FILE")
       ->check(named());
   command->callback([&order] { order.command = Command::check; });
 }
 
 void declare_keys(CLI::App& app, Order& order) {
-  CLI::App* command = app.add_subcommand("keys", "print every deck key: the manual");
+  CLI::App* command = app.add_subcommand("keys", "print the reference of all deck keys");
   CLI::Option* markdown =
-      command->add_flag("--markdown", order.as_markdown, "as a page in Markdown: input/keys.md");
-  command
-      ->add_flag("--schema", order.as_schema, "as a JSON schema, with which editors complete and check decks")
+      command->add_flag("--markdown", order.as_markdown, "as a Markdown page, like input/keys.md");
+  command->add_flag("--schema", order.as_schema, "as a JSON schema for completion and checks in editors")
       ->excludes(markdown);
-  command->add_option("word", order.about, "print the keys that this word is about, in place of all")
+  command->add_option("word", order.about, "print only the keys on this word")
       ->check(named())
       ->type_name("WORD")
       ->excludes(markdown);
@@ -127,26 +127,26 @@ void declare_keys(CLI::App& app, Order& order) {
 }
 
 void declare_new(CLI::App& app, Order& order) {
-  CLI::App* command = app.add_subcommand("new", "write an example deck to begin from, or list them all");
-  command->add_option("example", order.example, "name of an example; none: list them")
+  CLI::App* command = app.add_subcommand("new", "write an example deck, or list all examples");
+  command->add_option("example", order.example, "name of an example (default: list all)")
       ->type_name("EXAMPLE")
       ->check(named());
-  command->add_option("file", order.file, "where to write it (default: EXAMPLE.toml, here)")
+  command->add_option("file", order.file, "file to write (default: EXAMPLE.toml in the current folder)")
       ->type_name("FILE")
       ->check(named());
   command->callback([&order] { order.command = Command::new_deck; });
 }
 
 void declare_status(CLI::App& app, Order& order) {
-  CLI::App* command = app.add_subcommand("status", "tell how far runs are, and how they ended");
-  command->add_option("folder", order.folders, "folders of results; several: a line for each")
+  CLI::App* command = app.add_subcommand("status", "show the progress of runs, and how they ended");
+  command->add_option("folder", order.folders, "results folders; one line each if there are several")
       ->type_name("DIR")
       ->required()
       ->check(named());
   command->callback([&order] { order.command = Command::status; });
 }
 
-// A deck in the place of a command is what people try first.
+// Users often give a deck in place of a command.
 std::string usage_message(const CLI::App& app, const std::string& first, const std::string& problem) {
   if (first.ends_with(".toml") || std::filesystem::is_regular_file(first))
     return fmt::format("{0}: not a command; did you mean \"scree run {0}\"?", first);

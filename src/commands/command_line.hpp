@@ -1,4 +1,4 @@
-// The words of the command line.
+// The arguments of the command line.
 #pragma once
 
 #include <functional>
@@ -10,23 +10,23 @@ namespace scree {
 
 enum class Command { help, run, check, keys, new_deck, status };
 
-// What the words ask for. Paths and names are not empty where they are given.
+// The parsed command line. Paths and names that are given are not empty.
 struct Order {
   Command command = Command::help;
-  std::string help;  // the text that was asked for, version included
+  std::string help;  // text to print; also for --version
   std::string deck, output, backend, restart, picture;
   std::vector<std::string> overrides;  // KEY=VALUE
   bool overwrite = false, allow_changes = false;
   bool as_markdown = false, as_schema = false;
-  std::optional<std::string> about;  // a word, in place of all keys
-  std::string example, file;         // of a new deck
+  std::optional<std::string> about;  // print the keys on this word instead of all keys
+  std::string example, file;         // name and file of a new deck
   std::vector<std::string> folders;
-  std::vector<std::string> petsc_words;  // those behind --
-  std::string text;                      // all words with blanks between them
+  std::vector<std::string> petsc_words;  // arguments after --
+  std::string text;                      // all arguments, separated by blanks
 };
 
-// Throws InputError on words that the program does not know or that lack something. version(): the text that
-// --version asks for.
+// Parses the arguments. Throws InputError if one is unknown or incomplete. version: returns the text for
+// --version.
 Order read_words(int count, char** values, const std::function<std::string()>& version);
 
 }  // namespace scree

@@ -44,7 +44,7 @@ std::string output_directory(const Order& order, const Deck& deck) {
   return "results/" + std::filesystem::path(order.deck).stem().string();
 }
 
-// What the multibody room refuses it names by joint or body; this adds the deck.
+// Adds the deck's name to errors of the multibody code, which name joint or body alone.
 template <class Action>
 auto naming_deck(const std::string& deck, const Action& action) {
   try {
@@ -62,13 +62,13 @@ Deck checked_deck(const Order& order) {
   return deck;
 }
 
-// What a checkpoint holds of the deck [B].
+// Length of the deck's texts in a checkpoint [B].
 std::int64_t length_of(const Deck& deck) {
   const Deck whole = with_fitting_segments(deck);
   return std::ssize(whole.resolved_text()) + std::ssize(whole.fingerprint());
 }
 
-// Puts the chosen values into the deck, as if it had named them.
+// Enters the chosen values into the deck as if it had named them.
 void take_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
   for (const ChosenValue& value : chosen) deck.root.take(value);
 }
@@ -83,7 +83,7 @@ void warn_of_run(const Model& model, Log& log) {
     if (!warning.empty()) log.warning(warning);
 }
 
-// Whether a signal has reached a rank; says so, and what there is not. Collective.
+// Whether a rank has received a signal; if so, logs that together with the text `lacking`. Collective.
 bool is_stopped(const Ranks& ranks, const char* lacking, Log& log) {
   const int signal = static_cast<int>(ranks.max(signal_received()));
   if (signal != 0) log.info(fmt::format("stopped by signal ({}) {}", strsignal(signal), lacking));
@@ -102,12 +102,12 @@ ExitCode run(const Order& order) {
   const Model model = build_model(deck, log, RanksShare(ranks), chosen);
   take_chosen(chosen, deck);
   say_chosen(chosen, log);
-  if (is_stopped(ranks, "before the first step: there is no new checkpoint", log))
+  if (is_stopped(ranks, "before the first step, without a new checkpoint", log))
     return ExitCode::stopped_by_signal;
   warn_of_run(model, log);
   const std::string too_much = disk_warning(model, disk_use(model, length_of(deck)), directory);
   if (!too_much.empty()) log.warning(too_much);
-  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  std::optional<PetscSession> petsc;  // on rank 0, which has the bodies
   ranks.on_root([&] { petsc.emplace("scree", order.petsc_words); });
   const Deck whole = with_fitting_segments(deck);
   RunOptions options{
@@ -123,7 +123,7 @@ ExitCode run(const Order& order) {
   return code;
 }
 
-// What the multibody room says of the bodies, the constraints' rank included; on rank 0.
+// The lines of the multibody code on the bodies, including the rank of the constraints; on rank 0.
 std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
   if (model.bodies.empty()) return "solver         none";
   std::string report;
@@ -134,13 +134,13 @@ std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
     const std::string& change = multibody.start_change();
     report = "solver         " + multibody.solver_description();
     if (!multibody.redundancy().empty())
-      report += "\nredundant      reactions shared: " + multibody.redundancy();
+      report += "\nredundant      minimum-norm reactions: " + multibody.redundancy();
     if (!change.empty()) report += "\nvelocities     made consistent; largest change: " + change;
   });
   return report;
 }
 
-// Everything short of running.
+// Builds and checks the model without running it.
 ExitCode check(const Order& order) {
   const bool draws = !order.picture.empty();
   if (draws) start_mpi();
@@ -165,7 +165,7 @@ ExitCode check(const Order& order) {
     });
   });
   if (!draws) return ExitCode::done;
-  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  std::optional<PetscSession> petsc;  // on rank 0, which has the bodies
   if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
   naming_memory(size, ranks.size(), [&] {
     draw_start(std::move(model), with_fitting_segments(deck).resolved_text(), drawer, order.picture, ranks);
@@ -182,7 +182,7 @@ ExitCode new_deck(const Order& order) {
       return;
     }
     const std::string path = write_example(order.example, order.file);
-    std::cout << fmt::format("{0} is written; scree check {0} checks it, scree run {0} runs it\n", path);
+    std::cout << fmt::format("wrote {0}; scree check {0} checks it, scree run {0} runs it\n", path);
   });
   return ExitCode::done;
 }
@@ -213,12 +213,12 @@ std::string manual(const Order& order) {
   return order.as_markdown ? keys_markdown() + output_fields_markdown() : keys_text() + output_fields_text();
 }
 
-// What the compiler was allowed to use beyond what every processor of the kind has.
+// The instruction sets of this build beyond those of every processor of the architecture.
 std::string instructions_text() {
   std::string names;
   for (const ProcessorFeature* wanted = wanted_instructions(); wanted->name != nullptr; ++wanted)
     names += (names.empty() ? "" : ", ") + std::string(wanted->name);
-  return names.empty() ? "every processor of this kind" : "processors with " + names;
+  return names.empty() ? "every processor of this architecture" : "processors with " + names;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the commands do.
+// The commands of the program.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace scree {
 
-// Of the program, its compiler and its libraries; needs neither MPI nor PETSc to run.
+// Versions of the program, its compiler and its libraries; needs neither MPI nor PETSc running.
 std::string version_text();
 
-// Starts MPI where the command needs it. Throws what the command's parts throw: InputError, IoError,
-// SimulationError. Collective where a launcher has started several ranks.
+// Carries out the command; starts MPI if the command needs it. Throws InputError, IoError and
+// SimulationError. Collective if a launcher has started several ranks.
 ExitCode carry_out(const Order& order);
 
 }  // namespace scree

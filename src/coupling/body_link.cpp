@@ -114,7 +114,7 @@ std::string BodyLink::of_root(const std::function<std::string()>& tell) {
   return text;
 }
 
-// Walls that move are rank 0's, too: sines of other machines need not have its bits.
+// Rank 0 also computes the motion of walls: on other machines sine and cosine may differ in the last bits.
 void BodyLink::broadcast(RankList& list, Real t) {
   const std::span<BodyMotion> motion(motion_);
   if (walls_.move()) walls_.at(t, motion.subspan(bodies_));

@@ -13,28 +13,29 @@
 namespace scree {
 namespace {
 
-// A list that was too short for the step is built again this many times before the step counts as failed.
+// A step fails after so many builds of a neighbour list that does not cover its displacements.
 constexpr int kMostListBuilds = 4;
-// Skin of a list that had to be built for a fast step, over that step's largest displacement.
+// Skin of a list rebuilt for a fast step, over the largest displacement in that step.
 constexpr Real kSkinPerMotion = 5;
-// But no wider than this, over the largest radius: one fast particle must not make every particle a neighbour
-// of every other. A step that needs more is shortened.
+// Largest skin of such a list, over the largest radius: a single fast particle must not make all particles
+// neighbours. Steps that need more are shortened.
 constexpr Real kMostSkin = 4;
 
-// Newton iterations of a step whose limits of friction follow the normal forces. Steps that resolve their
+// Newton iterations of a step in which the friction limits follow the normal forces. Steps that resolve their
 // contacts need 4 to 7.
 constexpr int kMostFollowing = 12;
 
-// A residual that moves no particle by more than this part of its radius is round-off, though it be no small
-// part of the largest force: so it is where a first touch in weightlessness is all that acts.
+// A residual that moves no particle by more than this share of its radius is round-off, even if it is large
+// compared with the largest force, as at a first contact in weightlessness.
 constexpr Real kRoundOffMove = 1e-12;
 
 }  // namespace
 
-// The last one of a Newton loop.
+// Data of the last iteration of a Newton loop.
 struct CoupledStep::Iteration {
   Real residual = 0, correction = 1;  // of the particles
-  Real judged_correction = 1;  // the smaller of the last correction and what the residual can still cause
+  Real judged_correction =
+      1;  // minimum of the last correction and the correction that the residual can still cause
   IterationNorms bodies;
 };
 
@@ -53,7 +54,7 @@ void CoupledStep::start(MultibodyState& bodies) {
   link_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
   resume(bodies, 0);
   backend_.particles().initial_forces();
-  // Only now are the contact wrenches at the start known.
+  // The contact wrenches at the start are known only now.
   link_.reduce_end_wrench(backend_.particles());
   link_.set_initial_state(bodies, link_.wrench_of_bodies());
   link_.take_wrench(bodies);
@@ -73,7 +74,8 @@ void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
 void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::predict);
-    // Walls were left at the end of the step before, which round-off takes for another instant.
+    // After the previous step the walls have the pose of its end, which round-off makes another instant than
+    // t.
     if (link_.has_driven_walls()) link_.broadcast_motion(backend_.list(), bodies, 0, t);
     link_.predict(bodies, t, h, t + h);
     step = backend_.open_step(h);
@@ -89,28 +91,29 @@ void CoupledStep::undo_step(OpenStep& step, const MultibodyState& bodies, Real t
   link_.broadcast_motion(backend_.list(), bodies, 0, t);
 }
 
-// Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone
-// and the list built with a skin that covers it: the step is then repeated with the same h, so that what the
-// list happens to cover never changes the result.
+// Whether the neighbour list covers every pair that can touch in this iterate. If not, undoes the step and
+// builds the list with a sufficient skin; the step is then repeated with the same h, so that the list does
+// not affect the result.
 bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds) {
   if (!something_touches_ || backend_.list().displacement() <= 1) return true;
   const Real moved = step->step_displacement(), widest = kMostSkin * largest_radius_;
   if (builds == kMostListBuilds)
     throw SimulationError(fmt::format(
-        "stage neighbors: the step moves a particle or a shape of a body by {:.3g} m, farther than "
-        "contacts are looked for: by half of {:.3g} m",
+        "stage neighbors: the step displaces a particle or a shape of a body by {:.3g} m, more than the "
+        "neighbour list covers: half of {:.3g} m",
         moved, std::max(model_.contact.skin, widest)));
   undo_step(step, bodies, t);
   rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)));
   return false;
 }
 
-// Opens the step of both sides, on a list that covers it, and iterates until the residuals are small.
+// Opens the step of particles and bodies on a list that covers it, and iterates until the residuals are
+// small.
 void CoupledStep::solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
   const StepCounts before = counts_;
   bool done = false;
   for (int builds = 0; !done; ++builds) {
-    // Attempts that the list does not cover leave no trace, in the counts neither.
+    // The counts leave out attempts that the list did not cover.
     counts_.newton_iterations = before.newton_iterations,
     counts_.linear_iterations = before.linear_iterations;
     open_step(step, bodies, t, h);
@@ -127,7 +130,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   try {
     solve_step(step, bodies, t, h);
     for (const Leaver& l : backend_.particles().outside())
-      if (l.lost) check_inside();  // through a wall: a shorter step may not
+      if (l.lost) check_inside();  // a shorter step may avoid the penetration of the wall
   } catch (const DeviceError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     counts_ = before;
@@ -172,10 +175,10 @@ std::vector<Leaver> CoupledStep::check_inside() const {
   for (const Leaver& l : leavers) {
     if (!l.lost && policy != Leaving::error) continue;
     throw SimulationError(fmt::format(
-        "stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}", l.global_id,
+        "stage accept: particle {} is outside the domain at ({:g}, {:g}, {:g}) m, {}", l.global_id,
         l.position.x, l.position.y, l.position.z,
-        l.lost ? "beyond a side that is a wall: it overlapped the wall by more than its radius; the "
-                 "contact's stiffness is too low for this impact, or the step too long"
+        l.lost ? "beyond a side that is a wall: its overlap with the wall exceeded its radius; increase the "
+                 "stiffness of the contact or shorten the step"
                : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
   }
   return leavers;
@@ -193,8 +196,8 @@ void CoupledStep::iterate(ImplicitStep& step) {
   throw SimulationError(trouble_of(step, last, most));
 }
 
-// Where Newton's method does not find which contacts slide: adaptive steps are taken again, shorter; fixed
-// ones are solved with limits that follow the normal forces no longer.
+// If Newton's method does not determine which contacts slide, adaptive steps are repeated with a smaller
+// length, and fixed steps are solved with lagged friction limits, which no longer follow the normal forces.
 void CoupledStep::freeze(ImplicitStep& step, const Iteration& last) {
   if (model_.time.control == StepControl::adaptive)
     throw SimulationError(trouble_of(step, last, kMostFollowing));
@@ -202,7 +205,7 @@ void CoupledStep::freeze(ImplicitStep& step, const Iteration& last) {
   frozen_ = model_.particles.totals.count > 0;
 }
 
-// Whose residual or correction is above the limit: the particles', if both are.
+// Names the particles or bodies whose residual or correction is above the limit; the particles if both are.
 std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const {
   const Integrator& limits = model_.integrator;
   const auto trouble = [&](const char* stage, const std::string& what) {
@@ -210,7 +213,7 @@ std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, i
   };
   if (!(last.residual <= limits.residual_tolerance))
     return trouble("particle_correct",
-                   fmt::format("the largest residual, {:.2e} of the largest force, is that of particle {}",
+                   fmt::format("the largest residual, {:.2e} of the largest force, occurs at particle {}",
                                last.residual, step.worst_particle()));
   if (!(last.bodies.residual <= limits.residual_tolerance))
     return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}{}", last.bodies.residual,
@@ -223,8 +226,8 @@ std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, i
                              last.judged_correction));
 }
 
-// One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
-// correction: block Gauss-Seidel on the coupled Newton system.
+// One Newton-like iteration of particles and bodies. The bodies are corrected first, and the particles use
+// the correction: block Gauss-Seidel on the coupled Newton system.
 bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) {
   const Integrator& limits = model_.integrator;
   ParticleNorms particles;
@@ -251,7 +254,7 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
                     last.bodies.correction <= limits.correction_tolerance;
     }
   }
-  // Also where no body was corrected: walls must not count as moved by a correction.
+  // Also without a correction of bodies, because walls must not count as moved by one.
   if (link_.carriers_move()) {
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_.list());

@@ -1,4 +1,4 @@
-// One step of both sides: the paper's Fig. 5, and its explicit sibling.
+// One step of particles and bodies: Fig. 5 of the paper, and an explicit variant.
 #pragma once
 
 #include <cstdint>
@@ -18,40 +18,42 @@ enum class Verdict { accepted, not_converged, inaccurate };
 
 struct StepOutcome {
   Verdict verdict = Verdict::accepted;
-  Real error = 0;       // local error over the tolerance, both sides
-  std::string trouble;  // why the step did not converge: stage, id
+  Real error = 0;       // local error over the tolerance, of particles and bodies
+  std::string trouble;  // reason why the step did not converge: stage, id
 };
 
-// Counted over the run; part of the state.
+// Counters over the run; part of the state.
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
-  std::int64_t frozen_steps = 0;  // accepted with frozen limits of friction: ImplicitStep::freeze_limits
+  std::int64_t frozen_steps = 0;  // accepted with lagged friction limits: ImplicitStep::freeze_limits
 };
 
 class CoupledStep {
  public:
   CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers);
 
-  // Forces, accelerations and multipliers at the start.
+  // Computes forces, accelerations and multipliers at the start.
   void start(MultibodyState& bodies);
-  // After a restart: the same without recomputing what the state holds.
+  // Prepares steps after a restart without recomputing what the state holds. t [s].
   void resume(const MultibodyState& bodies, Real t);
-  // After resume(): forces, accelerations and multipliers of this model, where the state is of another one.
+  // After resume(): recomputes forces, accelerations and multipliers for this model, if the state is of
+  // another one. t [s].
   void renew_forces(MultibodyState& bodies, Real t);
-  // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
-  // were, where a particle would be outside the space and must not (see check_inside).
+  // Advances particles and bodies from t by h [s], or leaves both unchanged if the step is not accepted.
+  // Throws SimulationError, with both unchanged, if a particle would leave the domain where that is an error
+  // (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
-  // Why no step goes on from this state, where a driver is why; else empty. Collective.
+  // Why no step from this state can succeed, if a driver is at a dead point; otherwise empty. Collective.
   std::string dead_point() { return link_.dead_point(); }
-  // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
-  // step starts; end: of the last one [s]. Returns the number of steps taken: fewer where a particle is
-  // outside the space after one.
+  // Advances particles and bodies by up to times.size() steps of length h [s], the particles in substeps.
+  // times: start of each step [s]; end: end of the last step [s]. Returns the number of steps taken, which is
+  // less if a particle is outside the domain after one of them.
   std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h, Real end);
-  // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or
-  // outside at all where the deck calls that an error.
+  // The particles outside the domain now. Throws SimulationError for the first one beyond a wall, or for the
+  // first one at all if the deck makes that an error.
   std::vector<Leaver> check_inside() const;
-  // Brings the neighbour list up to date with the particles and bodies as they are.
+  // Rebuilds the neighbour list for the current particles and bodies. skin [m].
   void rebuild_list(Real skin);
 
   StepCounts& counts() { return counts_; }
@@ -60,10 +62,10 @@ class CoupledStep {
  private:
   struct Iteration;
   struct ExplicitStep {
-    Real t, h, end;  // end: t + h but for round-off [s]
-    bool keep_open;  // whether another one follows
+    Real t, h, end;  // end: t + h up to round-off [s]
+    bool keep_open;  // whether another step follows
   };
-  using OpenStep = std::unique_ptr<ImplicitStep>;  // of the particles; null while none is open
+  using OpenStep = std::unique_ptr<ImplicitStep>;  // of the particles; null if none is open
   void open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
   void undo_step(OpenStep& step, const MultibodyState& bodies, Real t);
   bool covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds);
@@ -73,11 +75,12 @@ class CoupledStep {
   bool iterate_once(ImplicitStep& step, Iteration& last, bool final);
   std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
   bool explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
-  // A step of the bodies within one of these, or all of it: from `first` substeps after its start to `last`.
+  // A step of the bodies within an explicit step, or all of it: from `first` to `last` substeps after its
+  // start.
   struct BodyStep {
     Real t, h, end;  // [s]
     int first, last;
-    Real end_of_last = t;  // substep
+    Real end_of_last = t;  // start of the last substep
   };
   bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
@@ -87,10 +90,10 @@ class CoupledStep {
   Backend& backend_;
   BodyLink& link_;
   StageTimers& timers_;
-  const bool something_touches_;  // without, nothing is looked for
-  const Real largest_radius_;     // of particles and shapes, else of meshes on planes [m]
+  const bool something_touches_;  // otherwise no contact detection is needed
+  const Real largest_radius_;     // of particles and shapes, otherwise of meshes that touch planes [m]
   StepCounts counts_;
-  bool frozen_ = false;                 // in the step that is open
+  bool frozen_ = false;                 // friction limits are lagged in the open step
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };
 

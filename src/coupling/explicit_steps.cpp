@@ -1,4 +1,4 @@
-// The explicit steps of both sides.
+// Explicit steps of particles and bodies.
 #include <fmt/format.h>
 
 #include "base/error.hpp"
@@ -7,8 +7,8 @@
 namespace scree {
 namespace {
 
-// Iterations of a step of loaded bodies that evaluate the contacts anew; where contacts open and close from
-// one to the next, the others go by the slope that these have found.
+// Iterations of a step of loaded bodies that evaluate the contacts. If contacts open and close from one
+// iteration to the next, the further iterations use the slope estimated so far.
 constexpr int kMostEvaluations = 20;
 
 // sum += weight * wrenches
@@ -43,9 +43,9 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
   return taken;
 }
 
-// Returns whether the particles' next step is open. Where the contacts are stiff for the bodies, these step
-// with the particles: their step then ends with the substep that tells so, and so does each that follows. Up
-// to there all that was done was the same.
+// Returns whether the particles' next step is open. If the contacts are stiff for the bodies, the bodies take
+// the particles' steps: their step ends with the substep that finds this, and every following substep is a
+// step of the bodies. Until then the two cases do not differ.
 bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
   const int all = model_.integrator.substeps;
   bool open = true;
@@ -62,7 +62,7 @@ bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const 
   return open;
 }
 
-// Sets where the part ends.
+// Takes the substeps of a part and sets its end.
 bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step,
                                     BodyStep& part) {
   const int substeps = model_.integrator.substeps;
@@ -91,9 +91,9 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
   return open;
 }
 
-// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
-// begins, with the contacts at the bodies' corrected position. Those of loaded bodies are evaluated wherever
-// an iteration has brought them, and the wrench follows.
+// The bodies' own Newton loop, with the impulse of the particles' substeps. The step ends, and the next one
+// begins, with the contacts at the bodies' corrected position. For loaded bodies every iteration evaluates
+// the contacts at the position that it has reached, and the wrench follows.
 void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step) {
   const Integrator& limits = model_.integrator;
   const bool loaded = link_.is_loaded(step.h);
@@ -127,7 +127,7 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
   if (loaded) link_.average_accelerations(bodies);
 }
 
-// The contacts with the bodies where their last correction has brought them.
+// Evaluates the contacts with the bodies at their last corrected position.
 void CoupledStep::evaluate_contacts(ExplicitRun& run) {
   {
     const auto scope = timers_.time(Stage::broadcast_motion);

@@ -1,4 +1,4 @@
-// Energy ledger of both sides: where the mechanical energy is and where it went.
+// Energy ledger of particles and bodies: where the mechanical energy is, and how it was exchanged.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace scree {
 
-// Energies [J] at one instant; what is dissipated, worked or carried out counts from t = 0.
+// Energies [J] at one instant; dissipation, work and energy carried out count from t = 0.
 struct Ledger {
   Real kinetic = 0, gravitational = 0;
   Real elastic_force_elements = 0, elastic_contacts = 0;
   Real dissipated_force_elements = 0, dissipated_contacts = 0, dissipated_integrator = 0;
-  Real driver_work = 0;  // of drivers, actuators, applied forces and walls
-  // Kinetic and gravitational energy of removed particles, elastic energy of the contacts that ended as one
-  // left.
+  Real driver_work = 0;  // of drivers, actuators, applied forces and moving walls
+  // Kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended when a
+  // particle escaped.
   Real carried_out = 0;
 
   Real mechanical() const { return kinetic + gravitational + elastic_force_elements + elastic_contacts; }
@@ -37,26 +37,27 @@ struct Ledger {
   }
 };
 
-// What particles took along, booked when they left; part of the state.
+// Energy of escaped particles, added up when they leave; part of the state.
 struct CarriedOut {
-  std::int64_t left = 0;  // particles that have left, drifting or removed
+  std::int64_t left = 0;  // number of escaped particles, drifting or removed
   std::int64_t removed = 0;
   Real energy = 0;                             // see Ledger::carried_out [J]
-  Real contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
-  RubbingLosses losses{};                      // of contact_loss
-  // Kinetic and gravitational energy of the drifting particles when they left, and what the integrator had
-  // taken out of them until then [J].
+  Real contact_loss = 0, integrator_loss = 0;  // of the removed particles [J]
+  RubbingLosses losses{};                      // parts of contact_loss
+  // Kinetic and gravitational energy of the drifting particles when they escaped, and the energy that the
+  // integrator had taken out of them by then [J].
   Real drifting_energy = 0, drifting_integrator_loss = 0;
 };
 
+// Adds the energies of particles that have just escaped. policy: what happens to them.
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);
 
-// bodies: null on ranks other than 0 and without bodies.
+// The ledger at time t [s]. bodies: null on ranks other than 0 and in models without bodies.
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
                    const MultibodyState& state, Real t);
 
-// The ledger of an instant as if particles that drift had been removed when they left: no entry has what they
-// do outside. Its bits are those of `all` where none drifts.
+// The ledger without particles outside the domain, as if drifting particles had been removed when they
+// escaped. Without drifting particles its bits are those of `all`.
 Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const CarriedOut& carried_out);
 
 }  // namespace scree

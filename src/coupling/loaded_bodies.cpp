@@ -10,13 +10,13 @@ namespace scree {
 
 namespace {
 
-// PressedBody::load from which a step is one of loaded bodies. The wrenches at the predicted position make
-// steps unstable from 2 on.
+// PressedBody::load from which on a body is loaded. With wrenches at the predicted position steps are
+// unstable from 2 on.
 constexpr Real kLoaded = 0.2;
 
-// An update needs that much of its two vectors along each other.
+// Least cosine between the two vectors of an update.
 constexpr Real kAlong = 1e-3;
-// Displacements below this share of the reach are round-off.
+// Displacements below this share of the lever arm `reach` are round-off.
 constexpr Real kRoundOff = 1e-13;
 
 template <std::size_t n>
@@ -49,7 +49,7 @@ void WrenchSlope::observe(const BodyMotion& from, const BodyMotion& to, const Bo
   if (!(size > kRoundOff * (reach_ + norm(to.position)))) return;
   const Vec3 force = change.force, couple = reciprocal(reach_) * change.torque;
   Vector fall{-force.x, -force.y, -force.z, -couple.x, -couple.y, -couple.z};
-  if (!(inner(fall, move) > 0)) fall = {};  // contacts have opened: there is no stiffness this way
+  if (!(inner(fall, move) > 0)) fall = {};  // contacts have opened: no stiffness along this displacement
   Vector missing;
   for (std::size_t k = 0; k < 6; ++k) missing[k] = fall[k] - expected[k];
   const Real along = inner(missing, move);
@@ -87,8 +87,8 @@ bool LoadedBodies::are_loaded(const std::vector<std::int64_t>& contacts, Real h)
   return false;
 }
 
-// A unit displacement lowers the contacts' force by K, and by C times the change of velocity that Newmark's
-// formulas give with it.
+// Over a unit displacement the contact force decreases by K, and by C times the change of velocity that
+// Newmark's formulas give with it.
 void LoadedBodies::open(const std::vector<std::int64_t>& contacts, Real h,
                         const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& mean,
                         const std::vector<BodyWrench>& predicted) {
@@ -138,8 +138,8 @@ std::string LoadedBodies::warning() const {
   if (!(worst_.phase > kMostLoadedPhase)) return "";
   const Real step = worst_.step * kMostLoadedPhase / worst_.phase;
   return fmt::format(
-      "body \"{}\" had {} contacts with particles at a time, on which it oscillates by {:.3g} rad in a step "
-      "of {:.3g} s: too long to follow it; set time.step to at most {:.2g} s{}",
+      "body \"{}\" had {} simultaneous contacts with particles, on which it oscillates by {:.3g} rad per "
+      "step of {:.3g} s, too fast for this step; set time.step to at most {:.2g} s{}",
       model_.bodies[worst_.body].name, worst_.contacts, worst_.phase, worst_.step, Real(0.95) * step,
       model_.integrator.substeps > 1 ? " with integrator.substeps = 1" : "");
 }

@@ -1,6 +1,6 @@
-// Bodies that explicit particles press on so hard that the wrench at the predicted position is none to solve
-// their step with: the wrench then follows the bodies' correction, with the contacts evaluated anew where
-// each iteration has brought them (src/coupling/README.md).
+// Loaded bodies: bodies on whose contacts with explicit particles the step depends so strongly that the
+// wrench at the predicted position does not suffice. Their wrench follows the bodies' correction, with the
+// contacts evaluated anew at the position of each iteration (src/coupling/README.md).
 #pragma once
 
 #include <array>
@@ -15,22 +15,23 @@
 
 namespace scree {
 
-// An estimate of how one body's contact wrench falls with its displacement; each observed change corrects it
-// by the symmetric update of rank one (Nocedal, Wright, Numerical Optimization, 2006, Eq. 6.24). The estimate
-// begins at or above the true slope; it is symmetric, and stays positive semidefinite where the wrench is
-// linear with a symmetric slope.
+// Estimate of the stiffness of one body's contact wrench. Each observed change corrects it by the symmetric
+// rank-one update (Nocedal, Wright, Numerical Optimization, 2006, Eq. 6.24). The initial estimate is an upper
+// bound; the estimate is symmetric, and stays positive semidefinite for wrenches that are linear with a
+// symmetric slope.
 class WrenchSlope {
  public:
-  // stiffness: along every axis [N/m]; about every axis it is this times reach^2, reach in [m].
+  // stiffness: along every axis [N/m]; about every axis the stiffness is this times reach^2. reach: lever arm
+  // [m].
   void begin(Real stiffness, Real reach);
-  // The wrench changed by `change` where the body was moved.
+  // Corrects the estimate by an observed change of the wrench between two poses of the body.
   void observe(const BodyMotion& from, const BodyMotion& to, const BodyWrench& change);
-  // The change of the wrench that the estimate predicts.
+  // The predicted change of the wrench between two poses.
   BodyWrench change(const BodyMotion& from, const BodyMotion& to) const;
   std::array<Real, 21> packed() const;  // WrenchStiffness::stiffness
 
  private:
-  using Vector = std::array<Real, 6>;  // turns times the reach, torques over it [m, N]
+  using Vector = std::array<Real, 6>;  // rotations times reach, torques over reach [m, N]
   Vector moved(const BodyMotion& from, const BodyMotion& to) const;
   Vector product(const Vector& move) const;
 
@@ -38,34 +39,33 @@ class WrenchSlope {
   std::array<Vector, 6> slope_{};  // [N/m]
 };
 
-// The loaded bodies of a step. Lives on rank 0 but for can_be().
+// The loaded bodies of a step. All functions run on rank 0 but can_be().
 class LoadedBodies {
  public:
   explicit LoadedBodies(const Model& model);
 
   // Whether particles can touch a body at all; on every rank.
   bool can_be() const { return can_be_; }
-  // Whether a step of length h [s] is one of loaded bodies. contacts: number of particles' contacts, per
-  // carrier.
+  // Whether bodies are loaded in a step of length h [s]. contacts: number of particle contacts per carrier.
   bool are_loaded(const std::vector<std::int64_t>& contacts, Real h) const;
 
-  // Opens such a step. mean: the wrenches that it is to be solved with if the bodies stay on their
-  // prediction, where their contacts have the wrenches `predicted`.
+  // Opens a step of loaded bodies. mean: wrenches for the solution if the bodies stay at their predicted
+  // pose; predicted: contact wrenches at that pose.
   void open(const std::vector<std::int64_t>& contacts, Real h, const std::vector<BodyMotion>& motion,
             const std::vector<BodyWrench>& mean, const std::vector<BodyWrench>& predicted);
-  // The bodies are there now, and their contacts have the wrenches `found`.
+  // Takes over the bodies' new motion and the contact wrenches `found` there.
   void follow(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found);
-  // The bodies are there now, and the slopes predict the wrenches of their contacts.
+  // Takes over the bodies' new motion and extrapolates the contact wrenches by the slopes.
   void extrapolate(const std::vector<BodyMotion>& motion);
-  // Sets the bodies' entries of `step` to the wrenches that the next iteration is solved with.
+  // Sets the bodies' entries of `step` to the wrenches for the next iteration.
   void give(ContactWrenches& step) const;
-  // Share of the accelerations at the end of the step that their mean over the step replaces: where damping
-  // takes nearly all of the bodies' own motion within a step, Newmark's accelerations alternate about that
-  // mean.
+  // Share of the accelerations at the end of the step that is replaced by their mean over the step. If
+  // damping takes nearly all of the bodies' own motion within a step, Newmark's accelerations alternate about
+  // that mean.
   Real averaged_share() const { return averaged_; }
 
-  // Names the body whose phase was above kMostLoadedPhase, with its contacts and the remedy; empty if none
-  // was.
+  // The warning for the body with the largest phase above kMostLoadedPhase, with its contacts and the remedy;
+  // empty if there is none.
   std::string warning() const;
 
  private:
@@ -81,7 +81,7 @@ class LoadedBodies {
   std::vector<PressedBody> bodies_;
   bool can_be_ = false;
   Worst worst_;
-  // These belong to the open step.
+  // Data of the open step.
   std::vector<WrenchSlope> slope_;
   std::vector<BodyMotion> motion_;
   std::vector<BodyWrench> mean_, predicted_, now_;

@@ -23,8 +23,8 @@ void WallMotions::at(Real t, std::span<BodyMotion> out) const {
   }
 }
 
-// The motion takes a place x, with its velocity v, on: translated to x + s d and v + s' d; turned by R about
-// the axis a through c to c + R (x - c) and R v + f' a x (its new arm).
+// Adds one motion to those of the wall. A point x with velocity v is translated to x + s d with velocity v +
+// s' d, or rotated by R about the axis a through c to c + R (x - c) with velocity R v + f' a x (its new arm).
 void WallMotions::add(const Part& part, Real t, BodyMotion& motion) {
   const TimeValue now = part.coordinate(t);
   const Real change = now.value - part.coordinate(0).value;
@@ -41,7 +41,7 @@ void WallMotions::add(const Part& part, Real t, BodyMotion& motion) {
   motion.spin += turned(conjugate(motion.orientation), now.rate * axis);  // in the carrier's frame
 }
 
-// Trapezoidal, as the particles' own work.
+// Trapezoidal rule, as for the particles' own work.
 Real work_between(const BodyMotion& start, const BodyWrench& start_wrench, const BodyMotion& end,
                   const BodyWrench& wrench, Real h) {
   return Real(0.5) * (dot(start_wrench.force + wrench.force, end.position - start.position) +

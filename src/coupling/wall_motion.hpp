@@ -1,5 +1,5 @@
-// Walls that are placed, as they are carried: where they are and how they move at any instant, whatever
-// touches them, and what contacts do to them on the way.
+// Prescribed motion of the placed walls: poses and velocities at any instant, and the work on the contacts of
+// walls over a step.
 #pragma once
 
 #include <span>
@@ -15,10 +15,11 @@ class WallMotions {
  public:
   explicit WallMotions(const Model& model);
 
-  std::size_t size() const { return walls_.size(); }  // walls that are placed, in their order
-  bool move() const { return move_; }                 // one of them at least
-  bool run() const { return run_; }                   // a surface along itself
-  // Of carriers whose frames are the global one at t = 0: spatial motions about their origins. out: size().
+  std::size_t size() const { return walls_.size(); }  // number of placed walls, in the model's order
+  bool move() const { return move_; }                 // at least one of them moves
+  bool run() const { return run_; }                   // at least one surface is a conveyor
+  // Motions of the walls' carriers at time t [s]: spatial motions about their origins; the frames coincide
+  // with the global one at t = 0. out: has size() entries.
   void at(Real t, std::span<BodyMotion> out) const;
 
  private:
@@ -32,8 +33,8 @@ class WallMotions {
   bool move_ = false, run_ = false;
 };
 
-// Of wrenches that act at the start and the end of a step of length h [s], the latter as the step was solved
-// with, on what is carried so, and on its surface [J].
+// Work of contact wrenches on a moving carrier, and on the conveyor motion of its surface, over a step of
+// length h [s], by the trapezoidal rule [J]. wrench: at the end, as the step was solved with.
 Real work_between(const BodyMotion& start, const BodyWrench& start_wrench, const BodyMotion& end,
                   const BodyWrench& wrench, Real h);
 

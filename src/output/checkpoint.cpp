@@ -20,14 +20,14 @@ namespace scree {
 
 namespace {
 
-// The file's first word to a reader; a new layout gets a new number.
+// Format name in the file, with a number that increases with every change of the layout.
 const std::string kFormatName = "scree checkpoint ";
 constexpr int kFormatNumber = 5;
 
-// In the file, each kind of value has a group of its own.
+// Every kind of value has a group of its own in the file.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";
 const std::string kRealRows = "/real_rows/", kIntegerRows = "/integer_rows/";
-constexpr std::int64_t kMostRowsPerChunk = 8192;  // where rows are compressed
+constexpr std::int64_t kMostRowsPerChunk = 8192;  // for compressed rows
 
 template <class Value>
 const Value& find(const std::map<std::string, Value>& values, const std::string& name,
@@ -50,7 +50,7 @@ void write_small(Hdf5File& file, const Checkpoint& checkpoint) {
   file.write_text_attribute("/", "format", kFormatName + std::to_string(kFormatNumber));
 }
 
-// Rows of an array: of all ranks, and this rank's.
+// Number of rows of an array, over all ranks and on this rank.
 struct Extent {
   std::int64_t all;
   RowPart own;
@@ -114,7 +114,7 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
   }
   if (number == kFormatNumber)
     throw IoError(
-        path + ": the checkpoint is damaged: it was cut off or changed, and does not end with its checksum");
+        path + ": the checkpoint is damaged: it is truncated or changed, and does not end with its checksum");
   if (number < 1)
     throw IoError(fmt::format("{}: not a checkpoint of this program (its format is not \"{}{}\")", path,
                               kFormatName, kFormatNumber));
@@ -123,7 +123,7 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
                   number < kFormatNumber ? "an older" : "a newer", format, kFormatName, kFormatNumber));
 }
 
-// What a file without a seal says of itself, as far as its bytes tell: HDF5 may crash on damaged ones.
+// The format of a file without a seal, searched for in its bytes, because HDF5 may crash on damaged files.
 std::string format_in_bytes(const std::string& path) {
   constexpr std::size_t kLooked = std::size_t{1} << 26, kNear = 64;
   std::string bytes(kLooked, '\0');
@@ -140,7 +140,7 @@ std::string format_in_bytes(const std::string& path) {
   return "";
 }
 
-// Nothing but an intact file of this format passes. Collective.
+// Throws unless the file is intact and of this format. Collective.
 void check_file(const std::string& path, const Ranks& ranks) {
   const Seal seal = check_seal(path, ranks);
   ranks.on_root([&] {
@@ -148,7 +148,7 @@ void check_file(const std::string& path, const Ranks& ranks) {
       throw IoError(fmt::format("{}: {}", path, trouble));
     if (seal == Seal::none) refuse_format(path, format_in_bytes(path));
     if (seal == Seal::broken)
-      throw IoError(path + ": the checkpoint is damaged: its content does not have the checksum at its end");
+      throw IoError(path + ": the checkpoint is damaged: its content does not match the checksum at its end");
     const Hdf5File file(path, Hdf5Access::read);
     const std::string format =
         file.has_attribute("/", "format") ? file.read_text_attribute("/", "format") : "";
@@ -156,12 +156,12 @@ void check_file(const std::string& path, const Ranks& ranks) {
   });
 }
 
-// Datasets that are in none of the groups.
+// Refuses datasets outside the groups.
 void check_groups(const Hdf5File& file, const std::string& path) {
   for (const std::string& name : file.dataset_names("/")) {
     const auto holds = [&](const std::string& group) { return ("/" + name).starts_with(group); };
     if (!holds(kReals) && !holds(kIntegers) && !holds(kTexts) && !holds(kRealRows) && !holds(kIntegerRows))
-      throw IoError(fmt::format("{}: dataset \"{}\" is no part of a checkpoint", path, name));
+      throw IoError(fmt::format("{}: dataset \"{}\" does not belong to a checkpoint", path, name));
   }
 }
 

@@ -1,5 +1,5 @@
-// Checkpoint: the whole state as named arrays in one HDF5 file, sealed with a checksum (file_seal.hpp),
-// written beside and renamed.
+// Checkpoint: the complete state as named arrays in one HDF5 file, which ends with a checksum
+// (file_seal.hpp). It is written under another name and then renamed.
 #pragma once
 
 #include <cstdint>
@@ -14,37 +14,37 @@
 
 namespace scree {
 
-// An array of rows that are spread over the ranks, consecutive ones on each, in the order of the ranks. They
-// are made or read piece by piece.
+// An array whose rows are distributed over the ranks in order, consecutive rows on each. The rows are
+// produced or read in pieces.
 template <class T>
 struct CheckpointRows {
   int width = 1;           // values per row
   std::int64_t count = 0;  // rows of this rank
-  // Values of rows [first, first + count) of this rank: [count][width]. Where it was read from a file, those
-  // of other ranks can be had, too: below 0 and past `count`.
+  // Copies the values [count][width] of rows [first, first + count) of this rank. For rows read from a file,
+  // those of other ranks are available, too: below 0 and from `count` on.
   std::function<void(std::int64_t first, std::int64_t count, T* to)> copy;
-  std::string unit = {}, description = {};  // for readers of the file; not read back
+  std::string unit = {}, description = {};  // for users of the file; not read back
 };
 
-// What the step loop packs and unpacks; this room gives no meaning to it. Values return bit for bit. Names
-// may hold '/' for groups.
+// The data that the step loop packs and unpacks; this code is independent of their meaning. Values are
+// restored bit for bit. Names may contain '/' for groups.
 struct Checkpoint {
-  // The same on every rank when read; rank 0's are written.
+  // Equal on every rank when read; rank 0's values are written.
   std::map<std::string, std::vector<Real>> reals;
   std::map<std::string, std::vector<std::int64_t>> integers;
   std::map<std::string, std::string> texts;  // the deck's fingerprint, version, commit
   std::map<std::string, CheckpointRows<Real>> real_rows;
   std::map<std::string, CheckpointRows<std::int64_t>> integer_rows;
 
-  // Throw IoError naming the file and what is missing.
+  // Access by name; throw IoError with the file and the missing name.
   const std::vector<Real>& real_array(const std::string& name) const;
   const std::vector<std::int64_t>& integer_array(const std::string& name) const;
   template <class T>
   const CheckpointRows<T>& row_array(const std::string& name) const;
   const std::string& text(const std::string& name) const;
-  std::string path;  // where it was read from, for messages
+  std::string path;  // file that it was read from, for messages
 
-  // The rows of one type: real_rows or integer_rows.
+  // The rows with values of type T: real_rows or integer_rows.
   template <class T>
   std::map<std::string, CheckpointRows<T>>& rows() {
     if constexpr (std::is_same_v<T, Real>)
@@ -54,16 +54,16 @@ struct Checkpoint {
   }
 };
 
-// Writes PATH.tmp, syncs it to disk and renames it to PATH. Throws IoError; PATH is then what it was before.
-// compression: 0, or deflate's level, of the rows. Collective.
+// Writes PATH.tmp, syncs it to disk and renames it to PATH. Throws IoError, with PATH unchanged. compression:
+// of the rows, 0 or a level of deflate. Collective.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks = {},
                       int compression = 0);
-// How large the file gets without compression [B]. rows: of each array of real_rows and integer_rows, those
-// of all ranks; its own count where it is not named.
+// Size of the file without compression [B]. rows: total number of rows over all ranks, for arrays of
+// real_rows and integer_rows; by default the array's own count.
 Real checkpoint_size(const Checkpoint& checkpoint, const std::map<std::string, std::int64_t>& rows);
-// Every rank reads what is the same on all of them, and has an equal part of the rows (id_range), which their
-// `copy` reads from the file. Throws IoError, on every rank, on a missing, truncated, damaged or foreign
-// file. Collective.
+// Reads a checkpoint: every rank gets the values, and an equal part of the rows (id_range), which their
+// `copy` reads from the file. Throws IoError, on every rank, if the file is missing, truncated, damaged or
+// foreign. Collective.
 Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks = {});
 
 }  // namespace scree

@@ -26,13 +26,13 @@ namespace {
   throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(error)));
 }
 
-// A new file, whatever stood there: a link is not followed.
+// Creates a new file in place of any existing one; a link is not followed.
 int create(const std::string& path) {
   unlink(path.c_str());
   return open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-// Writes, syncs and closes. Returns the system's error number, 0 if all went well.
+// Writes, syncs and closes. Returns the system's error number, 0 on success.
 int write_and_sync(int file, const std::string& text) {
   if (file < 0) return errno;
   int error = 0;
@@ -52,7 +52,7 @@ int write_and_sync(int file, const std::string& text) {
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
-  // A pipe would wait for a writer.
+  // O_NONBLOCK: opening a pipe would wait for a writer.
   const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) fail_reading(path, errno);
   std::string text;
@@ -69,7 +69,7 @@ std::string read_text_file(const std::string& path) {
   return text;
 }
 
-// std::filesystem::copy_file() keeps the system's reason to itself.
+// Used in place of std::filesystem::copy_file(), which does not report the system's reason.
 void copy_file(const std::string& from, const std::string& to) {
   const int in = open(from.c_str(), O_RDONLY | O_CLOEXEC);
   if (in < 0) fail(from, "open", errno);
@@ -84,7 +84,7 @@ void copy_file(const std::string& from, const std::string& to) {
   if (error != 0) fail(to, ("copy " + from + " to it").c_str(), error);
 }
 
-// Not posix_fallocate(), which writes into every block where the file system cannot reserve.
+// Uses fallocate(), because posix_fallocate() writes into every block if the file system cannot reserve.
 bool reserve_file(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) fail(path, "open", errno);
@@ -114,7 +114,7 @@ void sync_folder_of(const std::string& path) {
   if (file < 0) fail(folder, "open", errno);
   const int error = fsync(file) == 0 ? 0 : errno;
   close(file);
-  // Some file systems cannot sync a directory; its entries are then synced with the file.
+  // Some file systems cannot sync a folder; they sync its entries with the file.
   if (error != 0 && error != EINVAL) fail(folder, "sync", error);
 }
 
@@ -125,8 +125,8 @@ void replace_file(const std::string& from, const std::string& to) {
 
 bool exchange_files(const std::string& hidden, const std::string& path, const std::string& aside) {
   if (renameat2(AT_FDCWD, hidden.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0) return true;
-  // Where the file system cannot exchange names: two names for the visible file, so that it outlives the
-  // rename. Where it has no hard links either, or no such file is there, nothing is left of it.
+  // For file systems that cannot exchange names: a second name keeps the visible file alive during the
+  // rename. Without hard links or without a visible file, the previous content is lost.
   unlink(aside.c_str());
   const bool kept = link(path.c_str(), aside.c_str()) == 0;
   if (std::rename(hidden.c_str(), path.c_str()) != 0) fail(path, "replace", errno);

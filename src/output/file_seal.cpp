@@ -43,7 +43,7 @@ class ReadFile {
     while (count > 0) {
       const ssize_t done = pread(file_, to, static_cast<std::size_t>(count), from);
       if (done < 0 && errno == EINTR) continue;
-      if (done == 0) errno = EIO;  // shorter than it was
+      if (done == 0) errno = EIO;  // the file is shorter than before
       if (done <= 0) fail("read", errno);
       from += done, to += done, count -= done;
     }
@@ -62,7 +62,7 @@ std::string seal_line(std::uint64_t checksum) { return fmt::format("\nchecksum {
 
 const std::int64_t kLineBytes = std::ssize(seal_line(0));
 
-// Of the first `bytes` bytes: the sum of one hash per piece, so that any number of ranks gets the same.
+// Checksum of the first `bytes` bytes: the sum of the hashes of pieces, independent of the number of ranks.
 std::uint64_t checksum(const ReadFile& file, std::int64_t bytes, const Ranks& ranks) {
   std::uint64_t sum = 0;
   ranks.together([&] {
@@ -95,7 +95,7 @@ Seal check_seal(const std::string& path, const Ranks& ranks) {
     file.emplace(path);
     if (file->size() >= kLineBytes) file->read(file->size() - kLineBytes, kLineBytes, line.data());
   });
-  const auto words = seal_line(0).find('0');  // before the digits
+  const auto words = seal_line(0).find('0');  // the text before the digits
   if (ranks.any(line.compare(0, words, seal_line(0), 0, words) != 0 || line.back() != '\n'))
     return Seal::none;
   const std::uint64_t sum = checksum(*file, file->size() - kLineBytes, ranks);

@@ -1,6 +1,6 @@
-// A checksum of a whole file, in a line of text at its end: what was damaged on a disk or on the way is told
-// before anybody makes sense of it. HDF5 does not look behind its own content, and cuts the line off where it
-// changes the file.
+// A checksum of a complete file, in a line of text at its end: damage on a disk or in a transfer is found
+// before the content is read. HDF5 ignores bytes after its own content, and cuts the line off when it
+// modifies the file.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace scree {
 
 enum class Seal {
   intact,
-  broken,  // the content is not what was sealed
-  none     // the file ends without one
+  broken,  // the content does not match the checksum
+  none     // the file has no checksum at its end
 };
 
-// Appends the seal and syncs it to disk; the ranks read the file together. Throws IoError. Collective.
+// Appends the checksum and syncs the file; the ranks read the file together. Throws IoError. Collective.
 void seal_file(const std::string& path, const Ranks& ranks);
-// Throws IoError where the file cannot be read. Collective.
+// Checks the checksum. Throws IoError if the file cannot be read. Collective.
 Seal check_seal(const std::string& path, const Ranks& ranks);
 
 }  // namespace scree

@@ -18,7 +18,7 @@ namespace scree {
 
 namespace {
 
-// Asks for the lock (F_OFD_GETLK) or takes it (F_OFD_SETLK). It ends when the process has closed the file.
+// Queries the lock (F_OFD_GETLK) or takes it (F_OFD_SETLK). The lock ends when the process closes the file.
 LockState state_of(int file, int command) {
   struct flock lock {};
   lock.l_type = F_WRLCK, lock.l_whence = SEEK_SET;
@@ -56,11 +56,11 @@ bool is_named(int file, const std::string& path) {
          open.st_dev == named.st_dev;
 }
 
-// The system's error number, 0 if all went well.
+// Writes the owner into the lock file. Returns the system's error number, 0 on success.
 int write_owner(int file) {
   const std::string text = LockOwner::this_process().text();
   const auto size = static_cast<ssize_t>(text.size());
-  errno = ENOSPC;  // of a write that is cut short
+  errno = ENOSPC;  // the reason for a truncated write
   if (pwrite(file, text.data(), text.size(), 0) != size || ftruncate(file, size) != 0) return errno;
   return fsync(file) == 0 ? 0 : errno;
 }
@@ -76,11 +76,10 @@ FolderLock::~FolderLock() {
 }
 
 void FolderLock::refuse(const std::string& owner) const {
-  throw InputError(
-      fmt::format("output folder {}: another run writes into it{}{}; let it end, or choose another folder "
-                  "with --output (if "
-                  "that run is dead, remove {})",
-                  folder_, owner.empty() ? "" : ": ", owner, path_));
+  throw InputError(fmt::format(
+      "output folder {}: another run writes into it{}{}; wait for its end, or choose another folder with "
+      "--output (if that run is dead, remove {})",
+      folder_, owner.empty() ? "" : ": ", owner, path_));
 }
 
 void FolderLock::fail(const char* action, int error) const {
@@ -90,26 +89,25 @@ void FolderLock::fail(const char* action, int error) const {
 std::optional<LockOwner> FolderLock::owner() const {
   const int file = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return std::nullopt;
-  if (!is_file(file)) {  // nobody's lock
+  if (!is_file(file)) {  // not the lock of a run
     close(file);
     return std::nullopt;
   }
   const LockOwner owner = LockOwner::read(path_);
-  // A lock for writing can be asked for, though not taken, by who may only read.
+  // Read permission suffices to query a write lock, but not to take it.
   const bool over = is_over(owner, file, state_of(file, F_OFD_GETLK));
   close(file);
   return over ? std::nullopt : std::optional(owner);
 }
 
-// A link is not followed, and cannot be opened.
+// A link is not followed and cannot be opened.
 void FolderLock::require_file() const {
   struct stat status {};
   if (lstat(path_.c_str(), &status) != 0 || S_ISREG(status.st_mode) || S_ISLNK(status.st_mode)) return;
-  throw InputError(
-      fmt::format("output folder {}: {} is {}, and has the name of the file by which a run keeps others out; "
-                  "remove it, or "
-                  "choose another folder with --output",
-                  folder_, path_, S_ISDIR(status.st_mode) ? "a folder" : "no file"));
+  throw InputError(fmt::format(
+      "output folder {}: {} is {}, but has the name of the lock file of a run; remove it, or choose "
+      "another folder with --output",
+      folder_, path_, S_ISDIR(status.st_mode) ? "a folder" : "no file"));
 }
 
 void FolderLock::check() const {
@@ -123,7 +121,7 @@ void FolderLock::take() {
   }
 }
 
-// Not where the owner has removed the file meanwhile: then another try makes a new one.
+// Does not take the lock if its owner has removed the file meanwhile: the next attempt creates a new one.
 bool FolderLock::try_to_take() {
   int file = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   const bool made = file >= 0;
@@ -136,7 +134,8 @@ bool FolderLock::try_to_take() {
   const LockState lock = state_of(file, F_OFD_SETLK);
   const bool free = made ? lock != LockState::held : is_over(owner, file, lock);
   const bool named = is_named(file, path_);
-  if (!made && free && named && lock != LockState::free) {  // the next try makes one that can be locked
+  if (!made && free && named &&
+      lock != LockState::free) {  // the next attempt creates a file that can be locked
     const int error = unlink(path_.c_str()) == 0 ? 0 : errno;
     close(file);
     if (error != 0 && error != ENOENT) fail("remove", error);

@@ -1,10 +1,9 @@
-// Keeps a second run out of the folder that a first one writes into, and lets the next one in where the first
-// was killed.
+// Lock of an output folder: it keeps a second run out, and admits the next run after the first was killed.
 //
-// The lock is a file with the name of host and process in it, and with a lock of the operating system on it,
-// which ends with its process. On a disk of this machine that alone decides. On a shared file system, where
-// it may not reach from host to host, the text does: a process of this host can be looked up; one of another
-// host counts as alive, unless it belongs to an earlier start of the same SLURM job.
+// The lock is a file with the names of host and process, and with a lock of the operating system, which ends
+// with the process. On a disk of this machine the operating system's lock alone decides. On a shared file
+// system, where it may not work between hosts, the text decides: processes of this host can be looked up; a
+// process of another host counts as alive, unless it belongs to an earlier start of the same SLURM job.
 #pragma once
 
 #include <optional>
@@ -17,16 +16,16 @@ namespace scree {
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder);
-  ~FolderLock();  // lets go
+  ~FolderLock();  // releases the lock
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  // The run that has the folder, as far as this process can tell; empty where there is none.
+  // The run that holds the folder, as far as this process can tell; empty if there is none.
   std::optional<LockOwner> owner() const;
-  // Throws InputError, which names the process, where another run has the folder, and where something else
-  // than a file has the lock's name. check() changes nothing.
+  // Throws InputError, with the process, if another run holds the folder, or if something other than a file
+  // has the name of the lock. check() changes nothing.
   void check() const;
-  // The folder exists. Throws IoError, too.
+  // Takes the lock of an existing folder. Throws IoError, too.
   void take();
 
  private:

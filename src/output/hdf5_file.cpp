@@ -16,9 +16,9 @@ namespace scree {
 
 namespace {
 
-// Once a write has failed (a full disk), the library's exit handlers write again and crash. So they are
-// refused: the one at exit here, the one in MPI_Finalize by starting the library before MPI. Every file is
-// closed by its owner.
+// After a failed write (a full disk) the library's exit handlers write again and crash. They are disabled:
+// the one at exit here, the one in MPI_Finalize by starting the library before MPI. Every file is closed by
+// its owner.
 [[maybe_unused]] const bool kNoExitHandlers = H5dont_atexit() >= 0 && H5open() >= 0;
 
 herr_t keep_description(unsigned level, const H5E_error2_t* error, void* reason) {
@@ -38,7 +38,7 @@ std::string library_reason() {
     reason = reason.substr(from, reason.find('\'', from) - from);
   }
   const char* const asked = std::getenv("HDF5_USE_FILE_LOCKING");
-  if (is_lock && asked != nullptr) reason += fmt::format("; HDF5_USE_FILE_LOCKING={} asks for locks", asked);
+  if (is_lock && asked != nullptr) reason += fmt::format("; HDF5_USE_FILE_LOCKING={} requires locks", asked);
   return reason.empty() ? "no reason given" : reason;
 }
 
@@ -62,7 +62,7 @@ RowSelection::RowSelection(hid_t dataset, std::int64_t first, std::int64_t count
 
 namespace {
 
-// ASCII where the text allows it: some readers of VTKHDF expect no other.
+// ASCII if the text permits: some readers of VTKHDF expect nothing else.
 Hdf5Id text_type(const std::string& text) {
   Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   if (!text.empty()) H5Tset_size(type, text.size());
@@ -72,7 +72,7 @@ Hdf5Id text_type(const std::string& text) {
   return type;
 }
 
-// HDF5 has no string of length zero: an empty text is a dataspace without elements.
+// HDF5 has no empty strings: an empty text is a dataspace without elements.
 Hdf5Id text_space(const std::string& text) {
   return {H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose};
 }
@@ -90,7 +90,7 @@ void Hdf5File::fail(const std::string& action) const {
 }
 
 unsigned chunk_index_width(std::int64_t likely_chunks) {
-  constexpr std::int64_t kFewest = 4, kMost = 32;  // the library's own number is 32
+  constexpr std::int64_t kFewest = 4, kMost = 32;  // the library's default is 32
   if (likely_chunks == 0) return kMost;
   return static_cast<unsigned>(std::clamp((likely_chunks + 1) / 2, kFewest, kMost));
 }
@@ -144,8 +144,8 @@ void Hdf5File::create_rows(const std::string& name, hid_t type, const RowStorage
     if (grows || storage.compression > 0) H5Pset_chunk(layout, dimensions, chunk);
     if (storage.shared) {
       H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER);  // every row is written
-      // A collective write cannot make room. Of compressed chunks without a place HDF5 1.10 takes one rank's
-      // for another's, and waits for it forever.
+      // A collective write cannot allocate space. For compressed chunks without allocated space HDF5 1.10
+      // confuses the ranks' chunks, and waits forever.
       H5Pset_alloc_time(layout, H5D_ALLOC_TIME_EARLY);
     }
     if (storage.compression > 0)
@@ -210,7 +210,7 @@ void Hdf5File::read_rows(const std::string& name, hid_t type, std::int64_t first
 void Hdf5File::check_type(hid_t dataset, hid_t type, const std::string& name) const {
   Hdf5Id file_type(H5Dget_type(dataset), H5Tclose);
   if (H5Tequal(file_type, type) <= 0) {
-    throw IoError(fmt::format("{}: dataset {} holds another type than expected", path_, name));
+    throw IoError(fmt::format("{}: dataset {} does not have the expected type", path_, name));
   }
 }
 
@@ -254,7 +254,7 @@ void Hdf5File::write_texts(const std::string& name, const std::vector<std::strin
   std::vector<const char*> values;
   for (const std::string& text : texts) values.push_back(text.c_str());
   const hsize_t size = values.size();
-  // VTK's reader takes none that are marked as UTF-8, and passes all bytes on.
+  // VTK's reader accepts no texts marked as UTF-8, and passes all bytes on.
   Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate_simple(1, &size, nullptr), H5Sclose);
   H5Tset_size(type, H5T_VARIABLE);
   Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), H5P_DEFAULT, H5P_DEFAULT),

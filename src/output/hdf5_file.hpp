@@ -1,5 +1,5 @@
-// One HDF5 file: a thin owner of the C library's identifiers. Every failure is an IoError with the file's
-// name and the library's reason; the library itself prints nothing.
+// One HDF5 file: owner of the C library's identifiers. Every failure is an IoError with the name of the file
+// and the library's reason; the library itself prints nothing.
 #pragma once
 
 #include <hdf5.h>
@@ -14,35 +14,36 @@
 namespace scree {
 
 enum class Hdf5Access {
-  create,  // a new file; an old one of this name is removed, a link is not followed
+  create,  // a new file; an existing one is removed, a link is not followed
   read,
   modify  // an existing file
 };
 
-// What a reader should know of a dataset: its attributes "unit" and "description".
+// Description of a dataset for its users: the attributes "unit" and "description".
 struct DatasetLabel {
   std::string unit, description;
 };
 
-// Rows in pieces of equal length, each of at most `most` of them: little room is left over in the last one.
+// Number of rows per chunk, at most `most`, such that the chunks are of nearly equal size and the last one
+// has little unused space.
 std::int64_t even_chunk(std::int64_t rows, std::int64_t most);
 
-// Half of the chunks that a node of a dataset's index holds: few where few chunks are expected, as every
-// dataset has a node. likely_chunks: as Hdf5File's.
+// Half of the number of chunks per node of a dataset's index: small if few chunks are expected, because every
+// dataset has a node. likely_chunks: as for Hdf5File.
 unsigned chunk_index_width(std::int64_t likely_chunks);
 
-// How a dataset of rows lies in its file.
+// Layout of a dataset of rows.
 struct RowStorage {
   int width = 1;
   std::int64_t chunk_rows = 1;  // at most
-  // For rows that SharedRows writes: they have their places in the file before they are written.
+  // For rows written by SharedRows: their space is allocated before they are written.
   bool shared = false;
   int compression = 0;  // 0: none; 1 to 9: deflate, of shared rows
-  // Their number where it stays as it is: they lie in one piece, or in even chunks where they are compressed.
+  // Number of rows if it does not change: the rows are contiguous, or in even chunks if they are compressed.
   std::int64_t fixed_rows = -1;
 };
 
-// The library's type for a value in memory; files hold the same type.
+// The library's type for a value in memory, and also in the file.
 template <class T>
 hid_t hdf5_type() {
   static_assert(std::is_same_v<T, Real> || std::is_same_v<T, std::int32_t> ||
@@ -52,41 +53,41 @@ hid_t hdf5_type() {
   return H5T_NATIVE_INT64;
 }
 
-// All functions throw IoError. Names are paths from the root; missing groups are made on the way.
+// All functions throw IoError. Names are paths from the root; missing groups are created.
 class Hdf5File {
  public:
-  // likely_chunks: of a new file's datasets of rows at most; the library's index of chunks is sized by it,
-  // and takes more of them, too. 0: many.
+  // likely_chunks: upper estimate of chunks per dataset of a new file, which sizes the library's chunk index;
+  // more chunks are possible. 0: many.
   Hdf5File(const std::string& path, Hdf5Access access, std::int64_t likely_chunks = 0);
-  ~Hdf5File();  // closes; a failure goes unseen, so a writer calls close() first
+  ~Hdf5File();  // closes without reporting a failure; writers call close() first
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
-  void close();  // hands everything to the operating system
+  void close();  // passes all data to the operating system
   const std::string& path() const { return path_; }
-  hid_t id() const { return file_; }  // the library's
+  hid_t id() const { return file_; }  // identifier of the library
 
   // ---- extensible datasets of shape [rows] (width 1) or [rows][width] ----
   template <class T>
   void create_rows(const std::string& name, const RowStorage& storage, const DatasetLabel& label) {
     create_rows(name, hdf5_type<T>(), storage, label);
   }
-  // values: rows x width.
+  // values: [rows][width].
   template <class T>
   void append_rows(const std::string& name, const T* values, std::int64_t rows) {
     append_rows(name, hdf5_type<T>(), values, rows);
   }
-  // Of width 1.
+  // For datasets of width 1.
   template <class T>
   void append_row(const std::string& name, T value) {
     append_rows(name, &value, 1);
   }
-  // Rows past the new number are cut off; new ones hold nothing until SharedRows writes them.
+  // Removes rows past the new number, or adds rows, which stay undefined until SharedRows writes them.
   void resize_rows(const std::string& name, std::int64_t rows);
   void add_rows(const std::string& name, std::int64_t more) { resize_rows(name, rows(name) + more); }
   std::int64_t rows(const std::string& name) const;
   int width(const std::string& name) const;
   bool is_compressed(const std::string& name) const;
-  // Rows [first, first + count), row by row. Throws also where the file holds another type.
+  // Reads rows [first, first + count), row by row. Throws also if the file has another type.
   template <class T>
   void read_rows(const std::string& name, std::int64_t first, std::int64_t count, T* to) const {
     read_rows(name, hdf5_type<T>(), first, count, to);
@@ -98,10 +99,10 @@ class Hdf5File {
     write_array(name, hdf5_type<T>(), values.data(), static_cast<std::int64_t>(values.size()));
   }
   void write_text(const std::string& name, const std::string& text);
-  // [n] texts of any length, without zeros in them.
+  // [n] texts of any length without zero bytes.
   void write_texts(const std::string& name, const std::vector<std::string>& texts, const DatasetLabel& label);
 
-  // All values of either kind of dataset, row by row. Throws also where the file holds another type.
+  // Reads all values of a dataset of either kind, row by row. Throws also if the file has another type.
   template <class T>
   std::vector<T> read_array(const std::string& name) const {
     std::vector<T> values(static_cast<std::size_t>(value_count(name)));
@@ -113,15 +114,15 @@ class Hdf5File {
 
   // ---- attributes and links ----
   void write_text_attribute(const std::string& object, const std::string& name, const std::string& text);
-  // One value becomes a scalar, several a vector; an attribute of this name is overwritten.
+  // Writes a scalar for one value, a vector for several; overwrites an existing attribute.
   void write_integer_attribute(const std::string& object, const std::string& name,
                                const std::vector<std::int64_t>& values);
   bool has_attribute(const std::string& object, const std::string& name) const;
   std::string read_text_attribute(const std::string& object, const std::string& name) const;
   void create_group(const std::string& name);
-  // `name` becomes a second name of `target` (a hard link).
+  // Creates `name` as a second name of `target` (hard link).
   void link(const std::string& target, const std::string& name);
-  // Paths below `group`, relative to it, of all datasets.
+  // Paths of all datasets below `group`, relative to it.
   std::vector<std::string> dataset_names(const std::string& group) const;
 
  private:
@@ -131,7 +132,7 @@ class Hdf5File {
   void read_array(const std::string& name, hid_t type, void* values) const;
   void read_rows(const std::string& name, hid_t type, std::int64_t first, std::int64_t count, void* to) const;
   void check_type(hid_t dataset, hid_t type, const std::string& name) const;
-  // The text of a dataset or an attribute, which messages call `what`. read(to): fetches its bytes.
+  // Reads the text of a dataset or attribute. what: its name in messages; read(to): copies its bytes.
   template <class Read>
   std::string read_text(hid_t type, hid_t space, const std::string& what, const Read& read) const;
   std::int64_t value_count(const std::string& name) const;

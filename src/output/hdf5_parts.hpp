@@ -1,4 +1,4 @@
-// What the owners of HDF5 files share: identifiers, selections, reasons.
+// Shared by the owners of HDF5 files: identifiers, selections, reasons of failures.
 #pragma once
 
 #include <hdf5.h>
@@ -10,8 +10,8 @@
 
 namespace scree {
 
-// Owner of one identifier; negative where the call that made it failed. The library may write a dataset's
-// values only when it is closed, and then tells nobody but the caller: a writer calls close() itself.
+// Owner of one identifier; negative if its creation failed. The library may write a dataset's values only at
+// its close, and reports failures only there: a writer calls close() itself.
 class Hdf5Id {
  public:
   Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -23,7 +23,7 @@ class Hdf5Id {
   }
   operator hid_t() const { return id_; }
   bool valid() const { return id_ >= 0; }
-  // Whether all went well. Later calls, and those where there is nothing to close, do nothing.
+  // Closes and returns whether that succeeded. Without an open identifier it does nothing and returns true.
   bool close() {
     const hid_t id = std::exchange(id_, H5I_INVALID_HID);
     return id < 0 || close_(id) >= 0;
@@ -34,13 +34,13 @@ class Hdf5Id {
   herr_t (*close_)(hid_t);
 };
 
-// What the library's innermost function says, shortened to the system's message where it carries one.
+// The message of the library's innermost function, reduced to the system's message if it contains one.
 std::string library_reason();
 
 // Shape of a dataset: {rows, width}, width 1 for a vector, {1, 1} for a scalar.
 std::array<hsize_t, 2> shape_of(hid_t space);
 
-// Rows [first, first + count) of a dataset, and values in memory that fit to them; count may be 0.
+// Rows [first, first + count) of a dataset, and matching contiguous values in memory; count may be 0.
 struct RowSelection {
   RowSelection(hid_t dataset, std::int64_t first, std::int64_t count);
   Hdf5Id file, memory;

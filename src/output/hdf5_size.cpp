@@ -5,7 +5,7 @@
 namespace scree {
 namespace {
 
-// An object header is 272 B, or more where the texts of its attributes do not fit in; measured [B].
+// Size of an object header: 272 B, or more if the texts of its attributes do not fit; measured [B].
 constexpr Real kHeader = 272, kLabelledHeader = 310;
 
 Real rounded_up(Real count) { return std::ceil(count * (1 - 1e-12)); }
@@ -22,7 +22,7 @@ void Hdf5Size::add_rows(const RowStorage& storage, std::int64_t value_bytes, std
   const std::int64_t chunks = (rows + storage.chunk_rows - 1) / storage.chunk_rows;
   if (chunks == 0) return;
   bytes_ += static_cast<Real>(chunks) * static_cast<Real>(storage.chunk_rows) * row_bytes;
-  // Nodes of the index, each with up to 2 K chunks or nodes below it, filled to nine tenths.
+  // Nodes of the index, each with up to 2 K chunks or child nodes, 90 % full.
   const auto width = static_cast<Real>(2 * chunk_index_width(likely_chunks_));
   const Real key = storage.width == 1 ? 24 : 32, node = 24 + (width + 1) * key + width * 8;
   Real on_level = static_cast<Real>(chunks);
@@ -36,7 +36,7 @@ void Hdf5Size::add_array(std::int64_t bytes) {
   bytes_ += kHeader + 8 * rounded_up(static_cast<Real>(bytes) / 8);
 }
 
-// A header, a heap of names, and leaves of up to eight names under B-tree nodes of up to 32 leaves.
+// A header, a heap of names, and leaves of up to eight names below B-tree nodes of up to 32 leaves.
 void Hdf5Size::add_group(std::int64_t names) {
   constexpr Real kGroup = 40 + 120, kLeaf = 328, kNode = 544, kName = 16, kNamesOfLeaf = 5.5,
                  kLeavesOfNode = 22;

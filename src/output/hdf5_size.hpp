@@ -1,4 +1,4 @@
-// How large an HDF5 file gets, before it is written: what Hdf5File puts into it, added up by the library's
+// Size of an HDF5 file before it is written: the sum over the objects that Hdf5File creates, according to the
 // file format (The HDF Group, "HDF5 File Format Specification 2.0": object headers, groups of version 0,
 // B-trees of version 1).
 #pragma once
@@ -12,20 +12,20 @@ namespace scree {
 
 class Hdf5Size {
  public:
-  // likely_chunks: as Hdf5File's.
+  // likely_chunks: as for Hdf5File.
   explicit Hdf5Size(std::int64_t likely_chunks = 0) : likely_chunks_(likely_chunks) {}
 
-  // A dataset with a label, of so many rows of `value_bytes` times the width.
+  // Adds a dataset with a label and `rows` rows of width values of `value_bytes` bytes each.
   void add_rows(const RowStorage& storage, std::int64_t value_bytes, std::int64_t rows);
-  // A dataset without a label, of so many bytes.
+  // Adds a dataset without a label, of so many bytes.
   void add_array(std::int64_t bytes);
-  // With so many names in it.
+  // Adds a group with so many names.
   void add_group(std::int64_t names);
   Real bytes() const { return bytes_; }
 
  private:
   std::int64_t likely_chunks_;
-  Real bytes_ = 2048;  // superblock, root group, what is left over
+  Real bytes_ = 2048;  // superblock, root group, unused space
 };
 
 }  // namespace scree

@@ -17,7 +17,7 @@ namespace scree {
 
 namespace {
 
-// A run that goes on past its end adds chunks of the same length, so that these are not too short.
+// A run continued past its end adds chunks of the same length, so that they must not be too short.
 std::int64_t rows_of_chunk(std::int64_t likely_rows) {
   constexpr std::int64_t kFewest = 16, kMost = 512;
   return likely_rows == 0 ? kMost : std::clamp(likely_rows, kFewest, kMost);
@@ -32,7 +32,7 @@ std::string dataset_path(const HistoryColumn& column) {
   return column.group.empty() ? column.name : column.group + "/" + column.name;
 }
 
-// What in the deck chooses the column.
+// The deck key that selects the column.
 std::string key_of(const std::string& column) {
   const std::string group = column.substr(0, column.find('/'));
   for (const char* const listed :
@@ -41,7 +41,7 @@ std::string key_of(const std::string& column) {
   return "the deck";
 }
 
-// Quoted where a comma or a quote would break the line into other fields (RFC 4180).
+// Quoted if it contains a comma, a quote or a line break (RFC 4180).
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -112,14 +112,14 @@ void HistoryWriter::cut(std::int64_t keep) {
                 {}});
 }
 
-// A restart may ask for other columns: they begin a new file.
+// A restart with other columns must write a new file.
 void HistoryWriter::require_columns(const Hdf5File& file) const {
   const std::vector<std::string> names = file.dataset_names("/");
   const std::set<std::string> held(names.begin(), names.end());
   std::set<std::string> wanted;
   for (const HistoryColumn& column : columns_) wanted.insert(dataset_path(column));
   const auto refuse = [&](const std::string& column, const char* trouble) {
-    throw IoError(fmt::format("{}: {} {}; keep {} as it was, or choose another folder with --output",
+    throw IoError(fmt::format("{}: {} {}; keep {} unchanged, or choose another folder with --output",
                               file_.path(), trouble, column, key_of(column)));
   };
   for (const std::string& column : wanted)
@@ -155,7 +155,7 @@ void HistoryWriter::flush() {
   for (auto& column : buffer_) column.clear();
 }
 
-// From history.h5, so that a restarted run needs no CSV of the first one.
+// Rewritten from history.h5, so that a restarted run does not need the first run's CSV.
 void HistoryWriter::rewrite_csv() const {
   std::vector<std::vector<Real>> values(columns_.size());
   if (rows_ > 0) {
@@ -170,12 +170,12 @@ HistorySize history_size(const std::vector<HistoryColumn>& columns, std::int64_t
                          std::int64_t likely_rows) {
   constexpr Real kCsvValue = 15;  // the shortest form of most numbers has 5 to 20 characters, and a comma
   Hdf5Size size(chunks_of(likely_rows));
-  std::map<std::string, std::int64_t> names;  // in each group
+  std::map<std::string, std::int64_t> names;  // number of names per group
   for (const HistoryColumn& column : columns) {
     size.add_rows({1, rows_of_chunk(likely_rows)}, sizeof(Real), rows);
     const std::string path = dataset_path(column);
     for (std::size_t end = path.rfind('/'); end != std::string::npos; end = path.rfind('/', end - 1))
-      if (++names[path.substr(0, end)] > 1 || end == 0) break;  // a new group is a name in the one above
+      if (++names[path.substr(0, end)] > 1 || end == 0) break;  // a new group adds a name to its parent
   }
   for (const auto& [group, count] : names) size.add_group(count);
   return {size.bytes(), kCsvValue * static_cast<Real>(columns.size()) * static_cast<Real>(rows)};

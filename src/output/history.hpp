@@ -10,26 +10,26 @@
 
 namespace scree {
 
-// One scalar time series. group/name is the dataset's path in the file, e.g. "energy" / "kinetic"; the group
-// may be empty.
+// One scalar time series. group/name is the path of the dataset in the file, e.g. "energy" / "kinetic"; the
+// group may be empty.
 struct HistoryColumn {
   std::string group, name, unit, description;
 };
 
-// Writes DIRECTORY/history.h5 (one extensible dataset per column, attributes unit and description) and, on
-// request, history.csv with a header "time [s],energy/kinetic [J],...". Rows are buffered and written by
-// flush(), which leaves the files complete, closed and on disk. history.h5 is readable at every instant, a
-// kill in the middle included; history.csv may then end in half a line.
+// Writes DIRECTORY/history.h5 (one extensible dataset per column, with attributes unit and description) and
+// optionally history.csv with a header "time [s],energy/kinetic [J],...". Rows are buffered until flush(),
+// which leaves complete, closed and synced files. history.h5 is readable at any time, even after a kill
+// during a write; history.csv may then end with an incomplete line.
 class HistoryWriter {
  public:
-  // keep: number of rows to keep when a restarted run continues an existing file (later ones are cut off); 0
-  // starts new files and removes old ones. Throws IoError where the file holds fewer rows or other columns.
-  // likely_rows: at the end, which sizes a new file; 0: not known, many.
+  // keep: number of rows of existing files to keep for a restart (later rows are cut off); 0 replaces
+  // existing files. Throws IoError if the file has fewer rows or other columns. likely_rows: expected number
+  // of rows, which sizes a new file; 0: not known, many.
   HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv, std::int64_t keep,
                 std::int64_t likely_rows = 0);
-  // One value per column. Throws SimulationError on another number of values.
+  // Appends one value per column. Throws SimulationError for another number of values.
   void append(const std::vector<Real>& row);
-  void flush();  // throws IoError; the rows then stay in the buffer
+  void flush();  // throws IoError, with the rows still buffered
   std::int64_t rows() const { return rows_; }
 
  private:
@@ -43,10 +43,10 @@ class HistoryWriter {
   TwinFile file_;
   std::string csv_path_;                   // empty where no CSV is wanted
   std::vector<std::vector<Real>> buffer_;  // [column][row]
-  std::int64_t rows_ = 0;                  // appended in all, kept ones included
+  std::int64_t rows_ = 0;                  // all rows, including those kept
 };
 
-// The sizes of the two files with so many rows [B]. likely_rows: as the writer's.
+// Sizes of the two files with so many rows [B]. likely_rows: as for the writer.
 struct HistorySize {
   Real hdf5 = 0, csv = 0;
 };

@@ -20,7 +20,7 @@ std::string hdf5_version() {
                      kParallelHdf5 ? "all ranks write" : "rank 0 writes for all");
 }
 
-// The first part of the library's own sentence, e.g. "Open MPI v4.1.4".
+// The first part of the library's text, e.g. "Open MPI v4.1.4".
 std::string mpi_version() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;

@@ -1,4 +1,4 @@
-// Versions of the libraries that this program runs with, as each library tells them.
+// Versions of the libraries in use, as each library reports them.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace scree {
 
-// {name, version}, e.g. {"fmt", "9.1.0"}; HDF5's with who writes. The MPI library's is the one loaded at run
-// time; header libraries give the version compiled in. PETSc's is petsc_version() (mbs). May be called before
-// MPI_Init.
+// {name, version}, e.g. {"fmt", "9.1.0"}; for HDF5 with the ranks that write. For MPI the version loaded at
+// run time; for header libraries the compiled version. petsc_version() (mbs) gives that of PETSc. May be
+// called before MPI_Init.
 std::vector<std::pair<std::string, std::string>> library_versions();
 
 }  // namespace scree

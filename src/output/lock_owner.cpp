@@ -31,7 +31,7 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : first_word(value);
 }
 
-// An id that is used again belongs to another process: it started later. Empty where there is none.
+// Start time of a process, which tells processes with the same id apart. Empty if there is no such process.
 std::string start_of(const std::string& process) {
   const std::string status = text_of("/proc/" + process + "/stat");
   const auto name_end = status.rfind(')');  // the name may hold blanks
@@ -42,7 +42,7 @@ std::string start_of(const std::string& process) {
   return field;
 }
 
-// The lines of the text, each a name and a value.
+// Calls use(name, value) for the lines of the text.
 template <class Entries, class Use>
 void for_each_entry(Entries& owner, const Use& use) {
   use("host", owner.host), use("boot", owner.boot);
@@ -92,7 +92,7 @@ std::string LockOwner::described() const {
 
 bool is_over(const LockOwner& owner, const LockOwner& self, LockState lock, bool on_own_disk) {
   if (on_own_disk && lock != LockState::unknown) return lock == LockState::free;
-  // A server may keep the lock of a machine that has died.
+  // A file server may keep the lock of a machine that is down.
   if (!owner.job.empty() && owner.job == self.job && owner.job_start != self.job_start) return true;
   if (lock == LockState::held) return false;
   if (owner.host.empty()) return lock == LockState::free;

@@ -1,28 +1,28 @@
-// The run that has a folder, as the text of its lock says, and whether it is over.
+// The run that owns a folder, according to the text of its lock, and whether that run is over.
 #pragma once
 
 #include <string>
 
 namespace scree {
 
-// Empty where the text does not say.
+// Entries are empty if the text does not have them.
 struct LockOwner {
-  std::string host, boot;              // name; the machine's id since its last start
-  std::string process, process_start;  // id; clock ticks since that start
-  std::string job, job_start;          // of SLURM: id; how often it has been started again
+  std::string host, boot;              // host name; id of the machine since its last boot
+  std::string process, process_start;  // process id; start in clock ticks since boot
+  std::string job, job_start;          // of SLURM: job id; number of restarts of the job
   std::string since;                   // UTC
 
   static LockOwner this_process();
-  static LockOwner read(const std::string& path);  // empty where there is no such file
-  std::string text() const;                        // a line for each entry: its name and its value
-  std::string described() const;                   // for a message; empty for an empty one
+  static LockOwner read(const std::string& path);  // empty if there is no such file
+  std::string text() const;                        // one line per entry: name and value
+  std::string described() const;                   // for messages; empty for an empty owner
 };
 
-// What the operating system says of a lock; some file systems have none.
+// State of a lock according to the operating system; unknown on file systems without locks.
 enum class LockState { free, held, unknown };
 
-// Whether the run of `owner` is over, seen from the process `self`. on_own_disk: the file system is this
-// machine's alone, so that the operating system's lock reaches all who might have it.
+// Whether the run of `owner` is over, seen from the process `self`. on_own_disk: the file system belongs to
+// this machine alone, so that the operating system's lock works for every process.
 bool is_over(const LockOwner& owner, const LockOwner& self, LockState lock, bool on_own_disk);
 
 }  // namespace scree

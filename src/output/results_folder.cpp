@@ -14,19 +14,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// All that a run may write.
+// Files that a run may write.
 constexpr const char* kNames[] = {
     "history.h5",      "history.csv",     "particles.vtkhdf", "particles.xdmf",    "bodies.vtkhdf",
     "bodies.xdmf",     "surfaces.vtkhdf", "surfaces.xdmf",    "contacts.vtkhdf",   "contacts.xdmf",
     "links.vtkhdf",    "links.xdmf",      "checkpoint.h5",    "checkpoint_end.h5", "checkpoint_failed.h5",
     "run_record.json", kStatusName};
 constexpr const char* kCheckpoints[] = {"checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5"};
-// Behind these names: what a run that was killed leaves beside them.
+// Suffixes of files that a killed run leaves beside them.
 constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};
-// Behind a checkpoint's: one that belongs to the steps which a continued run has taken anew.
+// Suffix of checkpoints later than the one from which the run was continued.
 constexpr const char* kEarlier = ".earlier";
 
-// What a run would continue from; empty: there is none.
+// The checkpoint to continue from; empty if there is none.
 std::string newest_checkpoint(const std::string& folder) {
   std::string newest;
   for (const char* name : {"checkpoint.h5", "checkpoint_end.h5"}) {
@@ -79,7 +79,7 @@ void ResultsFolder::check() const {
   if (std::error_code error; fs::is_directory(options_.restart, error)) {
     const std::string newest = newest_checkpoint(options_.restart);
     throw InputError(
-        fmt::format("--restart {}: takes a file, and this is a folder{}", options_.restart,
+        fmt::format("--restart {}: must be a file, but is a folder{}", options_.restart,
                     newest.empty() ? " without a checkpoint" : "; its newest checkpoint is " + newest));
   }
   lock_.check();
@@ -90,10 +90,10 @@ void ResultsFolder::check_results() const {
   if (options_.overwrite) return;
   const std::vector<std::string> found = results_of_others();
   if (found.empty()) return;
-  throw InputError(fmt::format(
-      "output folder {}: holds results of an earlier run: {}; --overwrite removes them, --output DIR writes "
-      "elsewhere{}",
-      options_.folder, fmt::join(found, ", "), way_out()));
+  throw InputError(
+      fmt::format("output folder {}: contains results of an earlier run: {}; --overwrite removes them, "
+                  "--output DIR writes to another folder{}",
+                  options_.folder, fmt::join(found, ", "), way_out()));
 }
 
 void ResultsFolder::claim() {
@@ -103,11 +103,11 @@ void ResultsFolder::claim() {
   if (error) throw IoError(fmt::format("output folder {}: {}", folder, error.message()));
   if (!fs::is_directory(folder)) throw IoError(fmt::format("output folder {}: is a file", folder));
   lock_.take();
-  check_results();  // another run may have come and gone since
+  check_results();  // another run may have written and ended meanwhile
 }
 
-// History and snapshots go on from --restart: a checkpoint of another state does not fit to them any longer,
-// and no later restart may take it for the newest.
+// History and snapshots continue from the checkpoint of --restart: other checkpoints belong to other states,
+// and later restarts must not use them.
 void ResultsFolder::set_checkpoints_aside() const {
   for (const char* name : kCheckpoints) {
     const std::string path = options_.folder + "/" + name;

@@ -1,4 +1,5 @@
-// The folder that a run writes its results into: one run at a time, and none over another's files unasked.
+// The results folder of a run: it belongs to one run at a time, and existing results are only overwritten on
+// request.
 #pragma once
 
 #include <string>
@@ -10,24 +11,24 @@ namespace scree {
 
 struct ResultsOptions {
   std::string folder;
-  std::string restart;     // the checkpoint that the run continues; empty: it starts at t = 0
-  bool overwrite = false;  // results of an earlier run are removed
+  std::string restart;     // checkpoint to continue from; empty: the run starts at t = 0
+  bool overwrite = false;  // remove the results of an earlier run
 };
 
-// Of rank 0.
+// Exists on rank 0 alone.
 class ResultsFolder {
  public:
   explicit ResultsFolder(const ResultsOptions& options);
 
-  // Throws InputError where another run writes into the folder, or where it holds results that are not
-  // continued and may not be overwritten. Changes nothing.
+  // Throws InputError if another run writes into the folder, or if the folder has results that are neither
+  // continued nor may be overwritten. Changes nothing.
   void check() const;
-  // Makes the folder, checks it, and keeps it for this run until this object ends. Throws IoError, too.
+  // Creates and checks the folder, and locks it for the lifetime of this object. Throws IoError, too.
   void claim();
-  // Whether the run goes on with the files in the folder: the checkpoint is one of them.
+  // Whether the run continues the files in the folder: its checkpoint is one of them.
   bool continues() const;
-  // Removes what an earlier run has left, the checkpoint that the run continues excepted. Where its results
-  // are continued they stay, and its other checkpoints get the name NAME.earlier. Throws IoError.
+  // Removes the results of an earlier run except the checkpoint to continue from. Results that are continued
+  // stay, and the other checkpoints are renamed to NAME.earlier. Throws IoError.
   void clear() const;
 
  private:

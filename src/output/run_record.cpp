@@ -19,7 +19,7 @@ namespace scree {
 
 namespace {
 
-// JSON has no number for these; they become texts.
+// JSON has no numbers for infinity and NaN: they are written as texts.
 void insert_number(toml::table& table, const std::string& key, double value) {
   if (std::isfinite(value)) {
     table.insert_or_assign(key, value);
@@ -76,7 +76,7 @@ toml::table build_table() {
                      {"libraries", libraries}};
 }
 
-// Entries of this start.
+// Costs of this start.
 toml::table cost_table(const RunRecord& record) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -107,7 +107,7 @@ toml::array start_array(const std::vector<RunStart>& starts) {
   return array;
 }
 
-// Entries of all starts.
+// Costs of all starts.
 toml::table total_table(const std::vector<RunStart>& starts) {
   const RunStart sum = sum_of(starts);
   toml::table table{{"starts", static_cast<std::int64_t>(starts.size())}, {"steps", sum.steps}};
@@ -117,7 +117,7 @@ toml::table total_table(const std::vector<RunStart>& starts) {
   return table;
 }
 
-// In the step's order.
+// Stages in the order of a step.
 toml::array stage_array(const StageTimers& timers) {
   toml::array stages;
   for (int s = 0; s < static_cast<int>(Stage::count); ++s) {

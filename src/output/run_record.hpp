@@ -1,4 +1,4 @@
-// Run record: what was run, with what, and what it cost.
+// Run record: deck, program, environment and cost of a run.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 namespace scree {
 
 struct RunRecord {
-  std::string deck_path, resolved_deck;  // the deck with defaults filled in, as TOML
+  std::string deck_path, resolved_deck;  // the deck including defaults, as TOML
   std::string command_line;
   std::string status;  // "running", "done", "failed: ...", "stopped by signal ..."
   int exit_code = 0;
   std::string started, ended;    // ISO 8601, UTC
-  std::vector<RunStart> starts;  // this one last
+  std::vector<RunStart> starts;  // this start is the last one
   std::string backend, solver;
-  std::string start_change;  // velocities = "consistent": the largest change at t = 0
-  std::string redundancy;    // of constraints that share the load: rows, rank, names
+  std::string start_change;  // for velocities = "consistent": the largest change at t = 0
+  std::string redundancy;    // redundant constraints: rows, rank, names
   std::string restarted_from;
-  std::string changes;     // lines on the keys that --allow-changes let differ since t = 0
-  std::string state_hash;  // of the state in the last checkpoint; empty before the first
+  std::string changes;     // keys changed with --allow-changes since t = 0, one per line
+  std::string state_hash;  // of the last checkpoint; empty before the first one
   int ranks = 1;
-  std::int64_t device_bytes = 0;  // of GPU memory at the end, all ranks together; 0 on the CPU
+  std::int64_t device_bytes = 0;  // GPU memory at the end, summed over the ranks; 0 on the CPU
   StageTimers timers;
   std::vector<std::pair<std::string, std::int64_t>>
       counts;                                            // steps, iterations, rejections, list builds, ...
@@ -34,8 +34,8 @@ struct RunRecord {
   std::vector<std::string> warnings;
 };
 
-// Writes DIRECTORY/run_record.json (beside and renamed): the fields above, versions, commit, host. Throws
-// IoError.
+// Writes DIRECTORY/run_record.json (under another name, then renamed): the fields above, versions, commit,
+// host. Throws IoError.
 void write_run_record(const std::string& directory, const RunRecord& record);
 
 }  // namespace scree

@@ -53,10 +53,10 @@ std::vector<RunStart> starts_in(const std::string& text, const std::string& path
   }
   std::vector<RunStart> starts;
   const toml::array* const array = all[kStarts].as_array();
-  if (array == nullptr) refuse("there is none");
+  if (array == nullptr) refuse("it is missing");
   for (const toml::node& node : *array) {
     const toml::table* const table = node.as_table();
-    if (table == nullptr) refuse("an entry is no table");
+    if (table == nullptr) refuse("an entry is not a table");
     for_each_entry(starts.emplace_back(), [&]<class Value>(const char* name, Value& value) {
       const auto found = (*table)[name].value_exact<Value>();
       found ? value = *found : (refuse(fmt::format("{} is missing", name)), value);

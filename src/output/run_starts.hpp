@@ -1,4 +1,4 @@
-// The starts of a run: at t = 0, and from each checkpoint that it went on from, with what each took.
+// The starts of a run, at t = 0 and from checkpoints, with the cost of each.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace scree {
 
-// One start of the program. Of an earlier one all is as of the checkpoint that the next start went on from:
-// what came after it is taken anew, and counts there.
+// One start of the program. An earlier start counts up to the checkpoint from which the next one continued:
+// what came after it is computed again and counts there.
 struct RunStart {
   std::string started;  // ISO 8601, UTC
   std::string host, backend;
   std::int64_t ranks = 1;
   Real from = 0, to = 0;   // simulated time [s]
-  std::int64_t steps = 0;  // accepted on the way
-  Real wall_seconds = 0;   // since the start
-  Real loop_seconds = 0;   // of these in the steps, output between them included
-  Real cpu_seconds = 0;    // of rank 0
+  std::int64_t steps = 0;  // accepted steps
+  Real wall_seconds = 0;   // wall time since the start
+  Real loop_seconds = 0;   // part of it in the step loop, with output between steps
+  Real cpu_seconds = 0;    // on rank 0
 };
 
-// Steps and seconds of all of them; the rest is the first one's but for `to`.
+// The sum of steps and seconds; the last entry's `to`, and otherwise the first entry's values.
 RunStart sum_of(const std::vector<RunStart>& starts);
 
-// As TOML and back, bit for bit. Throws IoError naming `path`, where the text comes from, if it is damaged.
+// Conversion to TOML and back, bit for bit. path: origin of the text, for IoError if it is damaged.
 std::string to_text(const std::vector<RunStart>& starts);
 std::vector<RunStart> starts_in(const std::string& text, const std::string& path);
 

@@ -9,7 +9,7 @@ namespace {
 
 const std::string kRoot = "/VTKHDF/";
 
-// Row k of a part holds k times the step; numbers: of these rows.
+// Writes k times `step` into row k of a part; numbers: the rows to write.
 void write_numbers(SharedRows& file, const std::string& name, std::int64_t first_row, RowPart numbers,
                    std::int64_t step) {
   std::vector<std::int64_t> piece;

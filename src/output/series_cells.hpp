@@ -1,5 +1,5 @@
-// The cells of a VTKHDF series whose points are theirs alone: a vertex for each point, or a line for each
-// two. They change where their number does.
+// Cells of a VTKHDF series whose points belong to one cell each: a vertex per point, or a line per two
+// points. They change only with their number.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,26 @@
 namespace scree {
 
 struct SeriesCells {
-  const char* group;    // of theirs in the file
-  const char* nothing;  // of a kind of which there are none
-  int column;           // theirs in Steps/CellOffsets
-  std::int64_t points;  // of each
+  const char* group;    // name of the cells' group in the file
+  const char* nothing;  // name of a group without cells
+  int column;           // column of these cells in Steps/CellOffsets
+  std::int64_t points;  // points per cell
 };
 inline constexpr SeriesCells kVertices{"Vertices", "Lines", 0, 1}, kLines{"Lines", "Vertices", 1, 2};
 
-// Where a part has its rows.
+// Position of a part in the rows.
 struct PartPlace {
   std::int64_t part = 0, first_cell = 0;
 };
 
-// In a new file that has NumberOfPoints: the groups of all kinds of cells.
+// Creates the groups of all kinds of cells in a new file, which has NumberOfPoints.
 void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of_points,
                   std::int64_t parts_per_chunk);
-// Room for one more part, of so many points.
+// Adds space for one more part with so many points.
 void add_cells(Hdf5File& file, const SeriesCells& cells, std::int64_t points);
-// All behind a part.
+// Removes the cells after a part.
 void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartPlace& last, std::int64_t points);
-// This rank's, of its points in the part; has_end: it is the last rank.
+// Writes the cells of this rank's points of the part; has_end: this is the last rank.
 void write_cells(SharedRows& file, const SeriesCells& cells, const PartPlace& place, RowPart points,
                  bool has_end);
 

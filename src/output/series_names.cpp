@@ -7,7 +7,7 @@ namespace {
 const std::string kFieldData = "/VTKHDF/FieldData/", kSteps = "/VTKHDF/Steps/";
 const std::string kOffsets = "FieldDataOffsets/", kSizes = "FieldDataSizes/";
 
-// Calls visit(dataset, list) for those that say per snapshot which of the texts it has.
+// Calls visit(dataset, list) for the datasets that assign texts to snapshots.
 template <class Visit>
 void for_each_list(const Hdf5File& file, const Visit& visit) {
   for (const std::string& dataset : file.dataset_names(kSteps))

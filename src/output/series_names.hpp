@@ -1,4 +1,4 @@
-// The names of what the fields of a VTKHDF series count.
+// Names of the objects that fields of a VTKHDF series number.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace scree {
 
-// Entry k is the name of number k.
+// Entry k is the name of object k.
 struct SeriesNames {
   std::string name;  // of the list
   std::vector<std::string> entries;
 };
 
-// In a new file: the dataset /Scree/NAME, one per line. For VTK the same as text in the field data of every
-// snapshot, of which there is one copy for all.
+// Creates the dataset /Scree/NAME with one name per line in a new file. For VTK the names are also texts in
+// the field data of every snapshot, stored once for all.
 void create_names(Hdf5File& file, const SeriesNames& names, std::int64_t steps_per_chunk);
-// With each snapshot more, and where the file is cut to so many. Files without field data stay so.
+// Adds a snapshot, or cuts the file to so many. Files without field data are left unchanged.
 void append_names(Hdf5File& file);
 void cut_names(Hdf5File& file, std::int64_t snapshots);
 

@@ -14,7 +14,7 @@ std::int64_t bytes_of(const PointField& field) {
   return std::holds_alternative<const int*>(field.values) ? sizeof(int) : kLong;
 }
 
-// Files hold the texts, twice, and a reference to each.
+// Names: files contain the texts twice, and a reference to each.
 void add_names(const SeriesNames& names, std::int64_t chunk, std::int64_t snapshots, Hdf5Size& size) {
   constexpr std::int64_t kReference = 16, kText = 32, kFewest = 4096;
   if (names.entries.empty()) return;
@@ -27,7 +27,7 @@ void add_names(const SeriesNames& names, std::int64_t chunk, std::int64_t snapsh
   size.add_rows({2, chunk}, kLong, snapshots);
 }
 
-// What there is once for each snapshot, or for each part.
+// Datasets with one row per snapshot, or per part.
 void add_steps(const SeriesOptions& options, std::int64_t snapshots, std::int64_t parts, Hdf5Size& size) {
   const std::int64_t chunk = steps_per_chunk(options);
   const bool of_cells = options.triangles || options.lines;

@@ -1,4 +1,4 @@
-// How large a VtkHdfSeries gets, before it is written.
+// Size of the files of a VtkHdfSeries before they are written.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace scree {
 
-// The sizes of NAME.vtkhdf and NAME.xdmf with so many snapshots like this one, of which the points alone may
-// be missing [B]. In compressed files: before compression. Particles that leave, and contacts whose number
-// changes, begin new parts, of which `parts` are counted.
+// Sizes of NAME.vtkhdf and NAME.xdmf with so many snapshots like this one, of which only the points may be
+// missing [B]; for compressed files before compression. parts: number of parts; a new one begins when the
+// number of particles or contacts changes.
 struct SeriesSize {
   Real data = 0, xdmf = 0;
 };

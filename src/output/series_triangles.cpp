@@ -20,7 +20,7 @@ void write_once(Hdf5File& file, const std::string& name, const std::vector<std::
   file.append_rows(kRoot + name, values.data(), std::ssize(values));
 }
 
-// Of the kinds of cells that there are none of.
+// Creates the groups of kinds of cells that do not occur.
 void create_no_cells(Hdf5File& file) {
   write_once(file, "Vertices/NumberOfCells", {0}, "cells of each part: none");
   write_once(file, "Vertices/Offsets", {0}, "one 0 per part");
@@ -40,8 +40,8 @@ void require_fields(const Hdf5File& file, const SeriesTriangles& triangles) {
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
   };
   throw IoError(
-      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; keep output.surface_fields "
-                  "as it was, or choose another folder",
+      fmt::format("{}: has the fields {}, but the restarted run is to write {}; keep output.surface_fields "
+                  "unchanged, or choose another folder",
                   file.path(), words(held), words(wanted)));
 }
 
@@ -64,7 +64,7 @@ void create_triangles(Hdf5File& file, const SeriesTriangles& triangles) {
     file.create_rows<std::int32_t>(kCellData + numbers.name, {1, std::max<std::int64_t>(1, count)},
                                    {"1", numbers.description});
     file.append_rows(kCellData + numbers.name, numbers.values.data(), count);
-    // Every snapshot's begin at row 0, which is the number of the only part, too.
+    // All snapshots begin at row 0, which is also the number of the only part.
     file.link(kRoot + "Steps/PartOffsets", kRoot + "Steps/CellDataOffsets/" + numbers.name);
   }
 }
@@ -76,7 +76,7 @@ void require_triangles(const Hdf5File& file, const SeriesTriangles& triangles) {
   if (!same)
     throw IoError(
         file.path() +
-        ": holds other triangles than the restarted run has; keep the meshes as they were, or choose "
+        ": the triangles differ from those of the restarted run; keep the meshes unchanged, or choose "
         "another folder");
   require_fields(file, triangles);
 }

@@ -1,4 +1,4 @@
-// The triangles of a VTKHDF series: what does not change while their corners move.
+// Triangles of a VTKHDF series: their connectivity is constant, their corners move.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// One number per triangle, written once.
+// One number per triangle, constant in time.
 struct TriangleNumbers {
   std::string name;
   std::string description;
@@ -20,16 +20,17 @@ struct TriangleNumbers {
 struct SeriesTriangles {
   std::vector<std::int64_t> corners;  // [triangles][3] points, counted from 0
   std::vector<TriangleNumbers> numbers;
-  // Of the snapshots to come, where files that are continued are to be looked at for them.
+  // Names of the fields of further snapshots, to be checked against files that are continued.
   std::optional<std::vector<std::string>> fields = {};
 
   std::int64_t count() const { return static_cast<std::int64_t>(corners.size()) / 3; }
-  bool has(const std::string& name) const;  // of the numbers
+  bool has(const std::string& name) const;  // whether it is one of `numbers`
 };
 
-// In a new file: the groups of cells with these, the only part, in Polygons, and the numbers in CellData.
+// Creates the groups of cells in a new file, with the triangles as the only part of Polygons and the numbers
+// in CellData.
 void create_triangles(Hdf5File& file, const SeriesTriangles& triangles);
-// Throws IoError where the file holds others, or other fields.
+// Throws IoError if the file has other triangles or other fields.
 void require_triangles(const Hdf5File& file, const SeriesTriangles& triangles);
 
 }  // namespace scree

@@ -20,7 +20,7 @@ const bool kParallelHdf5 = SCREE_PARALLEL_HDF5;
 
 namespace {
 
-// What a rank writes at once, and what rank 0 then holds of another rank.
+// Size of a piece that a rank writes at a time, and that rank 0 then holds of another rank.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 25;
 
 Hdf5Id new_properties(hid_t kind) { return {H5Pcreate(kind), H5Pclose}; }
@@ -35,7 +35,7 @@ std::uint64_t hash_of(const void* values, std::size_t bytes) {
   return hash.hash();
 }
 
-// Compressed rows get other places when they are written than those that were made for them.
+// Reserves disk space; impossible for compressed rows, whose positions change when they are written.
 bool reserve(const std::string& path) {
   {
     const Hdf5File file(path, Hdf5Access::read);
@@ -45,7 +45,7 @@ bool reserve(const std::string& path) {
   return reserve_file(path);
 }
 
-// Rows of piece k, counted within the part.
+// Rows of piece k, relative to the part.
 RowPart piece_of(RowPart part, std::int64_t rows, std::int64_t k) {
   const std::int64_t first = std::min(k * rows, part.count);
   return {first, std::min(rows, part.count - first)};
@@ -55,7 +55,7 @@ RowPart piece_of(RowPart part, std::int64_t rows, std::int64_t k) {
 
 void SharedRows::fail(const std::string& action) const {
   const std::string reason = library_reason();
-  reserve_file(path_);  // the MPI library keeps a full disk to itself; this throws with the system's reason
+  reserve_file(path_);  // the MPI library does not report a full disk; this throws with the system's reason
   throw IoError(fmt::format("{}: cannot {}: {}", path_, action, reason));
 }
 
@@ -77,7 +77,7 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
   ranks_.broadcast(reads_back_);
   ranks_.together([&] {
     if (!has_file()) return;
-    // The MPI library's part of HDF5 locks nothing.
+    // The MPI part of HDF5 does not lock files.
     file_ =
         collective_ ? H5Fopen(path.c_str(), H5F_ACC_RDWR, access) : open_hdf5(path, Hdf5Open::modify, access);
     if (file_ < 0) fail("open");
@@ -99,8 +99,8 @@ SharedRows::~SharedRows() {
 
 void SharedRows::close() {
   ranks_.together([&] {
-    // Together, the closing writes what is left, too. A flush would also sync, and Open MPI's sync does not
-    // return on the other ranks where it fails on one.
+    // Closing a collective file also writes the remaining data. A flush would also sync, and Open MPI's sync
+    // blocks the other ranks if it fails on one.
     if (has_file() && !collective_ && H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("write");
   });
   ranks_.together([&] {
@@ -123,8 +123,8 @@ void SharedRows::read_back() {
     if (H5Dread(dataset, w.type.value, selected.memory, selected.file, H5P_DEFAULT, values.data()) >= 0 &&
         hash_of(values.data(), values.size()) == w.hash)
       continue;
-    reserve_file(path_);  // throws with the system's reason where the disk is full
-    throw IoError(fmt::format("{}: cannot write dataset {}: the file does not hold what was written to it",
+    reserve_file(path_);  // throws with the system's reason if the disk is full
+    throw IoError(fmt::format("{}: cannot write dataset {}: the file does not contain the data written to it",
                               path_, w.name));
   }
 }
@@ -148,7 +148,7 @@ void SharedRows::put(const std::string& name, RowType type, RowPart rows, const 
         {name, type, rows, hash_of(values, static_cast<std::size_t>(rows.count) * type.bytes())});
 }
 
-// Every rank takes part in as many writes as the one with the most rows.
+// Every rank takes part in as many writes as the rank with the most rows.
 void SharedRows::write_collectively(const std::string& name, RowType type, RowPart part, const Piece& piece) {
   const std::int64_t rows = rows_per_piece(type.bytes()), own = (part.count + rows - 1) / rows;
   const std::int64_t rounds = -ranks_.min(-own);

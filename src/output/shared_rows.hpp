@@ -1,10 +1,9 @@
-// Rows of one HDF5 file that are spread over the ranks: consecutive rows of each rank, written without any
-// rank holding those of others, by all ranks at once where the library is a parallel one, else through rank
-// 0. The files are the same.
+// Rows of one HDF5 file that are distributed over the ranks in consecutive blocks. No rank holds rows of all
+// others: all ranks write at once with a parallel library, otherwise rank 0 writes. The files are identical.
 //
-// A full disk does not pass unseen, though an MPI library may take a write that was cut short for a whole
-// one: where all ranks write, the rows' disk space is reserved before. Where that cannot be, because they
-// are compressed or the file system does not reserve, they are read back.
+// A full disk is always detected, although an MPI library may report a truncated write as complete: for
+// collective writes the disk space of the rows is reserved before. If that is impossible (compressed rows, or
+// a file system that cannot reserve), the rows are read back.
 #pragma once
 
 #include <cstdint>
@@ -19,37 +18,37 @@
 
 namespace scree {
 
-// Whether this build writes collectively; else rank 0 writes for all.
+// Whether this build writes collectively; otherwise rank 0 writes for all ranks.
 extern const bool kParallelHdf5;
 
-// A rank's part of rows that are written or read: rows [first, first + count) of the dataset.
+// A rank's part of the rows written or read: rows [first, first + count) of the dataset.
 struct RowPart {
   std::int64_t first = 0, count = 0;
 };
 
-// All functions are collective, and throw IoError on every rank where one rank fails.
+// All functions are collective, and throw IoError on every rank if one rank fails.
 class SharedRows {
  public:
-  // Opens an existing file. It has been closed by whoever made room for the rows (Hdf5File::resize_rows).
-  // collective: only for tests; false works with a parallel library, too.
+  // Opens an existing file, which the owner has closed after adding space for the rows
+  // (Hdf5File::resize_rows). collective: for tests only; false also works with a parallel library.
   SharedRows(const Ranks& ranks, const std::string& path, bool collective = kParallelHdf5);
-  // Through rank 0, which has the file open and closes it; elsewhere there is none. What the library writes
-  // for one process tells of a full disk itself.
+  // Writes through rank 0, which has opened the file and closes it; null on other ranks. Serial writes of the
+  // library report a full disk themselves.
   SharedRows(const Ranks& ranks, Hdf5File* open);
   ~SharedRows();
   SharedRows(const SharedRows&) = delete;
   SharedRows& operator=(const SharedRows&) = delete;
-  // Hands everything to the operating system, and reads it back where it had no reserved space.
+  // Passes all data to the operating system, and reads rows back that had no reserved space.
   void close();
 
-  // This rank's part, of values in memory: [part.count][width].
+  // Writes this rank's part from memory: [part.count][width].
   template <class T>
   void write(const std::string& name, int width, RowPart part, const T* values) {
     write(name, {hdf5_type<T>(), width}, part,
           [=](std::int64_t first, std::int64_t) { return values + first * width; });
   }
-  // The same, made piece by piece: piece(first, count) returns rows [first, first + count) of this part,
-  // which stay until it is called again.
+  // Writes this rank's part piece by piece: piece(first, count) returns rows [first, first + count) of the
+  // part, valid until the next call.
   template <class T>
   void write_pieces(const std::string& name, int width, RowPart part,
                     const std::function<const T*(std::int64_t first, std::int64_t count)>& piece) {
@@ -71,7 +70,7 @@ class SharedRows {
   bool has_file() const { return collective_ || ranks_.is_root(); }
   [[noreturn]] void fail(const std::string& action) const;
 
-  // What this rank has written without reserved space.
+  // Rows of this rank written without reserved space.
   struct Written {
     std::string name;
     RowType type;

@@ -30,26 +30,27 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
   const std::int64_t points = std::ssize(bodies.position);
   PointSnapshot snapshot{time, points, {0, points}, components(bodies.position), {}};
   snapshot.fields = {
-      field_of("body", {"1", "body that the point belongs to, counted from 0 in the deck's order"},
-               bodies.body),
-      field_of("kind", {"1", "0: a shape, 1: a body's centre of mass, 2: a shape that touches nothing"},
+      field_of("body", {"1", "body of the point, counted from 0 in the deck's order"}, bodies.body),
+      field_of("kind", {"1", "0: shape, 1: centre of mass of a body, 2: shape without contact detection"},
                bodies.kind),
-      field_of("radius", {"m", "radius of the shape; 0 of a centre of mass"}, bodies.radius),
+      field_of("radius", {"m", "radius of the shape; 0 for a centre of mass"}, bodies.radius),
       field_of("velocity", {"m/s", "velocity of the point"}, bodies.velocity),
       field_of("angle", {"rad", "angle of the body about z"}, bodies.angle),
       field_of("angular_velocity", {"rad/s", "angular velocity of the body about z"},
                bodies.angular_velocity),
-      field_of("force", {"N", "total contact force on the shape; of a centre of mass that on the body"},
+      field_of("force", {"N", "total contact force on the shape; for a centre of mass that on the body"},
                bodies.force),
-      field_of("contacts", {"1", "touching neighbours and walls, likewise"}, bodies.contacts),
+      field_of("contacts", {"1", "number of contacts of the shape; for a centre of mass that of the body"},
+               bodies.contacts),
       field_of("origin", {"m", "origin of the body's frame"}, bodies.origin)};
   if (bodies.orientation.empty()) return snapshot;
-  snapshot.fields.push_back({"orientation",
-                             {"1", "unit quaternion of the body's frame, scalar first, of continuous sign"},
-                             4,
-                             bodies.orientation.data()});
   snapshot.fields.push_back(
-      field_of("spin", {"rad/s", "angular velocity of the body, global axes"}, bodies.spin));
+      {"orientation",
+       {"1", "orientation of the body's frame: unit quaternion, scalar first, with continuous sign"},
+       4,
+       bodies.orientation.data()});
+  snapshot.fields.push_back(
+      field_of("spin", {"rad/s", "angular velocity of the body in global axes"}, bodies.spin));
   return snapshot;
 }
 
@@ -60,15 +61,15 @@ PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
     if (!values.empty()) snapshot.fields.push_back(field_of(name, label, values));
   };
   add("pressure",
-      {"Pa (2D: N/m)", "normal contact forces on the triangle over its area (2D: the segment's length)"},
+      {"Pa (2D: N/m)", "normal contact force on the triangle over its area (2D: over the segment's length)"},
       surfaces.pressure);
-  add("shear", {"Pa (2D: N/m)", "tangential contact forces on the triangle over its area (2D: likewise)"},
+  add("shear",
+      {"Pa (2D: N/m)",
+       "tangential contact force on the triangle over its area (2D: over the segment's length)"},
       surfaces.shear);
-  add("impact_work", {"J", "taken by the damping of normal contact forces since t = 0"},
-      surfaces.impact_work);
-  add("sliding_work", {"J", "taken by friction since t = 0"}, surfaces.sliding_work);
-  add("wear_depth",
-      {"m", "volume worn off since t = 0 after Archard over the triangle's area (2D: 1 m deep)"},
+  add("impact_work", {"J", "energy dissipated by normal contact damping since t = 0"}, surfaces.impact_work);
+  add("sliding_work", {"J", "energy dissipated by friction since t = 0"}, surfaces.sliding_work);
+  add("wear_depth", {"m", "wear volume since t = 0 (Archard) over the triangle's area (2D: 1 m deep)"},
       surfaces.wear_depth);
   return snapshot;
 }
@@ -94,7 +95,7 @@ SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
   return options;
 }
 
-// Of the series that rank 0 writes alone.
+// Options of series that rank 0 writes alone.
 SeriesOptions of_surfaces(SeriesOptions options) {
   options.ranks = {}, options.fields = {}, options.constant = {};
   std::erase_if(options.names, [](const SeriesNames& of) { return of.name == kGroupNames; });
@@ -114,15 +115,15 @@ SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
   return options;
 }
 
-// Files that are continued have the lines that are wanted. To be found out before any of them is cut.
+// Checks, before any file is cut, that continued files have the lines that are wanted.
 const SeriesOptions& with_these_lines(const std::string& directory, const SeriesOptions& options,
                                       const WantedLines& lines) {
   const auto require = [&](const std::string& name, bool wanted) {
     const std::string path = fmt::format("{}/{}.vtkhdf", directory, name);
     if (options.keep == 0 || std::filesystem::exists(path) == wanted) return;
     throw IoError(fmt::format("{}: {}; set output.{} = {}, or choose another folder", path,
-                              wanted ? "missing, the restarted run is to write it"
-                                     : "is there, but the restarted run is not to write it",
+                              wanted ? "is missing, but the restarted run is to write it"
+                                     : "exists, but the restarted run is not to write it",
                               name, !wanted));
   };
   options.ranks.on_root([&] {
@@ -148,7 +149,7 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
     links_.emplace(directory, "links", of_links(of_bodies(options), lines));
   });
   if (particles_.snapshots() != snapshots_)
-    throw IoError(particles_.path() + ": missing, the restarted run needs it");
+    throw IoError(particles_.path() + ": is missing, but the restarted run needs it");
 }
 
 void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,
@@ -157,7 +158,7 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
   const PointSnapshot points = particle_points(time, particles, ranks_), shapes = body_points(time, bodies),
                       corners = surface_points(time, surfaces), touches = line_points(time, contacts, ranks_),
                       connections = line_points(time, links, {});
-  // Of all ranks, then of rank 0.
+  // Applies an action to the series of all ranks, then to those of rank 0.
   const auto with_shared = [&](const auto& action) {
     action(particles_, points);
     if (shows_contacts_) action(contacts_, touches);
@@ -171,8 +172,8 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
   };
   with_others([&](const VtkHdfSeries& series, const PointSnapshot&) {
     if (series.snapshots() == snapshots_) return;
-    throw IoError(fmt::format("{}: holds {} snapshots where {} were written", series.path(),
-                              series.snapshots(), snapshots_));
+    throw IoError(fmt::format("{}: has {} snapshots, but {} were written", series.path(), series.snapshots(),
+                              snapshots_));
   });
   const auto with_all = [&](const auto& action) { with_shared(action), with_others(action); };
   with_all([](VtkHdfSeries& series, const PointSnapshot& of) { series.prepare(of); });
@@ -200,7 +201,7 @@ SnapshotsSize snapshots_size(const SeriesOptions& options, const WantedLines& li
     all.data += size.data, all.xdmf += size.xdmf;
   };
   add("particles", with_global_id(options), particle_points(0, particles, {}), counts.particles, 1);
-  if (lines.contacts)  // their number is another one at each
+  if (lines.contacts)  // the number of contacts differs at each snapshot
     add("contacts", of_contacts(options, lines), line_points(0, contacts, {}), 2 * counts.contacts,
         snapshots);
   if (counts.body_points > 0)

@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-// The file's entries, each a name and a value.
+// Calls use(name, value) for the entries of the file.
 template <class Status, class Use>
 void for_each_entry(Status& s, const Use& use) {
   auto& p = s.progress;
@@ -32,7 +32,7 @@ void for_each_entry(Status& s, const Use& use) {
 
 using Texts = std::vector<std::string>;
 
-// What others wrote may be no UTF-8, which TOML is.
+// TOML is UTF-8, which texts of others may not be.
 void insert(toml::table& table, const char* name, const std::string& text) {
   table.insert(name, printable(text));
 }

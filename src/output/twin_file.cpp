@@ -27,7 +27,7 @@ TwinFile::~TwinFile() { drop_spare(); }
 void TwinFile::drop_spare() {
   has_spare_ = false;
   if (!ranks_.is_root()) return;
-  std::error_code ignored;  // nothing to remove is the usual case
+  std::error_code ignored;  // usually there is nothing to remove
   fs::remove(spare_, ignored);
   fs::remove(old_, ignored);
 }
@@ -48,7 +48,7 @@ void TwinFile::remove() {
   });
 }
 
-// Opened once where rank 0 writes all: for a collective write the file is closed in between.
+// Serial writes need one opening; a collective write requires that the file is closed in between.
 void TwinFile::change_spare(const Change& change, Hdf5Access access) {
   const bool together = kParallelHdf5 && !ranks_.alone();
   std::optional<Hdf5File> file;
@@ -83,7 +83,7 @@ void TwinFile::prepare(const Change& change) {
     const bool grows = exists();
     if (grows && !ready) ranks_.on_root([&] { copy_file(path_, spare_); });
     change_spare(change, grows ? Hdf5Access::modify : Hdf5Access::create);
-    // Every rank's machine may hold some of the file that is not on disk yet.
+    // Any rank's host may hold data that is not yet on disk.
     ranks_.together([&] { sync_file(spare_); });
   } catch (...) {
     drop_spare();
@@ -103,8 +103,8 @@ void TwinFile::follow(const Change& change) {
   try {
     change_spare(change, Hdf5Access::modify);
   } catch (const IoError&) {
-    // A reader that opened this copy while it was the visible one holds a lock on it. It may keep it: the
-    // visible copy is complete, and the next update makes another. A full disk comes up again there.
+    // A reader that opened this copy while it was visible holds a lock on it. That is harmless: the visible
+    // copy is complete, and the next update creates another copy, which would also report a full disk.
     drop_spare();
   }
 }

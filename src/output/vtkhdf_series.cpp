@@ -22,7 +22,8 @@ const std::string kCellData = "/VTKHDF/CellData/";
 const std::string kPointDataOffsets = "/VTKHDF/Steps/PointDataOffsets/";
 const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
 const std::string kConstantOffsets = kSteps + "ConstantOffsets";
-constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
+constexpr std::size_t kXdmfGrowth =
+    5;  // the .xdmf is rewritten when it has grown by one snapshot in this many
 
 void create_field(Hdf5File& file, const std::string& name, const PointField& field, RowStorage storage) {
   storage.width = field.width;
@@ -35,7 +36,7 @@ void write_field(SharedRows& file, const std::string& name, const PointField& fi
   std::visit(write, field.values);
 }
 
-// The connectivity ids of cells of one point have the cells' numbers; of triangles both are 0.
+// For cells of one point the connectivity ids equal the numbers of the cells; for triangles both are 0.
 void create_steps(Hdf5File& file, bool shared_ids, std::int64_t chunk) {
   const auto create = [&]<class T>(T, const std::string& name, int width, const std::string& unit,
                                    const std::string& description) {
@@ -56,7 +57,7 @@ void create_steps(Hdf5File& file, bool shared_ids, std::int64_t chunk) {
   file.write_integer_attribute(kSteps, "NSteps", {0});
 }
 
-// All behind so many snapshots: the fields of triangles.
+// Removes the triangle fields after so many snapshots.
 void cut_triangles(Hdf5File& file, const SeriesTriangles& triangles, std::int64_t snapshots) {
   for (const std::string& name : file.dataset_names(kCellData)) {
     if (!triangles.has(name)) file.resize_rows(kCellData + name, snapshots * triangles.count());
@@ -65,7 +66,7 @@ void cut_triangles(Hdf5File& file, const SeriesTriangles& triangles, std::int64_
 
 }  // namespace
 
-// A run that goes on past its end adds chunks of the same length, so that these are not too short.
+// A run continued past its end adds chunks of the same length, so that they must not be too short.
 std::int64_t steps_per_chunk(const SeriesOptions& options) {
   constexpr std::int64_t kFewest = 16, kMost = 128;
   return options.likely_snapshots == 0 ? kMost : std::clamp(options.likely_snapshots, kFewest, kMost);
@@ -97,8 +98,8 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
     if (options.triangles) require_triangles(Hdf5File(path(), Hdf5Access::read), *options.triangles);
   });
   if (snapshots() < keep) {
-    throw IoError(fmt::format("{}: holds {} snapshots, but the restarted run has written {}", path(),
-                              snapshots(), keep));
+    throw IoError(
+        fmt::format("{}: has {} snapshots, but the restarted run has written {}", path(), snapshots(), keep));
   }
   if (snapshots() > keep) cut(static_cast<std::size_t>(keep));
 }
@@ -130,7 +131,7 @@ void VtkHdfSeries::read_places() {
   }
 }
 
-// An earlier version wrote every field at every snapshot.
+// Earlier versions wrote every field at every snapshot.
 void VtkHdfSeries::require_constant_offsets(const Hdf5File& file) const {
   const std::vector<std::string> steps = file.dataset_names(kSteps);
   if (options_.constant.empty() || std::ranges::find(steps, "ConstantOffsets") != steps.end()) return;
@@ -143,24 +144,24 @@ void VtkHdfSeries::require_fields() const {
   std::ranges::sort(held), std::ranges::sort(wanted);
   if (held == wanted) return;
   throw IoError(
-      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; {}choose another folder",
+      fmt::format("{}: has the fields {}, but the restarted run is to write {}; {}choose another folder",
                   path(), fmt::join(held, ", "), fmt::join(wanted, ", "),
-                  options_.lines ? "" : "keep output.fields as it was, or "));
+                  options_.lines ? "" : "keep output.fields unchanged, or "));
 }
 
-// Of another version's file, or another deck's.
+// A missing field means a file of another version, or of another deck.
 void VtkHdfSeries::require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const {
   const std::vector<std::string> held = file.dataset_names(field_group());
   for (const PointField& field : snapshot.fields)
     if (std::ranges::find(held, field.name) == held.end())
       throw IoError(
-          fmt::format("{}: holds no field {}, which this version of the program is to write; "
+          fmt::format("{}: lacks the field {}, which this version of the program writes; "
                       "choose another folder",
                       path(), field.name));
 }
 
 void VtkHdfSeries::cut(std::size_t keep) {
-  remove_xdmf();  // it would refer to rows that are gone; the next append writes it
+  remove_xdmf();  // it would refer to removed rows; the next append writes it
   places_.resize(keep);
   const SnapshotPlace last = places_.back();
   const std::int64_t steps = static_cast<std::int64_t>(keep);
@@ -181,7 +182,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
   file_.update({shorten, {}});
 }
 
-// All behind the last place: cells, and their fields or those of points.
+// Removes rows after the last snapshot: cells, and the fields of cells or points.
 void VtkHdfSeries::cut_points(Hdf5File& file) const {
   const SnapshotPlace& last = places_.back();
   file.resize_rows(kRoot + "NumberOfPoints", last.part + 1);
@@ -250,7 +251,7 @@ bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
 
 const std::string& VtkHdfSeries::field_group() const { return has_cell_fields() ? kCellData : kPointData; }
 
-// The fields of points that change have as many rows as Points, so they begin where these begin.
+// Time-dependent fields of points have as many rows as Points, and thus the same offsets.
 std::string VtkHdfSeries::field_offsets() const {
   return kSteps + (options_.triangles ? "TriangleOffsets" : options_.lines ? "LineOffsets" : "PointOffsets");
 }
@@ -265,7 +266,7 @@ bool VtkHdfSeries::adds_rows(const SnapshotPlace& place, const std::string& fiel
 
 RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const {
   if (options_.triangles) return {place.number * options_.triangles->count(), options_.triangles->count()};
-  if (is_constant(field)) return {place.first_cell + own.first, own.count};  // as the vertices
+  if (is_constant(field)) return {place.first_cell + own.first, own.count};  // same rows as the vertices
   return {(place.first_point + own.first) / cells().points, own.count / cells().points};
 }
 

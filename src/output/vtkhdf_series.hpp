@@ -1,15 +1,16 @@
-// A time series of point sets, lines or triangles in one VTKHDF file, and an .xdmf that refers to the same
+// A time series of point sets, lines or triangles in one VTKHDF file, with an .xdmf that refers to the same
 // data.
 //
-// VTKHDF 2.0, type PolyData: docs.vtk.org, "VTKHDF format specification". All snapshots' rows follow each
-// other in each dataset; the group Steps says where those of one snapshot begin. Vertices, one cell per
-// point, or lines, one per two points, of a snapshot are one part; it is shared by the snapshots that follow
-// with the same number of points, and so are the fields that never change of a point, as points only ever
-// leave. Triangles between points that move are one part for all snapshots.
+// VTKHDF 2.0, type PolyData: docs.vtk.org, "VTKHDF format specification". In each dataset the rows of all
+// snapshots follow each other; the group Steps contains the first row of each snapshot. The vertices of a
+// snapshot, one cell per point, or its lines, one per two points, form one part. Following snapshots with the
+// same number of points share the part, together with the constant fields of points, because points are
+// removed but never added. Triangles between moving points are one part for all snapshots.
 //
-// The .xdmf names every snapshot in one text, which ends in closing tags: it is complete only as a whole. It
-// is written beside and renamed, not at each snapshot, but when there are a fifth more than it knows (and at
-// each of the first five), and by finish(): all its writing together is six times its last size at most.
+// The .xdmf lists every snapshot in one text with closing tags at the end, so that it must be written as a
+// whole. It is written under another name and renamed, not at each snapshot but when the number of snapshots
+// has grown by a fifth (and at each of the first five), and by finish(): in total at most six times its final
+// size is written.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +30,8 @@
 
 namespace scree {
 
-// One field of this rank's points or lines, or of the triangles, of one snapshot: values[point][width], width
-// 1, 3, or 9 for a tensor, row by row.
+// One field of this rank's points or lines, or of the triangles, of one snapshot: values[point][width], with
+// width 1, 3, or 9 for a tensor by rows.
 struct PointField {
   std::string name;
   DatasetLabel label;
@@ -43,7 +44,7 @@ inline const Real* components(std::span<const Vec3> values) {
   return reinterpret_cast<const Real*>(values.data());
 }
 
-// Of values that last: a number each, or a vector.
+// A field of scalars or vectors, which must outlive it.
 template <class Values>
 PointField field_of(const char* name, const DatasetLabel& label, const Values& values) {
   if constexpr (std::is_convertible_v<const Values&, std::span<const Vec3>>)
@@ -54,56 +55,57 @@ PointField field_of(const char* name, const DatasetLabel& label, const Values& v
 
 struct PointSnapshot {
   Real time = 0;                   // [s]
-  std::int64_t points = 0;         // of all ranks; may differ from snapshot to snapshot, and be 0
-  RowPart own;                     // of these, this rank's
+  std::int64_t points = 0;         // over all ranks; may change from snapshot to snapshot and be 0
+  RowPart own;                     // this rank's part of the points
   const Real* position = nullptr;  // [own.count][3] [m]
-  // The same names and widths in every snapshot: of the points or, where the series shows lines or triangles,
-  // of these.
+  // Equal names and widths in every snapshot; fields of the points, or of the lines or triangles of the
+  // series.
   std::vector<PointField> fields;
 };
 
-// Where one snapshot lies in the file; all counted in rows.
+// Position of one snapshot in the file; all in rows.
 struct SnapshotPlace {
   Real time = 0;                             // [s]
-  std::int64_t points = 0, first_point = 0;  // in Points and in every field
-  std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; of the vertices or lines
+  std::int64_t points = 0, first_point = 0;  // in Points and in the fields of points
+  std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; among the vertices or lines
   std::int64_t number = 0;                   // of the snapshot, from 0
 };
 
 struct SeriesOptions {
   std::string title;
-  int keep = 0;         // snapshots to keep
+  int keep = 0;         // number of existing snapshots to keep
   int compression = 0;  // of new files, RowStorage::compression
-  Ranks ranks = {};     // that have the points; the constructor and append() are collective
-  // Those of the snapshots to come, where files that are continued are to be looked at for them.
+  Ranks ranks = {};     // the ranks with the points; the constructor and append() are collective
+  // Names of the fields of further snapshots, to be checked against files that are continued.
   std::optional<std::vector<std::string>> fields = {};
-  std::vector<SeriesNames> names = {};            // of a new file; those without entries are left out
-  std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
-  bool lines = false;                             // between each two points; every rank has whole ones
-  std::int64_t likely_points = 0;                 // of a snapshot, where the first one may have few
-  std::int64_t likely_snapshots = 0;              // at the end, which sizes a new file; 0: not known, many
-  std::vector<std::string> constant = {};         // fields of points that never change of a point
+  std::vector<SeriesNames> names = {};            // of a new file; lists without entries are left out
+  std::optional<SeriesTriangles> triangles = {};  // for a series of triangles, which one rank writes
+  bool lines = false;                             // a line between every two points, which are on one rank
+  std::int64_t likely_points = 0;                 // per snapshot, as the first one may have few
+  std::int64_t likely_snapshots = 0;              // expected in total, sizes a new file; 0: not known, many
+  std::vector<std::string> constant = {};         // fields whose value never changes for a point
 };
 
-// Rows of the datasets' chunks in a new file: of what there is once for each snapshot, and of what there is
-// for each of so many points, lines or triangles of every snapshot. Large enough to be written at the disk's
-// speed, small enough not to bloat the file of a small run.
+// Rows per chunk of the datasets in a new file: datasets with one row per snapshot, and datasets with one row
+// per point, line or triangle of every snapshot (`points` of them). The chunks are large enough for the full
+// speed of the disk and small enough for small runs.
 std::int64_t steps_per_chunk(const SeriesOptions& options);
 std::int64_t points_per_chunk(std::int64_t points, const SeriesOptions& options);
 
 class VtkHdfSeries {
  public:
-  // Continues DIRECTORY/NAME.vtkhdf where there is one and keep > 0, cutting off all but its first `keep`
-  // snapshots; otherwise starts anew. Throws IoError where the file has fewer, other fields or triangles.
+  // Continues DIRECTORY/NAME.vtkhdf, if it exists and keep > 0, after removing all but its first `keep`
+  // snapshots; otherwise starts a new file. Throws IoError if the file has fewer snapshots, or other fields
+  // or triangles.
   VtkHdfSeries(const std::string& directory, const std::string& name, const SeriesOptions& options);
 
-  // Adds a snapshot, in parts for series that grow together (TwinFile): all prepare() it, then all show() it,
-  // then rank 0 syncs the folder, then all follow(), which rewrites the .xdmf where it is time to. Throw
-  // IoError; before a show() the files then hold what they held.
+  // Adds a snapshot in parts, for series that grow together (TwinFile): prepare() of all, then show() of all,
+  // then rank 0 syncs the folder, then follow() of all, which also rewrites the .xdmf when due. Throw
+  // IoError; before show() the files are unchanged.
   void prepare(const PointSnapshot& snapshot);
   void show();
   void follow(const PointSnapshot& snapshot);
-  // Brings the .xdmf up to date. Throws IoError.
+  // Updates the .xdmf. Throws IoError.
   void finish();
   int snapshots() const { return static_cast<int>(places_.size()); }
   const std::string& path() const { return file_.path(); }
@@ -113,11 +115,13 @@ class VtkHdfSeries {
   void require_constant_offsets(const Hdf5File& file) const;
   void require_fields() const;
   bool has_cell_fields() const { return options_.triangles || options_.lines; }
-  const SeriesCells& cells() const { return options_.lines ? kLines : kVertices; }  // without triangles
+  const SeriesCells& cells() const {
+    return options_.lines ? kLines : kVertices;
+  }  // for series without triangles
   void require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const;
   const std::string& field_group() const;
   std::string field_offsets() const;
-  // Of a field; own: points.
+  // Rows of a field; own: this rank's points.
   RowPart field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const;
   bool is_constant(const std::string& field) const;
   bool adds_rows(const SnapshotPlace& place, const std::string& field) const;
@@ -139,7 +143,8 @@ class VtkHdfSeries {
   SeriesOptions options_;
   TwinFile file_;
   std::vector<SnapshotPlace> places_;
-  std::string xdmf_grids_;  // of the first xdmf_snapshots_ snapshots, of which the file has xdmf_written_
+  std::string
+      xdmf_grids_;  // grids of the first xdmf_snapshots_ snapshots; the file has xdmf_written_ of them
   std::size_t xdmf_snapshots_ = 0, xdmf_written_ = 0;
 };
 

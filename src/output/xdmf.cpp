@@ -8,7 +8,7 @@ namespace scree {
 
 namespace {
 
-// A dataset's name below /VTKHDF, its width and the type of its values in XDMF's words.
+// A dataset below /VTKHDF, with its width and value type in the terms of XDMF.
 struct XdmfArray {
   std::string dataset;
   int width;
@@ -39,9 +39,9 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// Rows [first, first + count) of a dataset. XDMF 2 readers take the two inner items (the selection, then the
-// data), XDMF 3 readers the outer item's own text, "file:dataset|start:stride:count:shape"; each ignores the
-// other's.
+// Rows [first, first + count) of a dataset. XDMF 2 readers use the two inner items (the selection and the
+// data), XDMF 3 readers the text of the outer item, "file:dataset|start:stride:count:shape"; each ignores the
+// other form.
 std::string slab(const XdmfSeries& series, const XdmfArray& array, std::int64_t first, std::int64_t count) {
   const bool vector = array.width > 1;
   const std::string width = vector ? fmt::format(" {}", array.width) : "";
@@ -87,10 +87,10 @@ std::string triangles(const XdmfSeries& series) {
                      slab(series, {"Polygons/Connectivity", 1, "Int", 8}, 0, 3 * count));
 }
 
-// Whether the fields are those of cells.
+// Whether the fields belong to cells.
 bool of_cells(const XdmfSeries& series) { return series.triangles != nullptr || series.lines; }
 
-// With `count` values from `first` on.
+// A field with `count` values from row `first` on.
 std::string attribute(const XdmfSeries& series, const std::string& name, const XdmfArray& array,
                       std::int64_t first, std::int64_t count) {
   return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
@@ -108,7 +108,7 @@ std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
                            : vertices(series, place);
   text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                       slab(series, {"Points", 3, "Float", 8}, place.first_point, place.points));
-  const std::int64_t points = series.lines ? 2 : 1;  // of a field's row
+  const std::int64_t points = series.lines ? 2 : 1;  // per row of a field
   const std::int64_t count = series.triangles ? series.triangles->count() : place.points / points;
   const std::int64_t first = series.triangles ? place.number * count : place.first_point / points;
   for (const PointField& field : *series.fields) {

@@ -1,5 +1,5 @@
-// XDMF 3 text for readers that do not know VTKHDF (ParaView before 5.13). It refers to the .vtkhdf's
-// datasets.
+// XDMF 3 text for readers without VTKHDF support (ParaView before 5.13); it refers to the datasets of the
+// .vtkhdf.
 #pragma once
 
 #include <span>
@@ -12,16 +12,16 @@ namespace scree {
 
 struct XdmfSeries {
   std::string name;
-  std::string data_file;  // the .vtkhdf's name, in the same directory
+  std::string data_file;  // name of the .vtkhdf in the same folder
   const std::vector<PointField>* fields = nullptr;
-  const SeriesTriangles* triangles = nullptr;  // of a series of triangles: the fields are theirs
-  bool lines = false;                          // of a series of lines, likewise
-  std::span<const std::string> constant = {};  // fields of points that have the rows of the vertices
+  const SeriesTriangles* triangles = nullptr;  // for a series of triangles, to which the fields belong
+  bool lines = false;                          // for a series of lines, to which the fields belong
+  std::span<const std::string> constant = {};  // fields of points with one row per vertex
 };
 
-// One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.
+// <Grid> of one snapshot; empty for a snapshot without points, which these readers cannot open.
 std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place);
-// The whole document around the grids of all snapshots.
+// The complete document around the grids of all snapshots.
 std::string xdmf_document(const std::string& name, const std::string& title, const std::string& grids);
 
 }  // namespace scree

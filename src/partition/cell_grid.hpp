@@ -1,4 +1,4 @@
-// Uniform grid of cells over the space, one layer thick in 2D.
+// Uniform grid of cells over the domain, one layer thick in 2D.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@ struct CellPlace {
   Index x, y, z;
 };
 
-// Cells are numbered x fastest, so that three neighbours in x are contiguous.
+// Cells are numbered with x fastest, so that three neighbours in x are contiguous.
 struct CellGrid {
   Vec3 origin;        // lower corner of cell (0, 0, 0) [m]
   Vec3 inverse_size;  // 1 / edge length per axis [1/m]
   Index cells[3] = {1, 1, 1};
-  bool layer = false;  // 2D: one layer of cells
+  bool layer = false;  // 2D: a single layer of cells
 
   Index count() const { return cells[0] * cells[1] * cells[2]; }
   SCREE_HD Index index(Index x, Index y, Index z) const { return (z * cells[1] + y) * cells[0] + x; }
-  // Coordinates of the cell of a point; x is -1 outside the grid.
+  // Coordinates of the cell of a point; x is -1 for points outside the grid.
   SCREE_HD CellPlace place(Vec3 p) const {
     const Real fx = std::floor((p.x - origin.x) * inverse_size.x);
     const Real fy = std::floor((p.y - origin.y) * inverse_size.y);
@@ -32,12 +32,13 @@ struct CellGrid {
     if (!inside) return {-1, -1, -1};
     return {static_cast<Index>(fx), static_cast<Index>(fy), static_cast<Index>(fz)};
   }
-  // Cell of a point, or -1 outside the grid.
+  // Number of the cell of a point, or -1 outside the grid.
   SCREE_HD Index cell(Vec3 p) const {
     const CellPlace c = place(p);
     return c.x < 0 ? -1 : index(c.x, c.y, c.z);
   }
-  // Of the cell of a point, or the nearest one: points within a cell of each other are in neighbouring cells.
+  // Coordinates of the cell of a point or, outside the grid, of the nearest cell: points within a cell width
+  // of each other are in neighbouring cells.
   SCREE_HD CellPlace nearest_place(Vec3 p) const {
     const auto along = [](Real at, Index count) {
       at = std::floor(at);
@@ -54,12 +55,13 @@ struct CellGrid {
 };
 
 // A grid over [min, max] with a margin of one cell on every side for halo copies and body shapes. Cells are
-// at least min_cell wide [m] and at most max_cells in number: a large, sparse space gets larger cells.
+// at least min_cell wide [m] and at most max_cells in number: a large, sparsely filled domain gets larger
+// cells.
 inline CellGrid make_cell_grid(Vec3 min, Vec3 max, int dimension, Real min_cell, Index max_cells) {
   const Vec3 extent = max - min;
   const auto cells_along = [](Real length, Real size) { return std::max(1.0, std::floor(length / size)); };
   const Real longest = std::max({extent.x, extent.y, extent.z});
-  Real size = min_cell > 0 ? min_cell : longest;  // where nothing has a size, one cell does
+  Real size = min_cell > 0 ? min_cell : longest;  // without any size, one cell for all
   const auto total = [&] {
     return (cells_along(extent.x, size) + 2) * (cells_along(extent.y, size) + 2) *
            (dimension == 3 ? cells_along(extent.z, size) + 2 : 1);

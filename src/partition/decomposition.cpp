@@ -12,7 +12,7 @@
 namespace scree {
 namespace {
 
-// Histograms have one entry per layer of cells; more layers than this make cuts no better.
+// Histograms have one entry per layer of cells; more layers than this do not improve the cuts.
 constexpr Real kMostLayers = 1 << 14;
 
 constexpr Real Vec3::*kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};
@@ -37,7 +37,7 @@ double CellBox::count() const {
   return product;
 }
 
-// Weights per layer of the boxes that are to be cut, along the axis of each cut: one after the other.
+// Weights per layer of the boxes to be cut, along the axis of each cut, box after box.
 struct Decomposition::Histograms {
   std::vector<int> nodes;
   std::vector<std::size_t> first;  // entry of the lowest layer, per node of the tree
@@ -49,13 +49,13 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
     : grid_(grid), boxes_(static_cast<std::size_t>(ranks.size())) {
   if (grid.count() < ranks.size())
     throw InputError(
-        "mpirun -n " + std::to_string(ranks.size()) + ": the space has only " +
+        "mpirun -n " + std::to_string(ranks.size()) + ": the domain has only " +
         std::to_string(static_cast<std::int64_t>(grid.count())) +
-        " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
-        "narrower; start at most so many ranks");
+        " cells as wide as the halo (largest diameter plus skin), and a subdomain must not be narrower; "
+        "start at most so many ranks");
   add({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
   std::vector<std::size_t> node_of(position.size(), 0);
-  for (std::size_t first = 0; first < nodes_.size();) {  // the boxes of one level of the tree after the other
+  for (std::size_t first = 0; first < nodes_.size();) {  // one level of the tree per iteration
     Histograms h = lay_out_histograms(first);
     first = nodes_.size();
     for (std::size_t i = 0; i < position.size(); ++i) {
@@ -75,7 +75,7 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
   }
 }
 
-// Picks the axis of each box's cut, its longest, and makes room for the weights along it.
+// Chooses the axis of each box's cut, its longest one, and allocates the weights along it.
 Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_node) {
   Histograms h;
   h.first.resize(nodes_.size());
@@ -99,13 +99,13 @@ Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_no
   return h;
 }
 
-// Ranks below the cut and the first layer above it: where the weight below comes nearest to its ranks' share,
-// with a cell left for every rank. Without any weight all cells weigh the same.
+// Number of ranks below the cut, and the first layer above it: the cut with the weight below nearest to the
+// share of these ranks, and with at least a cell per rank. Without any weight all cells count equally.
 std::pair<int, Index> Decomposition::cut_of(const Node& node, int axis, const std::int64_t* weight) const {
   const Index layers = node.box.upper[axis] - node.box.lower[axis];
   const double layer_cells = node.box.count() / layers;
   const std::int64_t total = std::accumulate(weight, weight + layers, std::int64_t{0});
-  // Uneven numbers of ranks only where cells are too few for even ones.
+  // Unequal numbers of ranks only if there are too few cells for equal ones.
   for (int ranks_below = node.ranks / 2; ranks_below > 0; --ranks_below) {
     const double share = static_cast<double>(total > 0 ? total : layers) * ranks_below / node.ranks;
     double below = 0, nearest = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Which rank owns which cells: boxes of cells of one global grid, found by recursive bisection.
+// Ownership of cells: boxes of cells of one global grid, found by recursive bisection.
 #pragma once
 
 #include <cmath>
@@ -15,13 +15,13 @@
 
 namespace scree {
 
-// The cells that boxes are made of: a grid over the space, at least one halo wide. Points outside belong to
-// the nearest cell.
+// The grid whose cells form the boxes: it covers the domain, with cells at least as wide as the halo. Points
+// outside belong to the nearest cell.
 struct DomainGrid {
   Vec3 min, edge;  // lower corner, edges of a cell [m]
   Index cells[3] = {1, 1, 1};
 
-  // Coordinate of the cell of p along an axis; a NaN is in cell 0.
+  // Coordinate of the cell of p along an axis; 0 for a NaN.
   SCREE_HD Index cell(int axis, Vec3 p) const {
     const Real at = std::floor((along(axis, p) - along(axis, min)) / along(axis, edge));
     if (!(at > 0)) return 0;
@@ -36,7 +36,7 @@ struct DomainGrid {
   SCREE_HD static Real along(int axis, Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 };
 
-// width: least edge of a cell [m].
+// width: least edge length of a cell [m].
 DomainGrid make_domain_grid(const Space& space, Real width);
 
 // Cells [lower, upper) along each axis.
@@ -46,13 +46,14 @@ struct CellBox {
   bool operator==(const CellBox&) const = default;
 };
 
-using DomainBox = Box;  // of cells; infinite where the space ends and is not periodic
+using DomainBox = Box;  // bounds of a box of cells; infinite at sides of the domain that are not periodic
 
-// The sides of boxes come from a product and a sum: this share more of a width covers their round-off.
+// The sides of boxes result from a product and a sum: widths are enlarged by this share to cover the
+// round-off.
 inline constexpr Real kBoxRoundOff = 1e-9;
 
-// A box of the bisection, as owner_of() walks them: cells below `cut` along `axis` belong to the box `below`,
-// the others to below + 1; axis -1: all of it belongs to a rank.
+// A box of the bisection tree, for owner_of(): cells below `cut` along `axis` belong to the box `below`, the
+// others to the box below + 1. axis -1: the complete box belongs to `rank`.
 struct DomainCut {
   int axis = -1;
   Index cut = 0;
@@ -60,6 +61,7 @@ struct DomainCut {
   int rank = 0;
 };
 
+// The rank that owns the point p. cuts: root of the tree.
 SCREE_HD int owner_of(const DomainGrid& grid, const DomainCut* cuts, Vec3 p) {
   const DomainCut* at = cuts;
   while (at->axis >= 0) at = cuts + at->below + (grid.cell(at->axis, p) >= at->cut);
@@ -69,24 +71,24 @@ SCREE_HD int owner_of(const DomainGrid& grid, const DomainCut* cuts, Vec3 p) {
 class Decomposition {
  public:
   Decomposition() = default;
-  // Cuts the grid into one box per rank so that the boxes' weights are as even as cuts along whole layers of
-  // cells make them. Collective. position, weight: of this rank's particles. Throws InputError where there
-  // are fewer cells than ranks: a subdomain would be narrower than the halo.
+  // Cuts the grid into one box per rank, with weights as equal as cuts along complete layers of cells permit.
+  // position, weight: of this rank's particles. Throws InputError if there are fewer cells than ranks,
+  // because a subdomain would be narrower than the halo. Collective.
   Decomposition(const Ranks& ranks, const DomainGrid& grid, std::span<const Vec4> position,
                 std::span<const std::int64_t> weight);
 
   bool exists() const { return !nodes_.empty(); }
   int owner(Vec3 p) const { return owner_of(grid_, cuts_.data(), p); }
-  // For owner_of(): the first is the whole space.
+  // The tree for owner_of(); its first box is the complete domain.
   const std::vector<DomainCut>& cuts() const { return cuts_; }
-  // Per rank.
+  // One box per rank.
   const std::vector<CellBox>& boxes() const { return boxes_; }
   const DomainGrid& grid() const { return grid_; }
-  // The box of a rank; without a decomposition, the space that a rank alone has.
+  // The box of a rank; without a decomposition the complete domain, which a single rank owns.
   DomainBox box(int rank, const Subdomain& subdomain) const;
 
  private:
-  // Of each box in cuts_: its cells, and the ranks that share it.
+  // For each box in cuts_: its cells, and the ranks that share it.
   struct Node {
     CellBox box;
     int first_rank, ranks;
@@ -103,25 +105,25 @@ class Decomposition {
   std::vector<CellBox> boxes_;  // per rank
 };
 
-// A rank's particles, and what it sends to other ranks.
+// Numbers of a rank's particles, and of its messages to other ranks.
 struct HaloSize {
   std::int64_t owned = 0, ghosts = 0;
-  std::int64_t neighbors = 0;  // ranks that it sends to
+  std::int64_t neighbors = 0;  // ranks to which it sends
   std::int64_t bytes = 0;      // sent per update of positions and velocities [B]
-  // On GPUs, means over the updates that were looked at: what one takes, and what of it rows wait for [s].
+  // On GPUs: mean duration of the sampled updates, and the part of it that contact kernels wait for [s].
   double seconds = 0, exposed_seconds = 0;
 };
 
-// How evenly the work lies on the ranks, and what this one has of it at the last list.
+// Distribution of the work over the ranks, and this rank's part at the last list build.
 struct LoadBalance {
-  Real imbalance = 0;           // largest weight of a rank over the mean, less 1, at the last list
-  Real largest = 0;             // the largest that was met
-  std::int64_t rebalances = 0;  // times that the boxes were changed
+  Real imbalance = 0;           // largest weight of a rank over the mean, less 1, at the last list build
+  Real largest = 0;             // largest imbalance so far
+  std::int64_t rebalances = 0;  // number of changes of the boxes
   std::int64_t migrated = 0;    // particles that changed their rank
   HaloSize halo;                // of this rank
 };
 
-// Largest over mean, less 1; 0 where there is no weight. Collective.
+// Largest weight over the mean, less 1; 0 without any weight. Collective.
 Real measure_imbalance(const Ranks& ranks, std::int64_t weight);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// What messages of this room are counted in.
+// MPI types and counts of the messages of this folder.
 #pragma once
 
 #include <mpi.h>
@@ -11,7 +11,7 @@
 
 namespace scree {
 
-// One type per entry, so that counts count entries: bytes would pass 2^31 sooner.
+// An MPI type for an entry, so that counts are those of entries; counts of bytes would exceed 2^31 sooner.
 class EntryType {
  public:
   explicit EntryType(std::size_t bytes) {
@@ -29,7 +29,7 @@ class EntryType {
   MPI_Datatype type_;
 };
 
-// Throws SimulationError where MPI cannot count so many entries.
+// The count as an int. Throws SimulationError if MPI cannot count so many entries.
 inline int mpi_count(std::size_t count) {
   if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw SimulationError("more entries on one rank than MPI counts");

@@ -1,4 +1,4 @@
-// Halo: copies of the particles near a rank's box, from other ranks and from across periodic sides.
+// Halo: copies of the particles near a rank's box, from other ranks and across periodic sides.
 #pragma once
 
 #include <optional>
@@ -16,17 +16,17 @@
 
 namespace scree {
 
-// One ghost: a copy of an owned item, moved by whole periods. No byte of it is without a value, because a
+// One ghost: a copy of an owned item, shifted by whole periods. It has no uninitialized bytes, because a
 // kernel reads several at once.
 struct Ghost {
   Index source;           // local index of the original
-  std::int8_t image;      // number of the shift among the 27, 13 for none
+  std::int8_t image;      // number of the shift among the 27; 13: no shift
   std::int8_t unused[3];  // 0
-  Vec3 shift;             // ghost position minus original position [m]
+  Vec3 shift;             // ghost position less original position [m]
 };
 static_assert(sizeof(Ghost) == sizeof(Index) + 4 + sizeof(Vec3));
 
-// Refreshes one ghost's copy of a field; ghosts stand at field[first_ghost ...].
+// Copies one field of a ghost from its original; ghosts are at field[first_ghost ...].
 template <class T>
 struct HaloItem {
   const Ghost* ghosts;
@@ -36,10 +36,10 @@ struct HaloItem {
   SCREE_HD void operator()(Index g) const { field[first_ghost + g] = field[ghosts[g].source]; }
 };
 
-// A ghost of the item at p.
+// Position of a ghost whose original is at p.
 SCREE_HD Vec4 moved(const Ghost& ghost, Vec4 p) { return vec4(xyz(p) + ghost.shift, p.w); }
 
-// The same for its position.
+// Copies the position of a ghost from its original, with the shift.
 struct HaloPositionItem {
   const Ghost* ghosts;
   Vec4* position;
@@ -50,35 +50,33 @@ struct HaloPositionItem {
   }
 };
 
-// The images across periodic sides that lie within `width` [m] of the space, for originals at `position`.
+// The images across periodic sides within `width` [m] of the domain, for originals at `position`.
 std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width);
 
-// Where the halo comes from. Ghosts stand behind the owned items: those that are images of this rank's own
-// particles first, then those of each neighbour, a contiguous range per neighbour.
+// The ghosts of a rank, and their updates. Ghosts follow the owned items: first the images of this rank's own
+// particles, then the ghosts from each neighbour, contiguous per neighbour.
 class Halo {
  public:
-  // exchange_halo: finds who is a ghost where, for originals at `position` (the first of the owned items),
-  // and tells the neighbours. decomposition: as HaloPlan needs it. width: reach of the halo past the box [m].
-  // Collective.
+  // exchange_halo: determines the ghosts on all ranks for originals at `position` (the first of the owned
+  // items), and informs the neighbours. decomposition: as for HaloPlan; width: of the halo beyond the box
+  // [m]. Collective.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 std::span<const Vec4> position, Real width);
 
   Index size() const { return static_cast<Index>(images_.size()); }
-  // Entries that one update sends, and the ranks that get some.
+  // Number of entries sent per update, and of ranks that receive some.
   Index sent() const { return static_cast<Index>(sent_.size()); }
   Index receivers() const { return plan_.receivers(); }
-  // Number of the shift, per ghost.
+  // Number of the shift of each ghost.
   const std::vector<std::int8_t>& images() const { return images_; }
-  // This rank's own particles across periodic sides.
+  // Images of this rank's own particles across periodic sides.
   const std::vector<Ghost>& own() const { return own_; }
 
-  // update_halo: refreshes the ghosts' copies of a field of all items; ghosts stand at field[first_ghost
-  // ...].
+  // update_halo: copies a field of the originals to the ghosts, which are at field[first_ghost ...].
   template <class T>
   void update(std::span<T> field, Index first_ghost) const;
-  // The same for positions, which are moved by the ghosts' shifts, velocities, and angular velocities where
-  // particles rotate, in one exchange. All ranks give a spin or none: that of a rank without items is an
-  // empty one.
+  // update_halo for positions, which get the ghosts' shifts, for velocities and, with rotating particles, for
+  // angular velocities, in one exchange. All ranks pass a spin or none; on a rank without items it is empty.
   void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::optional<std::span<Vec4>> spin,
                      Index first_ghost) const;
 
@@ -88,8 +86,8 @@ class Halo {
   HaloPlan plan_;
   std::vector<Ghost> own_, sent_;
   std::vector<std::int8_t> images_;
-  // Packed motion, or another field, in the order of sent_. As large as they must be from
-  // exchange() on: an allocation that fails later leaves the other ranks waiting.
+  // Packed motion, or another field, in the order of sent_. Allocated by exchange(): a later allocation that
+  // failed would leave the other ranks waiting.
   mutable std::vector<Vec4> buffer_[3];
 };
 

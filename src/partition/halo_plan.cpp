@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCountTag = 21, kFieldTag = 22;
 
-// Whether `box`, moved by s periods, comes within the width of `other`.
+// Whether `box`, shifted by whole periods, is within the width of `other`.
 bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real width) {
   const auto along = [&](Real Vec3::*axis) {
     return box.min.*axis + shift.*axis <= other.max.*axis + width &&
@@ -25,11 +25,11 @@ Index countable_ghosts(std::size_t count) { return countable(count, "stage excha
 
 }  // namespace
 
-// Messages under way; all of them are done when it goes. Nothing may throw while it is there: the others
-// would wait for messages that are never sent.
+// Messages in progress; the destructor waits for all of them. Nothing may throw during its lifetime: other
+// ranks would wait for messages that are never sent.
 class HaloPlan::Transfers {
  public:
-  // most: number of messages.
+  // most: largest number of messages.
   Transfers(const Ranks& ranks, std::size_t most) : communicator_(MPI_Comm_f2c(ranks.communicator())) {
     requests_.reserve(most);
   }
@@ -56,7 +56,7 @@ HaloPlan::HaloPlan(const Ranks& ranks, const Decomposition& decomposition, const
   find_targets(decomposition, subdomain);
 }
 
-// Both of two ranks come to the same answer: the lower one's box is moved.
+// Both ranks of a pair reach the same result, because the box of the lower rank is the one that is shifted.
 void HaloPlan::find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width) {
   const int self = ranks_.rank();
   for (int other = 0; other < ranks_.size(); ++other) {

@@ -1,4 +1,4 @@
-// Brings what the ranks know of their particles into the order of the global ids.
+// Orders data of particles on all ranks by global id.
 #pragma once
 
 #include <numeric>
@@ -12,29 +12,29 @@
 
 namespace scree {
 
-// Each rank gets its share of the ids (id_range), in increasing order: the ranks' parts, one after the other,
-// are all particles in the order of their ids. No rank holds more than its share and what it had.
+// Each rank gets its range of the ids (id_range) in increasing order: the ranks' parts, one after the other,
+// are all particles in the order of their ids. No rank holds more than its range and its original data.
 class IdOrder {
  public:
-  // count: ids are below it, the same on every rank; ids: of this rank's particles, any order, no id twice on
-  // all ranks. Collective.
+  // count: all ids are below it, equal on every rank; ids: of this rank's particles in any order, each id
+  // once over all ranks. Collective.
   IdOrder(const Ranks& ranks, std::int64_t count, std::span<const GlobalId> ids);
 
-  // One value per particle, in the order of the ids that the constructor got; returned in the order of the
-  // ids that this rank writes. Collective.
+  // values: one per particle, in the order of the constructor's ids. Returns those of this rank's range of
+  // ids, in their order. Collective.
   template <class T>
   std::vector<T> apply(std::vector<T> values) const {
     values = permuted(std::move(values), sent_);
     if (!ranks_.alone()) values = ranks_.deal_out(std::span<const T>(values), counts_);
     return permuted(std::move(values), arrived_);
   }
-  // The same for rows of values, one row per particle: the i-th has lengths[i]. Collective.
+  // As above for rows of values: the i-th particle has lengths[i] of them. Collective.
   template <class T>
   std::vector<T> apply(std::vector<T> values, std::vector<std::int64_t> lengths) const {
     values = permuted_rows(std::move(values), lengths, sent_);
     if (!ranks_.alone()) {
       lengths = permuted(std::move(lengths), sent_);
-      std::vector<std::int64_t> sums;  // per rank that gets them
+      std::vector<std::int64_t> sums;  // per receiving rank
       auto length = lengths.begin();
       for (const std::int64_t rows : counts_) {
         sums.push_back(std::accumulate(length, length + rows, std::int64_t{0}));
@@ -47,7 +47,7 @@ class IdOrder {
   }
 
  private:
-  // values[i] becomes values[order[i]]; an empty order leaves all where it is.
+  // The values at the indices `order`; an empty order leaves them unchanged.
   template <class T>
   static std::vector<T> permuted(std::vector<T> values, const std::vector<std::size_t>& order) {
     if (order.empty()) return values;
@@ -69,8 +69,8 @@ class IdOrder {
   }
 
   Ranks ranks_;
-  std::vector<std::size_t> sent_, arrived_;  // orders that sort by id; empty where that is so already
-  std::vector<std::int64_t> counts_;         // per rank that gets them
+  std::vector<std::size_t> sent_, arrived_;  // orders that sort by id; empty if already sorted
+  std::vector<std::int64_t> counts_;         // per receiving rank
 };
 
 }  // namespace scree

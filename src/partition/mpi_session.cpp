@@ -31,7 +31,7 @@ bool runs() {
   return started != 0 && ended == 0;
 }
 
-// The system's reason why nothing can be made in the folder of temporary files; empty where something can.
+// The system's reason why no file can be created in the folder for temporary files; empty if one can.
 std::string temporary_trouble(const std::string& folder) {
   std::string path = folder + "/scree_XXXXXX";
   if (mkdtemp(path.data()) == nullptr) return std::strerror(errno);
@@ -39,22 +39,21 @@ std::string temporary_trouble(const std::string& folder) {
   return "";
 }
 
-// Where the library is about to end the process because it cannot start.
+// Prints a remedy before the library ends the process because it cannot start.
 void say_what_helps() {
   if (!std::exchange(starting, false)) return;
   const std::string named = environment("TMPDIR"), folder = named.empty() ? "/tmp" : named,
                     trouble = temporary_trouble(folder);
-  const std::string advice =
-      !trouble.empty()
-          ? fmt::format(
-                "it needs a folder for temporary files, and cannot write into {}{}: {}; name another one "
-                "with TMPDIR=",
-                folder, named.empty() ? "" : ", which TMPDIR names", trouble)
-          : "under srun, --mpi= must name what this library was built with (srun --mpi=list); where it asks "
-            "for "
-            "ssh or rsh and there is none, as in a container, OMPI_MCA_plm_rsh_agent= (empty) does without";
+  const std::string advice = !trouble.empty()
+                                 ? fmt::format(
+                                       "MPI needs a folder for temporary files, but cannot write into {}{}: "
+                                       "{}; name another folder with TMPDIR=",
+                                       folder, named.empty() ? "" : ", which TMPDIR names", trouble)
+                                 : "under srun, --mpi= must name the interface this library was built with "
+                                   "(srun --mpi=list); if the library asks for ssh or rsh and there is none, "
+                                   "as in a container, set OMPI_MCA_plm_rsh_agent= (empty)";
   const std::string line =
-      message_line("error", "MPI cannot be started, and says why above. What helps: " + advice);
+      message_line("error", "MPI cannot start, for the reason given above. Remedy: " + advice);
   std::fputs(line.c_str(), stderr);
   std::fflush(nullptr);
   syscall(SYS_exit_group, static_cast<int>(ExitCode::simulation_failed));
@@ -63,8 +62,8 @@ void say_what_helps() {
 }  // namespace
 }  // namespace scree
 
-// Open MPI's way out of MPI_Init() is this function of the C library, behind which no handler of exit() is
-// called. It gives no other way to say something last.
+// When MPI_Init() fails, Open MPI ends the process through this function of the C library, which calls no
+// handlers of exit(). There is no other way to print a last message.
 extern "C" void _exit(int code) {
   scree::say_what_helps();
   for (;;) syscall(SYS_exit_group, code);
@@ -73,13 +72,13 @@ extern "C" void _exit(int code) {
 namespace scree {
 
 bool launched_with_others() {
-  // Of Open MPI; of PMI, which MPICH, Intel MPI and Cray's launchers speak; of MVAPICH; of a step of Slurm;
-  // of Flux and of IBM's launcher. A batch script has no step of its own.
+  // The variables of Open MPI; of PMI, used by MPICH, Intel MPI and Cray's launchers; of MVAPICH; of a step
+  // of Slurm; of Flux; and of IBM's launcher. A batch script itself has no Slurm step.
   for (const char* const ranks :
        {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS",
         "FLUX_JOB_SIZE", "JSM_NAMESPACE_SIZE"})
     if (std::atoi(environment(ranks).c_str()) > 1) return true;
-  // A launcher by PMIx may tell the rank alone.
+  // Launchers that use PMIx may set the rank alone.
   const bool sized =
       !environment("OMPI_COMM_WORLD_SIZE").empty() || !environment("SLURM_STEP_NUM_TASKS").empty();
   return !sized && !environment("PMIX_RANK").empty();
@@ -87,8 +86,8 @@ bool launched_with_others() {
 
 void start_mpi() {
   if (runs()) return;
-  // Open MPI gives a process that was started alone a daemon, which it would need to start others, and for
-  // which it asks for ssh.
+  // To a process started without a launcher Open MPI adds a daemon, which could start other processes, and
+  // which requires ssh.
   if (!launched_with_others()) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   static const int registered = std::atexit(say_what_helps);
   starting = registered == 0;

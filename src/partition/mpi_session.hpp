@@ -1,17 +1,17 @@
-// Starting and ending MPI. A process that nobody else was started with needs none for what a login node or a
-// container is asked for: the version, the keys, the status of a run, the check of a deck.
+// Start and end of MPI. A single process needs no MPI for commands that login nodes and containers run:
+// version, keys, status of a run, check of a deck.
 #pragma once
 
 namespace scree {
 
-// Whether mpirun, srun or another launcher has started this process as one of several ranks, as its
-// environment says: MPI itself tells only once it runs.
+// Whether a launcher (mpirun, srun, ...) has started this process as one of several ranks, according to its
+// environment: MPI itself tells only after its start.
 bool launched_with_others();
 
-// Starts MPI, where it does not run yet. Where the library cannot start, it ends the process after words of
-// its own; then a line says what helps, and the exit code is that of a failed simulation.
+// Starts MPI if it is not running. If the library cannot start, it prints its own messages and ends the
+// process; a line with a remedy follows, and the exit code is that of a failed simulation.
 void start_mpi();
-// Ends MPI where it runs.
+// Ends MPI if it is running.
 void end_mpi();
 
 }  // namespace scree

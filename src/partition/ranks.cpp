@@ -27,7 +27,7 @@ namespace {
 
 MPI_Comm communicator_of(int handle) { return MPI_Comm_f2c(handle); }
 
-// Bits of a number >= 0: they order as the numbers do, and a NaN comes after all of them.
+// Bits of a number >= 0: they have the same order as the numbers, and a NaN is larger than all of them.
 std::int64_t ordered_bits(Real value) {
   return std::bit_cast<std::int64_t>(std::isnan(value) ? std::numeric_limits<Real>::quiet_NaN()
                                                        : std::abs(value));
@@ -41,17 +41,17 @@ std::vector<int> offsets_of(const std::vector<int>& counts) {
   return offsets;
 }
 
-// Calls visit(first, count) for the pieces of [0, count) that one MPI call can take.
+// Calls visit(first, count) for pieces of [0, count) that one MPI call can handle.
 template <class Visit>
 void in_pieces(std::size_t count, std::size_t most, const Visit& visit) {
   for (std::size_t first = 0; first < count; first += most) visit(first, std::min(most, count - first));
 }
 
 constexpr int kDealTag = 11, kGatherTag = 12;
-// Of a collective, and of one message [B]: MPI libraries lose larger ones now and then.
+// Limits of a collective and of a single message [B]: MPI libraries occasionally lose larger ones.
 constexpr std::size_t kMostEntries = std::size_t{1} << 28, kMostBytes = std::size_t{1} << 30;
 
-// Kinds of failure that rank 0 shares.
+// Kinds of errors that ranks share.
 enum Failure { kNone, kInput, kSimulation, kDevice, kFile, kMemory };
 
 struct Caught {
@@ -175,10 +175,10 @@ void Ranks::sum(std::span<std::int64_t> values) const {
 std::int64_t Ranks::sum_below(std::int64_t value) const {
   std::int64_t below = 0;
   if (!alone()) MPI_Exscan(&value, &below, 1, MPI_INT64_T, MPI_SUM, communicator_of(communicator_));
-  return is_root() ? 0 : below;  // rank 0's is not defined
+  return is_root() ? 0 : below;  // the value of rank 0 is undefined
 }
 
-// In limbs of 32 bits each, which add up without overflow over 2^31 ranks.
+// Sums limbs of 32 bits each, which do not overflow for up to 2^31 ranks.
 void Ranks::sum(std::span<__int128> values) const {
   if (alone()) return;
   constexpr int kLimbs = 4;
@@ -217,7 +217,7 @@ void Ranks::share_failure(std::exception_ptr failure, int from) const {
 
 namespace {
 
-// Waits until a collective that this rank has begun is done, but no longer than that.
+// Waits until a collective begun by this rank is complete, but at most for the given time.
 bool done_within(MPI_Request& request, std::chrono::seconds patience) {
   const auto start = std::chrono::steady_clock::now();
   for (int done = 0;;) {
@@ -225,7 +225,7 @@ bool done_within(MPI_Request& request, std::chrono::seconds patience) {
     if (done) return true;
     const auto waited = std::chrono::steady_clock::now() - start;
     if (waited > patience) return false;
-    // Where all come, which is the rule, they come at once.
+    // Usually all ranks arrive at the same time.
     if (waited < std::chrono::milliseconds(20))
       std::this_thread::yield();
     else
@@ -236,7 +236,7 @@ bool done_within(MPI_Request& request, std::chrono::seconds patience) {
 }  // namespace
 
 void Ranks::share_any_failure(std::exception_ptr failure) const {
-  constexpr auto kPatience = std::chrono::seconds(20);  // others may be writing large files
+  constexpr auto kPatience = std::chrono::seconds(20);  // other ranks may be writing large files
   const int own = failure ? rank_ : size_;
   int first = size_;
   MPI_Request request;
@@ -261,7 +261,7 @@ void Ranks::end_job(const char* message, int exit_code) const {
   std::fputs(message_line("error: rank " + std::to_string(rank_), message).c_str(), stderr);
   std::fflush(nullptr);
   MPI_Abort(communicator_of(communicator_), exit_code);
-  std::abort();  // not reached
+  std::abort();  // unreachable
 }
 
 std::vector<int> Ranks::counts_of(std::size_t own) const {
@@ -308,7 +308,7 @@ void Ranks::hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int
       send_to_root(piece.data(), piece.size(), 1);
     }
   }
-  std::exception_ptr failure;  // the others' pieces are received all the same: they could not go on
+  std::exception_ptr failure;  // the remaining pieces are received nevertheless, because their senders wait
   const auto taken = [&](int rank, std::int64_t k, Bytes piece) {
     try {
       if (!failure) take(rank, k, piece);
@@ -335,7 +335,7 @@ std::vector<std::int64_t> Ranks::deal_counts(const std::vector<std::int64_t>& se
   return received;
 }
 
-// The pieces of a long message arrive in the order in which they were sent.
+// The pieces of a long message arrive in the order of their sending.
 void Ranks::deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
                        const std::vector<std::int64_t>& received_counts, std::size_t element) const {
   const EntryType type(element);

@@ -1,5 +1,5 @@
-// The ranks of a run, and the exact collectives that decisions and sums need. What a collective returns is
-// the same on every rank and for every number of ranks. One rank alone makes no MPI call.
+// The ranks of a run, and exact collectives for decisions and sums. The result of a collective is the same on
+// every rank and for every number of ranks. A single rank makes no MPI calls.
 #pragma once
 
 #include <cstddef>
@@ -19,36 +19,36 @@ namespace scree {
 
 class Ranks {
  public:
-  Ranks() = default;  // one rank alone
-  // All ranks of the job; one alone where MPI has not been started.
+  Ranks() = default;  // a single rank
+  // All ranks of the job; a single rank if MPI has not been started.
   static Ranks world();
 
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool is_root() const { return rank_ == 0; }
   bool alone() const { return size_ == 1; }
-  // Number of this rank among those of its host. Collective.
+  // Number of this rank among the ranks of its host. Collective.
   int local_rank() const;
-  // Sum over the ranks of this rank's host, rounded. Collective.
+  // Sum over the ranks of this rank's host, with round-off. Collective.
   Real sum_on_host(Real value) const;
-  // Whether the MPI library says that it reads and writes device memory.
+  // Whether the MPI library reports that it can read and write device memory.
   static bool mpi_takes_device_memory();
-  int communicator() const { return communicator_; }  // Fortran handle; for the other parts of this room
+  int communicator() const { return communicator_; }  // Fortran handle; for the other files of this folder
 
-  // Largest of values >= 0; a NaN on one rank makes the result a NaN.
+  // Largest of values >= 0; a NaN on one rank makes the result a NaN. Collective, as are all functions below.
   Real max(Real value) const;
   void max(std::span<Real> values) const;
   bool any(bool value) const;
-  // Smallest of the ranks' values.
+  // Smallest value of all ranks.
   std::int64_t min(std::int64_t value) const;
-  // Exact sums; those of 128 bits modulo 2^128.
+  // Exact sums; sums of 128 bits are modulo 2^128.
   std::int64_t sum(std::int64_t value) const;
   void sum(std::span<std::int64_t> values) const;
   void sum(std::span<__int128> values) const;
-  // Sum of the values of the ranks below this one.
+  // Sum over the ranks below this one.
   std::int64_t sum_below(std::int64_t value) const;
 
-  // Rank 0's value on every rank.
+  // Sets the value to rank 0's on every rank.
   template <class T>
   void broadcast(T& value) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -59,30 +59,30 @@ class Ranks {
     static_assert(std::is_trivially_copyable_v<T>);
     if (!alone()) broadcast_bytes(values.data(), values.size_bytes());
   }
-  // All ranks' entries in the order of the ranks: on rank 0, nothing elsewhere. One message per rank. Throws
-  // std::length_error where a rank has more entries than an int counts, as gather_everywhere does where all
-  // have.
+  // Entries of all ranks in the order of the ranks, on rank 0; other ranks get none. One message per rank.
+  // Throws std::length_error if a rank has more entries than an int can count; gather_everywhere() does so if
+  // all ranks together have.
   template <class T>
   std::vector<T> gather(std::vector<T> values) const;
-  // The same on every rank.
+  // Entries of all ranks in the order of the ranks, on every rank.
   template <class T>
   std::vector<T> gather_everywhere(std::vector<T> values) const;
-  // Sends to[r] to rank r; what arrives comes in the order of the senders.
+  // All-to-all: sends to[r] to rank r, and returns the received entries in the order of the senders.
   template <class T>
   std::vector<T> deal_out(const std::vector<std::vector<T>>& to) const;
-  // The same for values that stand in the order of their receivers, counts[r] of them for rank r.
+  // All-to-all for values in the order of their receivers, counts[r] of them for rank r.
   template <class T>
   std::vector<T> deal_out(std::span<const T> values, const std::vector<std::int64_t>& counts) const;
 
-  // Hands pieces of bytes of all ranks to rank 0, one after the other, rank by rank: give(k) returns this
-  // rank's piece k, take(rank, k, piece) runs on rank 0, which holds one piece at a time. A piece must be
-  // short of 2 GiB. What `take` throws, every rank throws. Collective.
+  // Passes pieces of bytes of all ranks to rank 0 one by one, in the order of the ranks: give(k) returns this
+  // rank's piece k, and take(rank, k, piece) runs on rank 0, which holds a single piece at a time. A piece
+  // must be smaller than 2 GiB. Exceptions of `take` are thrown on every rank.
   using Bytes = std::span<const std::byte>;
   void hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
                     const std::function<void(int, std::int64_t, Bytes)>& take) const;
 
-  // Runs an action of rank 0 that may throw. What it throws (bad input, simulation, device, file), every rank
-  // throws, with the same message.
+  // Runs an action on rank 0. Its exceptions (input, simulation, device, file) are thrown on every rank, with
+  // the same message.
   template <class Action>
   void on_root(const Action& action) const {
     if (alone()) return action();
@@ -95,9 +95,9 @@ class Ranks {
     share_failure(failure);
   }
 
-  // Runs an action that every rank takes part in, and that may throw on some of them. Where it does, all
-  // ranks throw what the lowest of those threw. Where one threw and others do not return, because they wait
-  // for it within the action, its message is printed and the job ends.
+  // Collective try: runs an action on every rank. If it throws on some ranks, all ranks throw the exception
+  // of the lowest of those. If other ranks do not return, because they wait for the failed one within the
+  // action, its message is printed and the job ends.
   template <class Action>
   void together(const Action& action) const {
     if (alone()) return action();
@@ -110,8 +110,8 @@ class Ranks {
     share_any_failure(failure);
   }
 
-  // To be called by every rank on its way out with an error that all ranks should have. Where some do not
-  // come, the error is this rank's alone: its message is printed and the job ends with the exit code.
+  // Error barrier: called by every rank that ends with an error, before it exits. If some ranks do not call
+  // it, the error belongs to this rank alone: its message is printed, and the job ends with the exit code.
   void meet(const char* message, int exit_code) const;
 
  private:
@@ -119,9 +119,10 @@ class Ranks {
   void share_failure(std::exception_ptr failure, int from = 0) const;
   void share_any_failure(std::exception_ptr failure) const;
   [[noreturn]] void end_job(const char* message, int exit_code) const;
-  // element: size of one entry [B].
+  // element: size of an entry [B].
   void send_to_root(const void* data, std::size_t count, std::size_t element) const;
-  std::size_t arriving(int sender, std::size_t element) const;  // entries in its next message
+  std::size_t arriving(int sender,
+                       std::size_t element) const;  // number of entries in the sender's next message
   void receive(int sender, void* data, std::size_t count, std::size_t element) const;
   std::vector<int> counts_of(std::size_t own) const;
   void gather_bytes(const void* own, const std::vector<int>& counts, std::size_t element, void* all) const;

@@ -7,7 +7,8 @@
 namespace scree {
 namespace {
 
-// Which ranks get an item: the one whose box it is in, and those whose boxes an image of it is near.
+// The ranks that receive an item: the owner of its position, and ranks whose boxes are near one of its
+// images.
 class Receivers {
  public:
   Receivers(const Decomposition& decomposition, const Space& space, Real reach)
@@ -16,12 +17,12 @@ class Receivers {
       boxes_.push_back(decomposition.box(static_cast<int>(r), Subdomain(space)));
   }
 
-  // Calls visit(rank) once for each, first for the one whose box it is in.
+  // Calls visit(rank) once per receiving rank, for the owner first.
   template <class Visit>
   void for_each_of(Vec3 p, const Visit& visit) const {
     const int owner = decomposition_.owner(p);
     visit(owner);
-    // Far inside its box: periodic boxes end where the space does.
+    // Far inside the owner's box; boxes end at the periodic sides of the domain.
     if (boxes_[static_cast<std::size_t>(owner)].inside(p, reach_)) return;
     for (int r = 0; r < static_cast<int>(boxes_.size()); ++r)
       if (r != owner && any_image_near(boxes_[static_cast<std::size_t>(r)], p)) visit(r);
@@ -64,7 +65,7 @@ std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, c
     next[r] = next[r - 1] + static_cast<std::size_t>(counts[r - 1]);
   std::vector<StartItem> sent(next.back() + static_cast<std::size_t>(counts.back()));
   for (StartItem item : own) {
-    item.is_own = true;  // of the first that gets it
+    item.is_own = true;  // true for the first receiver
     receivers.for_each_of(item.position, [&](int r) {
       sent[next[static_cast<std::size_t>(r)]++] = item;
       item.is_own = false;

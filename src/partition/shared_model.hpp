@@ -1,4 +1,4 @@
-// The ranks of a run as builders of one model.
+// The ranks of a run, sharing the construction of one model.
 #pragma once
 
 #include "model/data/share.hpp"
@@ -19,8 +19,8 @@ class RanksShare : public Share {
   std::vector<StartItem> everywhere(std::vector<StartItem> own) const override {
     return ranks_.gather_everywhere(std::move(own));
   }
-  // By boxes of about equally many items, as for a run. Throws InputError where the space is too small to be
-  // cut into as many.
+  // Distributes the items over boxes with nearly equal numbers of items, as in a run. Throws InputError if
+  // the domain is too small for so many boxes.
   std::vector<StartItem> near_each_other(std::vector<StartItem> own, const Space& space,
                                          Real reach) const override;
 

@@ -8,7 +8,7 @@
 namespace scree {
 namespace {
 
-// Twice the largest coordinate of the axis, halo included, fits into 2^52 quanta.
+// Such that twice the largest coordinate of the axis, including the halo, is less than 2^52 quanta.
 Real rounding_constant(Real min, Real max) {
   int exponent = 0;
   std::frexp(4 * std::max(std::abs(min), std::abs(max)), &exponent);

@@ -33,8 +33,8 @@ class EarlySignalTest(CommandLineTest):
                     deck.write(DECK + '[integrator]\nparticles = "hht"\n')  # nothing is chosen, and told
                 text, _ = run.communicate(timeout=LIMIT)
                 self.assertEqual(run.returncode, STOPPED, text)
-                self.assertEqual(text, f"stopped by signal ({signal.strsignal(number)}) before the first step: "
-                                       "there is no new checkpoint\n")
+                self.assertEqual(text, f"stopped by signal ({signal.strsignal(number)}) before the first step, "
+                                       "without a new checkpoint\n")
                 self.assertFalse((self.folder / "out").exists())
 
 

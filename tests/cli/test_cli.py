@@ -164,7 +164,7 @@ class UsageTest(CommandLineTest):
     def test_help_lists_commands_and_exit_codes(self):
         text = self.expect(DONE, "--help").stdout
         for word in ("run", "check", "new", "keys", "status", "--version", "Exit codes", "0 done", "2 bad usage",
-                     "3 the simulation", "4 a file", "5 stopped by a signal", "-mbs_ksp_view"):
+                     "3 simulation failed", "4 file could", "5 stopped by a signal", "-mbs_ksp_view"):
             self.assertIn(word, text)
         text = self.expect(DONE, "run", "--help").stdout
         for word in ("--set", "--output", "--backend", "--restart", "auto", "cpu", "cuda", "Exit codes",
@@ -195,7 +195,7 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
-                     'a particle that leaves: "drift"', "\nsnapshots      2 of about ",
+                     'particles that leave: "drift"', "\nsnapshots      2 of about ",
                      "particles      6", "\nhistory        4001 rows of 48 columns, about ", "\ndisk           about ",
                      "\ncheckpoints    one at the end, about ", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
@@ -209,7 +209,7 @@ class UsageTest(CommandLineTest):
         bare = DECK.replace("shapes = [{ radius = 0.1 }]\n", "") + wall
         deck = self.write("bare.toml", bare.replace("mass = 1.0\nvelocity", "density = 100.0\nvelocity"))
         text = self.expect(DONE, "check", deck).stdout
-        self.assertIn("1 body has no shapes: it passes through walls and touches nothing\n", text)
+        self.assertIn("1 body has no shapes: it passes through walls and has no contacts\n", text)
         self.assertIn("thickness      1 m, of discs whose mass follows from a density; assumed: 1 m", text)
         nothing = self.write("nothing.toml", DECK[:DECK.index("[[contact")])
         result = self.expect(DONE, "check", nothing)
@@ -267,7 +267,7 @@ class RunTest(CommandLineTest):
         explicit = ["time.step=5e-4", "contact.pairs.0.damping=100.0", "integrator.particles=velocity-verlet"]
         for name, settings, advice in (("fine", [], None),
                                        ("coarse", ["time.step=4e-3"], "time.control = \"adaptive\""),
-                                       ("explicit", explicit, ": shorten time.step, in which impacts are off by")):
+                                       ("explicit", explicit, ": shorten time.step: in these steps the energy of impacts is off by")):
             with self.subTest(name):
                 words = [word for setting in settings for word in ("--set", setting)]
                 result = self.expect(DONE, "run", deck, "--output", self.folder / name, *words)

@@ -137,14 +137,14 @@ class WithoutMpi(CommandLineTest):
 
     def test_where_mpi_cannot_start_a_line_says_what_helps(self):
         for more, words in (({"TMPDIR": "/proc"}, "cannot write into /proc, which TMPDIR names: "),
-                            ({"OMPI_MCA_ess_singleton_isolated": "0"}, "OMPI_MCA_plm_rsh_agent= (empty) does without")):
+                            ({"OMPI_MCA_ess_singleton_isolated": "0"}, "set OMPI_MCA_plm_rsh_agent= (empty)")):
             with self.subTest(more=more):
                 environment = {"PATH": str(self.folder), **more}
                 result = subprocess.run([SCREE, "run", self.deck, "--output", "out"], cwd=self.folder, env=environment,
                                         capture_output=True, text=True, timeout=LIMIT)
                 last = result.stderr.splitlines()[-1]
                 self.assertEqual(result.returncode, FAILED, result.stderr)
-                self.assertTrue(last.startswith("error: MPI cannot be started, and says why above. What helps: "), last)
+                self.assertTrue(last.startswith("error: MPI cannot start, for the reason given above. Remedy: "), last)
                 self.assertIn(words, last)
                 self.assertEqual(result.stderr.count("error: MPI"), 1)
                 self.assertFalse((self.folder / "out").exists())
@@ -155,13 +155,13 @@ class AnotherProcessor(CommandLineTest):
         result = subprocess.run([os.environ["OTHER_PROCESSOR"]], capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual((result.returncode, result.stdout), (BAD_INPUT, ""))
         self.assertRegex(result.stderr, "^error: this program was built for a processor with THIS, THAT, VECTORS "
-                                        "and 1 more, none of which this one has: .* SCREE_NATIVE=OFF for every "
-                                        "processor\n$")
+                                        "and 1 more, all of which this processor lacks: .* for every processor with "
+                                        "-D SCREE_NATIVE=OFF\n$")
 
     def test_the_version_names_the_instructions(self):
         text = self.expect(DONE, "--version").stdout
         native = "-march=native" in text
-        self.assertRegex(text, r"\nfor processors with [A-Z]" if native else r"\nfor every processor of this kind\n")
+        self.assertRegex(text, r"\nfor processors with [A-Z]" if native else r"\nfor every processor of this architecture\n")
 
 
 if __name__ == "__main__":

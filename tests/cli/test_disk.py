@@ -125,9 +125,9 @@ class DiskTest(CommandLineTest):
             words = [word for setting in settings for word in ("--set", setting)]
             with self.subTest(settings=settings):
                 result = self.expect(DONE, "check", self.deck, *words, "--set", "output.history_bodies=[]")
-                warning = re.search(r"warning: (the results take about \S+ TB of disk .*)\n", result.stderr)[1]
+                warning = re.search(r"warning: (the results need about \S+ TB of disk space .*)\n", result.stderr)[1]
                 self.assertIn("are free in results/deck: snapshots ", warning)
-                self.assertIn(f"what helps: {remedy}", warning)
+                self.assertIn(f"remedy: {remedy}", warning)
         self.assertNotIn("of disk", self.expect(DONE, "check", self.deck).stderr)
         self.assertIn("disk           about ", self.expect(DONE, "check", self.deck).stdout)
 

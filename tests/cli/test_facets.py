@@ -101,14 +101,14 @@ class FacetsTest(CommandLineTest):
             for segments in (8, 12, 48):
                 with self.subTest(radius=radius, segments=segments):
                     report, _ = self.check(DECK % f"{shape}\nsegments = {segments}")
-                    said = float(re.search(r"facets up to (\S+) m beside the true surface", report)[1])
+                    said = float(re.search(r"facets deviate by up to (\S+) m from the true surface", report)[1])
                     self.assertAlmostEqual(said / (radius * (1 - math.cos(math.pi / segments))), 1, delta=within)
 
     def test_of_files_the_report_says_what_it_cannot_know(self):
         self.write("boxes.stl", boxes((0, 0, 0)))
         report, _ = self.check(DECK % 'kind = "file"\nfile = "boxes.stl"')
-        self.assertIn("no curve found from the angles between facets; edges of 30 degrees or more are taken for true "
-                      "edges", report)
+        self.assertIn("no curve found from the angles between facets; edges of 30 degrees or more count as "
+                      "sharp", report)
 
     def test_segments_left_out_are_in_the_report_and_in_the_resolved_deck(self):
         for radius, segments in (("0.005", 32), ("0.02", 16), ("0.001", 68)):
@@ -125,7 +125,7 @@ class FacetsTest(CommandLineTest):
 
     def test_what_a_mesh_costs(self):
         report, warnings = self.check(DECK % f"{SCREW}\nsegments = 96")
-        self.assertRegex(report, r"a particle of 0\.005 m is \S+ triangles wide; where it touches, about \d+ are near")
+        self.assertRegex(report, r"a particle of 0\.005 m is \S+ triangles wide; about \d+ are near a contact")
         self.assertRegex(warnings,
                          r'mesh "m": its triangles are small beside the particles: .* costs time: segments = 32')
         self.assertRegex(report, r"device memory .*; \S+ [kM]B of it meshes\)")

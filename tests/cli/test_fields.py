@@ -51,7 +51,7 @@ class FieldsTest(CommandLineTest):
         fields = fields_setting("orientation", "mass", "angular_velocity")
         warning = self.expect(DONE, "check", self.deck, *fields).stderr
         self.assertIn("output.fields: angular_velocity, orientation will be the same in all snapshots: no particle "
-                      "rotates, as no pair in contact.pairs has friction", warning)
+                      "rotates because no pair in contact.pairs has friction", warning)
         rubs = ("--set", "contact.pairs.0.friction=0.3")
         self.assertNotIn("output.fields", self.expect(DONE, "check", self.deck, *fields, *rubs).stderr)
 

@@ -119,7 +119,7 @@ class FrictionTest(CommandLineTest):
         for text, memory in ((SMOOTH, 960), (RUBBING, 2032), (rolling, 2936)):
             with self.subTest(memory=memory):
                 report = self.expect(DONE, "check", self.write("counted.toml", text)).stdout
-                remembers = r"; \S+ kB where particles lie densely" if text != SMOOTH else ""
+                remembers = r"; \S+ kB if particles are densely packed" if text != SMOOTH else ""
                 self.assertRegex(report, rf"\ncheckpoints    one at the end, about \S+ kB each{remembers}\n")
                 self.assertIn(f"(estimate: {memory} B per particle", report)
 

@@ -85,7 +85,7 @@ class FunnelTest(CommandLineTest):
 
     def test_a_funnel(self):
         self.use(ROUND)
-        self.assertIn("a sheet", self.expect(DONE, "check", self.deck).stdout)
+        self.assertIn("an open surface", self.expect(DONE, "check", self.deck).stdout)
         self.check_that_grains_run_out(lambda place: np.hypot(place[:, 0], place[:, 1]))
 
     def test_a_hopper(self):

@@ -72,7 +72,7 @@ GIVEN = "".join(
     for one, other, restitution, friction in (
         ("rubber", "glass", (0.9 * 0.5)**0.5, (0.2 * 0.8)**0.5), ("glass", "floor", (0.9 * 0.6)**0.5, (0.2 * 0.5)**0.5),
         ("floor", "rubber", (0.5 * 0.6)**0.5, (0.8 * 0.5)**0.5)))
-OF_MIXING = "               made by contact.mixing: "
+OF_MIXING = "               from contact.mixing: "
 
 
 class MaterialsTest(CommandLineTest):

@@ -72,16 +72,16 @@ class BadFileTest(MeshTest):
     def test_a_pointer_that_git_lfs_has_left_is_named_as_one(self):
         pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'4d' * 32}\nsize 51284\n"
         for launcher in ((), TWO_RANKS):
-            self.assertIn('rock.stl is a pointer of Git LFS, not the file itself, which "git lfs pull" fetches',
+            self.assertIn('rock.stl is a Git LFS pointer in place of the file; "git lfs pull" fetches the file',
                           self.of_file(pointer, launcher=launcher))
         self.write("rock.stl", stl(FACES))
         self.write("grains.h5", pointer)
         settings = "particles=[{kind=\"file\",file=\"grains.h5\",radius=0.05,mass=1.0}]"
-        self.assertIn("grains.h5 is a pointer of Git LFS", self.refusal("--set", settings))
+        self.assertIn("grains.h5 is a Git LFS pointer", self.refusal("--set", settings))
         result = self.expect(IO_FAILED, "run", self.deck, "--restart", "grains.h5", "--output", "out")
-        self.assertIn("grains.h5: is a pointer of Git LFS", result.stderr)
+        self.assertIn("grains.h5: is a Git LFS pointer", result.stderr)
         result = self.expect(IO_FAILED, "check", self.write("pointer.toml", pointer))
-        self.assertIn("pointer.toml: is a pointer of Git LFS", result.stderr)
+        self.assertIn("pointer.toml: is a Git LFS pointer", result.stderr)
 
 
 if __name__ == "__main__":

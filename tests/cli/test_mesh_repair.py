@@ -303,7 +303,7 @@ class RepairTest(CommandLineTest):
                         self.assertAlmostEqual(float(volume) / mesh.volume(), 1, delta=1e-5)
                         self.assertAlmostEqual(float(mass) / mesh.volume() / 1000, 1, delta=1e-5)
                     else:
-                        area = re.search(r"a sheet; .*area (\S+) m\^2", lines[name])[1]
+                        area = re.search(r"an open surface; .*area (\S+) m\^2", lines[name])[1]
                         self.assertAlmostEqual(float(area) / mesh.area(), 1, delta=1e-5)
         return len(cases)
 

@@ -97,7 +97,7 @@ class WarningTest(CommandLineTest):
         lines = self.expect(DONE, "check", self.write("meshes.toml", deck)).stderr.splitlines()
         unused = [line for line in lines if "no wall, body or solid uses it" in line]
         self.assertEqual(len(unused), 11)
-        self.assertIn('warning: 15 more warnings as this one: mesh "m0": no wall, body or solid uses it', unused[-1])
+        self.assertIn('warning: 15 more warnings like this one: mesh "m0": no wall, body or solid uses it', unused[-1])
 
 
 class DeckKindTest(CommandLineTest):

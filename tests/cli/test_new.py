@@ -20,7 +20,7 @@ class NewTest(CommandLineTest):
 
     def test_a_deck_is_written_and_passes_its_check_where_it_lies(self):
         said = self.expect(DONE, "new", "drum_lifters").stdout
-        self.assertEqual(said, "drum_lifters.toml is written; scree check drum_lifters.toml checks it, "
+        self.assertEqual(said, "wrote drum_lifters.toml; scree check drum_lifters.toml checks it, "
                                "scree run drum_lifters.toml runs it\n")
         deck = self.folder / "drum_lifters.toml"
         first, blank, *rest = deck.read_text().splitlines()
@@ -33,7 +33,7 @@ class NewTest(CommandLineTest):
         self.expect(DONE, "check", self.folder / "mine.toml")
 
     def test_nothing_is_overwritten(self):
-        self.assertIn("deck.toml: is there already", self.expect(BAD_INPUT, "new", "drum", "deck.toml").stderr)
+        self.assertIn("deck.toml: already exists", self.expect(BAD_INPUT, "new", "drum", "deck.toml").stderr)
         self.assertNotIn("drum", self.deck.read_text())
 
     def test_what_cannot_be_written_is_one_message(self):

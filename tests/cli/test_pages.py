@@ -30,7 +30,7 @@ class PagesTest(CommandLineTest):
             modulus = f"{number}e{9 if unit == 'G' else 6}"
             said = self.expect(DONE, "check", deck, "--set", f"materials.glass.young_modulus={modulus}").stdout
             self.assertIn(f"shortest contact {contact} s", said)
-            self.assertIn(f"steps up to {step} s keep within 2 %", said)
+            self.assertIn(f"steps up to {step} s: error at most 2 %", said)
             self.assertIn(f"in dense contact: steps up to {limit} s", said)
 
 

@@ -95,10 +95,10 @@ class ChangesTest(CommandLineTest):
         restart = ("run", self.deck, "--output", "out", "--restart", "out/checkpoint_end.h5", "--set", wall, "--set",
                    "time.end=0.02")
         for setting, code, key in (
-                ("output.history_bodies=[]", IO_FAILED, "keep output.history_bodies as it was"),
-                ("output.history_particles=[0]", IO_FAILED, "keep output.history_particles as it was"),
-                ('output.history_contacts=["pad"]', IO_FAILED, "keep output.history_contacts as it was"),
-                ('output.fields=["radius"]', IO_FAILED, "keep output.fields as it was"),
+                ("output.history_bodies=[]", IO_FAILED, "keep output.history_bodies unchanged"),
+                ("output.history_particles=[0]", IO_FAILED, "keep output.history_particles unchanged"),
+                ('output.history_contacts=["pad"]', IO_FAILED, "keep output.history_contacts unchanged"),
+                ('output.fields=["radius"]', IO_FAILED, "keep output.fields unchanged"),
                 ("output.contacts=true", IO_FAILED, "set output.contacts = false"),
                 ("output.links=false", IO_FAILED, "set output.links = true"),
                 ("time.end=0.005", BAD_INPUT, "time.end"), ("gravity=[0.0,-5.0]", BAD_INPUT, "gravity: "),
@@ -177,26 +177,26 @@ class FailureTest(CommandLineTest):
         for words in ((), EXPLICIT):
             with self.subTest(words=words):
                 message = self.failure("--set", "space.leaving=error", "--set", "particles.0.velocity=[0, 30]", *words)
-                self.assertRegex(message, r"stage accept: particle [45] is outside the space")
+                self.assertRegex(message, r"stage accept: particle [45] is outside the domain")
                 self.assertIn("space.leaving", message)
 
     def test_a_particle_that_goes_through_a_wall(self):
         soft = ("--set", "space.y_max=wall", "--set", "particles.0.velocity=[0, 30]",
                 "--set", "contact.pairs.0.stiffness=100")
         message = self.failure(*soft)
-        self.assertIn("beyond a side that is a wall: it overlapped the wall by more than its radius; the contact's "
-                      "stiffness is too low for this impact", message)
+        self.assertIn("beyond a side that is a wall: its overlap with the wall exceeded its radius; "
+                      "increase the stiffness of the contact", message)
         self.assertIn("warning: contact \"default\" on \"default\": the stiffness is too low for impacts at 3", message)
 
     def test_a_body_that_leaves_is_counted(self):
         free = DECK[:DECK.index("[[spring_dampers]]")] + DECK[DECK.index("[[particles]]"):]
         deck = self.write("free.toml", free.replace("inertia", "velocity = [0.0, -30.0]\ninertia"))
         result = self.expect(DONE, "run", deck, "--output", "out", "--set", "time.end=0.05", "--set", "time.step=5e-4")
-        warnings = re.findall(r'warning: body "pad" is outside the space at t = ([0-9.]+) s: bodies that leave are '
-                              "counted, neither stopped nor removed", result.stderr)
+        warnings = re.findall(r'warning: body "pad" is outside the domain at t = ([0-9.]+) s: a body that leaves is '
+                              "counted, but neither stopped nor removed", result.stderr)
         self.assertEqual(len(warnings), 1)
         self.assertAlmostEqual(float(warnings[0]), 0.8 / 30, delta=1e-3)
-        self.assertRegex(result.stdout, "0 particles left the space, 1 body is outside\n")
+        self.assertRegex(result.stdout, "0 particles escaped from the domain, 1 body is outside\n")
         record = json.loads((self.folder / "out" / "run_record.json").read_text())
         self.assertEqual(record["counts"]["bodies_outside"], 1)
         rows = [row.split(",") for row in self.history("out") if not row.startswith("#")]
@@ -343,9 +343,9 @@ class RestartTest(CommandLineTest):
         self.run_deck(DONE, "out")
         message = self.run_deck(BAD_INPUT, "out", "--restart", self.folder / "out").stderr
         newest = self.folder / "out/checkpoint_end.h5"
-        self.assertIn(f"takes a file, and this is a folder; its newest checkpoint is {newest}\n", message)
+        self.assertIn(f"must be a file, but is a folder; its newest checkpoint is {newest}\n", message)
         result = self.run_deck(DONE, "again", "--restart", self.folder / "out/checkpoint_end.h5")
-        self.assertIn("nothing left to do: time.end = 0.4 s is reached", result.stdout)
+        self.assertIn("nothing left to do: the run has reached time.end = 0.4 s", result.stdout)
 
     def test_a_finished_run_in_another_folder_has_the_row_and_the_snapshot_of_its_end(self):
         for words in ((), EXPLICIT):
@@ -373,7 +373,7 @@ class RestartTest(CommandLineTest):
         for words in (*end, *periodic), end:  # as a job of a chain does, and with other intervals
             with self.subTest(words=words):
                 result = self.run_deck(DONE, "out", *words, "--restart", self.folder / "out/checkpoint.h5")
-                self.assertIn("nothing left to do: time.end = 0.009 s is reached", result.stdout)
+                self.assertIn("nothing left to do: the run has reached time.end = 0.009 s", result.stdout)
                 self.assertIn("t = 0.009 s after 90 steps", result.stdout)
                 shutil.copy(self.folder / "out/checkpoint_end.h5", self.folder / "out/checkpoint.h5")
         self.run_deck(DONE, "out", "--set", "time.end=0.02", *periodic, "--restart",

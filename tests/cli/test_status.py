@@ -28,18 +28,18 @@ class StatusTest(CommandLineTest):
     def test_a_run_that_goes_on_and_one_that_was_killed(self):
         run = self.start_long_run()
         text = self.status("out")
-        self.assertRegex(text, rf"\Astate          running: process {run.pid} on host \S+, .*, alive; last told of ")
+        self.assertRegex(text, rf"\Astate          running: process {run.pid} on host \S+, .*, alive; last status ")
         self.assertRegex(text, r"simulated      \S+ of 1000 s \(\d+ %\)\n")
         run.kill()
         run.wait(LIMIT)
         text = self.status("out")
-        self.assertRegex(text, rf"\Astate          killed: process {run.pid} on host \S+ last told of itself")
+        self.assertRegex(text, rf"\Astate          killed: process {run.pid} on host \S+ wrote its last status ")
         self.assertNotIn("time left", text)
 
     def test_a_run_tells_what_its_lists_took(self):
         gas = pathlib.Path(__file__).resolve().parents[2] / "input/examples/gas_periodic.toml"
         text = self.expect(DONE, "run", gas, "--output", self.folder / "gas").stdout
-        told = re.search(r" (\d+) list builds \((\d+) % of the time beside output\)\n", text)
+        told = re.search(r" (\d+) list builds \((\d+) % of the time without output\)\n", text)
         record = json.loads((self.folder / "gas/run_record.json").read_text())
         seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"] if stage["stage"] != "output"}
         share = sum(seconds[stage] for stage in ("migrate", "sort_cells", "exchange_halo", "neighbors"))
@@ -88,8 +88,8 @@ class StatusTest(CommandLineTest):
         self.assertEqual(len(lines), 3)
         self.assertRegex(lines[1], r"/a +done +0\.4 of 0\.4 s +100 % +4000 +\S+ particle-steps/s +\S+$")
         text = self.status("a", "empty", "none", code=BAD_INPUT)
-        self.assertIn("no run has left a status.toml here", text)
-        self.assertIn("there is no such folder", text)
+        self.assertIn("contains no status.toml of a run", text)
+        self.assertIn(": no such folder", text)
         self.assertIn("done", text)
 
     def test_what_cannot_be_told_is_one_message(self):
@@ -98,7 +98,7 @@ class StatusTest(CommandLineTest):
             self.assertRegex(text, r"^error: .*\n$")
             return text
 
-        self.assertIn("there is no such folder", message(BAD_INPUT))
+        self.assertIn(": no such folder", message(BAD_INPUT))
         self.run_deck(DONE, "out")
         path = self.folder / "out/status.toml"
         text = path.read_text()
@@ -108,7 +108,7 @@ class StatusTest(CommandLineTest):
         self.assertIn("status.toml: is damaged: steps is missing", message(IO_FAILED))
         path.unlink()
         path.mkdir()
-        self.assertIn("no run has left a status.toml here", message(BAD_INPUT))
+        self.assertIn("contains no status.toml of a run", message(BAD_INPUT))
 
     def test_overwriting_removes_it_and_a_restart_begins_anew(self):
         self.run_deck(DONE, "out", "--set", "time.end=0.2")

@@ -136,8 +136,8 @@ class WordsTest(unittest.TestCase):
                 ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
                 ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
                 ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
-                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
-                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
+                ("coordinates/axle/angle_rate", "rad/s", "rate of the coordinate", "rate of axle angle"),
+                ("step/contacts", "1", "contacts, including those with walls", "contacts")):
             self.assertEqual(words(name, unit, description).legend(True), legend)
         self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
 

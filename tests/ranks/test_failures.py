@@ -81,7 +81,7 @@ class FailureTest(RanksTest):
         for ranks in (1, 3):
             for words, ill in (("the checkpoint is damaged: its content", other),
                                ("the checkpoint is damaged: the hash of its state", sealed(other)),
-                               ("the checkpoint is damaged: it was cut off", content[:-30])):
+                               ("the checkpoint is damaged: it is truncated", content[:-30])):
                 with self.subTest(ranks=ranks, words=words):
                     damaged.write_bytes(ill)
                     result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
@@ -135,7 +135,7 @@ class FailureTest(RanksTest):
         self.assertIn("particles      500 on 3 ranks together", text)
         self.assertRegex(text, r"memory  +about [0-9.]+ [kM]B of state and scratch on all ranks together, "
                                r"[0-9.]+ [kM]B on rank 0")
-        self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU of each rank \(estimate\)")
+        self.assertRegex(text, r"device memory  about [0-9.]+ MB on each rank's GPU \(estimate\)")
         if BACKEND == "cuda":
             both = [MPIEXEC, "-n", "2", "env", "CUDA_VISIBLE_DEVICES=0", SCREE, "check", str(DAM[0])]
             text = subprocess.run(both, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT,
@@ -241,7 +241,7 @@ class SignalTest(RanksTest):
         text, trouble = run.communicate(timeout=LIMIT)
         self.assertEqual(run.returncode, STOPPED, text + trouble)
         self.assertEqual(text.splitlines(), [f"stopped by signal ({signal.strsignal(signal.SIGUSR1)}) before the first "
-                                             "step: there is no new checkpoint"])
+                                             "step, without a new checkpoint"])
         self.assertFalse((self.folder / "out").exists())
 
     def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):

@@ -61,7 +61,7 @@ def trial(trials, number):
         return trials.complain(number, f"{word.name} on {ranks} ranks: ended with {code}: {text}")
     if code == STOPPED and not (trials.folder / output).exists():
         trials.count("stopped before the first step")
-        if "before the first step: there is no new checkpoint" not in text:
+        if "before the first step, without a new checkpoint" not in text:
             trials.complain(number, f"{word.name}: says {text}")
         return None
     trials.check_files(number, output)

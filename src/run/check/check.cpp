@@ -46,10 +46,10 @@ std::string sides_line(const Space& space) {
         fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[static_cast<std::size_t>(side)], kind(side));
     open = open || space.boundary[side] == Boundary::open;
   }
-  return fmt::format("sides          {}{}\n", sides,
-                     open ? fmt::format("; a particle that leaves: \"{}\"",
-                                        kLeaving[static_cast<std::size_t>(space.leaving)])
-                          : "");
+  return fmt::format(
+      "sides          {}{}\n", sides,
+      open ? fmt::format("; particles that leave: \"{}\"", kLeaving[static_cast<std::size_t>(space.leaving)])
+           : "");
 }
 
 std::string gravity_line(Vec3 gravity) {
@@ -64,7 +64,7 @@ std::string gravity_line(Vec3 gravity) {
                      gravity.y / size, gravity.z / size);
 }
 
-// Those of the deck's list, and the sides of the space that are walls.
+// The walls of the deck's list and the sides of the domain that are walls.
 std::string walls_text(const Model& model) {
   const std::int64_t sides =
       std::count(model.space.boundary.begin(), model.space.boundary.end(), Boundary::wall);
@@ -98,7 +98,7 @@ std::string space_lines(const Model& model, int ranks) {
                      range(model.disc_thickness.smallest, model.disc_thickness.largest, "m"));
 }
 
-// What resists rolling and twisting; "" where nothing does.
+// Resistance to rolling and twisting of a pair of materials; an empty text without any.
 std::string rolling_line(const Model& model, const PairLimit& limit) {
   const RollingResistance rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
   std::string parts;
@@ -111,7 +111,7 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
-// How the two attract each other; "" where they do not.
+// Adhesion of a pair of materials; an empty text without any.
 std::string attraction_line(const Model& model, const PairLimit& limit) {
   const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
   std::string parts;
@@ -120,7 +120,7 @@ std::string attraction_line(const Model& model, const PairLimit& limit) {
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
   const Real reach = longest_reach(law, model.particles.totals.largest_radius);
-  if (reach > 0) parts += fmt::format(", contacts hold up to {:.4g} m beyond touch", reach);
+  if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
@@ -135,7 +135,7 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
   const std::vector<std::string>& names = model.contact.material_names;
   std::map<MaterialPair, const StepTrial*> trial_of;
   for (const StepTrial& trial : trials) trial_of[pair_of(trial.limit)] = &trial;
-  std::map<MaterialPair, const CombinedPair*> made;  // the keys of pairs that the deck does not give
+  std::map<MaterialPair, const CombinedPair*> made;  // mixed pairs, which the deck does not give
   for (const CombinedPair& pair : model.contact.combined) made[pair_of(pair)] = &pair;
   for (const PairLimit& limit : pair_limits(model)) {
     const KelvinVoigt& law = limit.law;
@@ -148,10 +148,10 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
                          : law.exponent == 1 ? " (smallest partners)"
                                              : " (smallest partners, at 1 % overlap)",
                          law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
-                             ? "may pull"
-                             : "cut at zero");
+                             ? "tensile force allowed"
+                             : "no tensile force");
     if (const auto pair = made.find(pair_of(limit)); pair != made.end())
-      lines += fmt::format("               made by contact.mixing: {}\n", pair->second->keys);
+      lines += fmt::format("               from contact.mixing: {}\n", pair->second->keys);
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
@@ -169,15 +169,15 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
   return lines;
 }
 
-// How many steps that adapt become: between what is left where nothing touches, and what a contact asks for.
+// The number of adaptive steps: from the number without any contact to the number with permanent contact.
 std::string adaptive_steps(const Model& model, const std::vector<StepTrial>& trials) {
   const TimeControl& time = model.time;
   Real shortest = time.max_step;
   for (const StepTrial& trial : trials) shortest = std::min(shortest, trial.step);
   const auto steps_of = [&](Real step) { return std::ceil(time.end / step * (1 - 1e-9)); };
   const std::string fewest = fmt::format("{:.0f} steps", steps_of(time.max_step));
-  if (shortest == time.max_step) return fewest + ", more where the bodies' motion asks for shorter ones";
-  return fmt::format("{} if nothing ever touches, about {:.0f} of {:.2g} s if something always does", fewest,
+  if (shortest == time.max_step) return fewest + ", more if the motion of the bodies requires shorter ones";
+  return fmt::format("{} without any contact, about {:.0f} of {:.2g} s with contacts at all times", fewest,
                      std::stod(fmt::format("{:.1e}", steps_of(shortest))), shortest);
 }
 
@@ -188,7 +188,7 @@ std::string fixed_steps(const Model& model) {
                                      steps * substeps);
 }
 
-// A line with the reason of a choice; "" of what the deck names.
+// A line with the reason for a chosen value; empty for a value that the deck names.
 std::string chosen_line(const std::vector<ChosenValue>& chosen, const std::string& key) {
   const auto found = std::ranges::find(chosen, key, &ChosenValue::key);
   return found == chosen.end() || found->reason.empty()
@@ -211,7 +211,7 @@ std::string time_lines(const Model& model, const std::vector<StepTrial>& trials,
   lines += chosen_line(chosen, "step");
   const std::string particles =
       integrator.particles == ParticleIntegrator::hht
-          ? "the same"
+          ? "HHT, too"
           : "velocity-verlet, " + counted(integrator.substeps, "substep", "substeps");
   return lines +
          fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n", integrator.hht_alpha,
@@ -224,7 +224,7 @@ std::string megabytes(Real bytes) {
   return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0);
 }
 
-// Rank 0 has all unknowns, and its share of the particles.
+// Memory on the host: rank 0 holds all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
   const Real per_particle =
       bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
@@ -233,7 +233,8 @@ std::string memory_line(const Model& model, int ranks) {
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
   const ModelSize size = size_of(model);
   const Real meshes = bytes_of_meshes(model, false), surfaces = meshes + bytes_of_shapes(size),
-             of_root = unknowns + bytes_of_meshes(model, true) - meshes;  // beside what every rank has
+             of_root =
+                 unknowns + bytes_of_meshes(model, true) - meshes;  // in addition to what every rank holds
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
                                                     megabytes(particles / ranks + of_root + surfaces));
@@ -241,17 +242,15 @@ std::string memory_line(const Model& model, int ranks) {
   const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
       "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown{}{}); "
-      "{} "
-      "are free here "
-      "({})\n",
+      "{} are free here ({})\n",
       megabytes(particles + of_root + ranks * surfaces), most, per_particle, kBytesPerUnknown,
       size.shapes == 0 ? "" : fmt::format(", {} B per shape on every rank", kBytesPerShape),
       meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", bytes_per_triangle(model)),
       megabytes(bound.bytes), bound.set_by);
 }
 
-// The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room
-// for that.
+// Whether the host has room for the estimate of device memory, which counts neighbours and images if radii
+// differ or sides are periodic.
 bool can_estimate_device(const Model& model, const Ranks& ranks) {
   constexpr Real kToEstimate = 325;  // measured [B]
   const FreeMemory free = free_memory();
@@ -260,14 +259,14 @@ bool can_estimate_device(const Model& model, const Ranks& ranks) {
   return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
 }
 
-// Of the GPU that is the fullest, where ranks share GPUs or hosts differ.
+// Device memory, for the GPU with the least free share where ranks share GPUs or hosts differ.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
   if (!can_estimate_device(model, ranks))
-    return "device memory  too little memory is free here to estimate it\n";
+    return "device memory  not estimated: this host has too little free memory for the estimate\n";
   const std::size_t meshes = device_memory_of_meshes(model);
   const std::string line = fmt::format(
       "device memory  about {} {} (estimate{})", megabytes(static_cast<Real>(device_memory(model))),
-      ranks.alone() ? "on the GPU" : "on the GPU of each rank",
+      ranks.alone() ? "on the GPU" : "on each rank's GPU",
       meshes == 0 ? "" : fmt::format("; {} of it meshes", megabytes(static_cast<Real>(meshes))));
   choose_device(ranks);
   const std::string trouble = device_trouble();
@@ -285,7 +284,7 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
   const auto device_of = [&](int rank) { return claims[static_cast<std::size_t>(rank)].device; };
   const std::string together = load.ranks == 1
                                    ? ""
-                                   : fmt::format(", {} for the {} ranks that share one",
+                                   : fmt::format(", {} for the {} ranks that share one GPU",
                                                  megabytes(static_cast<Real>(load.needed)), load.ranks);
   return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(load.free)),
                      device_of(fullest) == device_of(ranks.rank()) ? device_name() : "the fullest GPU");

@@ -10,9 +10,10 @@
 
 namespace scree {
 
-// Sizes, materials, contact times and step limits, degrees of freedom, and an estimate of the memory on the
-// host and on a GPU; several lines. ranks: that the model was built by; this one has its part of the
-// particles; chosen: what the deck left to the program; files: lines on these (disk_use.hpp). Collective.
+// Several lines on sizes, materials, contact times, step limits and degrees of freedom, with an estimate of
+// the memory on the host and on a GPU. ranks: the ranks that built the model, of which each holds its part of
+// the particles; chosen: values that the deck left to the program; files: lines on the files (disk_use.hpp).
+// Collective.
 std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks,
                          const std::string& files);
 

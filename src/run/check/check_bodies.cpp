@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kBodiesShown = 20;
 
-// Mass, centre of mass and inertia of a body that is made of solids, in its frame.
+// Mass, centre of mass and inertia of a body made of solids, in the body's frame.
 std::string solid_line(const Model& model, const Body& body) {
   const Vec3 c = body.center_of_mass;
   const std::string name = body.in_row
@@ -37,7 +37,7 @@ std::string solid_line(const Model& model, const Body& body) {
                      centre, inertia);
 }
 
-// What the bodies' meshes touch.
+// Which surfaces the bodies' meshes have contacts with.
 std::string mesh_partners_line(const Model& model) {
   std::int64_t corners = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -45,11 +45,11 @@ std::string mesh_partners_line(const Model& model) {
       if (meets_planes(model, b, shape))
         corners += std::ssize(model.meshes[static_cast<std::size_t>(shape.mesh)].corners->corners);
   const std::string planes =
-      corners == 0 ? "" : fmt::format(", and planes by {}", counted(corners, "corner", "corners"));
+      corners == 0 ? "" : fmt::format(", with planes at {}", counted(corners, "corner", "corners"));
   return fmt::format(
-      "               their meshes touch particles and the discs and spheres of other bodies{}, not {} and "
-      "not each other\n",
-      planes, corners == 0 ? "walls" : "walls of triangles");
+      "               their meshes have contacts with particles and with the discs and spheres of other "
+      "bodies{}, not with {} and not with each other\n",
+      planes, corners == 0 ? "walls" : "triangle walls");
 }
 
 std::string solid_lines(const Model& model) {
@@ -94,20 +94,20 @@ std::string multibody_lines(const Model& model) {
                   counted(std::ssize(model.drivers), "driver", "drivers"),
                   counted(elements, "force element", "force elements"));
   if (drawn_shapes + drawn_meshes > 0)
-    lines += fmt::format("               of these {}{}{} collide{} with nothing\n",
+    lines += fmt::format("               {}{}{} of these take{} no part in contact detection\n",
                          drawn_shapes == 0 ? "" : counted(drawn_shapes, "shape", "shapes"),
                          drawn_shapes == 0 || drawn_meshes == 0 ? "" : " and ",
                          drawn_meshes == 0 ? "" : counted(drawn_meshes, "mesh", "meshes"),
                          drawn_shapes + drawn_meshes == 1 ? "s" : "");
   if (bare > 0 && !model.walls.empty())
-    lines += fmt::format("               {} no shapes{}: {} through walls and touch{} nothing\n",
+    lines += fmt::format("               {} no shapes{}: {} through walls and ha{} no contacts\n",
                          counted(bare, "body has", "bodies have"), model.meshes.empty() ? "" : " or meshes",
-                         bare == 1 ? "it passes" : "they pass", bare == 1 ? "es" : "");
+                         bare == 1 ? "it passes" : "they pass", bare == 1 ? "s" : "ve");
   if (meshes > 0) lines += mesh_partners_line(model);
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
-  // Of rows that may repeat each other the rank counts, which the bodies' solver reports.
-  if (model.integrator.redundant == RedundantRows::share) return lines + "some may repeat others\n";
+  // The number of independent rows needs the rank of the constraint matrix, which the bodies' solver reports.
+  if (model.integrator.redundant == RedundantRows::share) return lines + "some may be redundant\n";
   return lines + counted(coordinates - constraints, "degree of freedom", "degrees of freedom") + "\n";
 }
 

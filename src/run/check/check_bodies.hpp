@@ -1,4 +1,4 @@
-// What the report of `scree check` says of bodies.
+// The lines of `scree check` on bodies.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 
 namespace scree {
 
-// Numbers of bodies, joints and unknowns; of bodies made of solids what follows from these.
+// Numbers of bodies, joints and unknowns, and the mass properties of bodies made of solids.
 std::string multibody_lines(const Model& model);
 
-// What the history leaves out because there are more than it is to record; "" where it records all.
+// What the history leaves out because of the deck's limits on recorded entries; an empty text if it records
+// all.
 std::string history_limit_lines(const Model& model);
 
 }  // namespace scree

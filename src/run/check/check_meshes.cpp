@@ -34,17 +34,19 @@ std::string size_text(const SurfaceMesh& surface) {
                      counted(std::ssize(mesh.triangles), "triangle", "triangles"),
                      counted(std::ssize(mesh.vertices), "vertex", "vertices"),
                      counted(*std::ranges::max_element(shells) + 1, "shell", "shells"),
-                     surface.sheet ? "a sheet" : "closed", low.x, low.y, low.z, high.x, high.y, high.z, area,
+                     surface.sheet ? "an open surface" : "closed", low.x, low.y, low.z, high.x, high.y,
+                     high.z, area,
                      surface.sheet ? "" : fmt::format(", volume {:.6g} m^3", mesh_volume(mesh)));
 }
 
-// A segment is drawn along z as two triangles, of which nobody need know.
+// A line is stored as triangles: each segment is extruded along z into two of them, which the text does not
+// mention.
 std::string line_text(const SurfaceMesh& surface) {
   const Vec3 low = surface.box.min, high = surface.box.max;
   const Real depth = high.z - low.z;
   return fmt::format("{}, {}; ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m, length {:.6g} m",
                      counted(std::ssize(surface.triangles) / 2, "segment", "segments"),
-                     surface.sheet ? "two sides" : "closed", low.x, low.y, high.x, high.y,
+                     surface.sheet ? "open" : "closed", low.x, low.y, high.x, high.y,
                      mesh_area(triangles_of(surface)) / depth);
 }
 
@@ -57,29 +59,30 @@ std::string mass_text(const ModelMesh& mesh) {
 
 std::string coarser_line(const ModelMesh& mesh) {
   if (mesh.triangles_before == 0) return "";
-  return fmt::format("               made coarser, from {} triangles, which are up to {:.3g} m beside it\n",
+  return fmt::format("               simplified from {} triangles, which are at most {:.3g} m away\n",
                      mesh.triangles_before, mesh.moved);
 }
 
-// What the angles between facets tell of files, and what they do not.
+// The deviation from the true surface; for files an estimate from the angles between facets.
 std::string deviation_text(const ModelMesh& mesh) {
   const SurfaceMesh& surface = *mesh.surface;
   if (mesh.deviation_is_exact)
-    return mesh.deviation > 0 ? fmt::format("facets up to {:.3g} m beside the true surface", mesh.deviation)
-                              : "";
-  const std::string taken = fmt::format("edges of {:.3g} degrees or more are taken for true edges",
+    return mesh.deviation > 0
+               ? fmt::format("facets deviate by up to {:.3g} m from the true surface", mesh.deviation)
+               : "";
+  const std::string taken = fmt::format("edges of {:.3g} degrees or more count as sharp",
                                         std::acos(surface.cosine) * 180 / std::numbers::pi_v<Real>);
-  return mesh.deviation > 0
-             ? fmt::format(
-                   "facets up to {:.3g} m beside their curve, estimated from the angles between them; {}",
-                   mesh.deviation, taken)
-             : fmt::format("no curve found from the angles between facets; {}", taken);
+  return mesh.deviation > 0 ? fmt::format(
+                                  "facets deviate by up to {:.3g} m from their curve, estimated from the "
+                                  "angles between them; {}",
+                                  mesh.deviation, taken)
+                            : fmt::format("no curve found from the angles between facets; {}", taken);
 }
 
 // "segments = 32, from the size of the particles".
 std::string fitted_text(const Model& model, const ModelMesh& mesh) {
   if (!mesh.is_fitted) return "";
-  if (mesh.fitting.empty()) return "cut as without particles";
+  if (mesh.fitting.empty()) return "default refinement, as there are no particles";
   return fmt::format("{}, from the smallest particle's radius, {:.4g} m", mesh.fitting,
                      model.particles.totals.smallest_radius);
 }
@@ -88,8 +91,8 @@ std::string cost_text(const Model& model, const ModelMesh& mesh) {
   const Real radius = model.particles.totals.largest_radius;
   if (!(radius > 0)) return "";
   const SurfaceMesh& surface = *mesh.surface;
-  return fmt::format("a particle of {:.4g} m is {:.2g} {} wide; where it touches, about {:.2g} are near",
-                     radius, triangles_wide(model, surface, radius),
+  return fmt::format("a particle of {:.4g} m is {:.2g} {} wide; about {:.2g} are near a contact", radius,
+                     triangles_wide(model, surface, radius),
                      model.space.dimension == 2 ? "segments" : "triangles",
                      triangles_near(model, surface, radius));
 }

@@ -1,4 +1,4 @@
-// What the report of `scree check` says of meshes.
+// The lines of `scree check` on meshes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Of each mesh its triangles, size and mass, how curved it is, and how many of them a particle is near.
+// Per mesh: triangles, size, mass, curvature, and the number of triangles near a particle in contact.
 std::string mesh_lines(const Model& model);
 
 }  // namespace scree

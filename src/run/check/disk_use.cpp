@@ -25,7 +25,7 @@
 namespace scree {
 namespace {
 
-// Contacts of a particle in a dense packing, each with another one.
+// Contacts per particle in a dense packing, each counted once.
 constexpr std::int64_t kTouchingInPlane = 4, kTouchingInSpace = 6;
 
 template <class Values>
@@ -33,7 +33,7 @@ void cut_to(Values& values, std::int64_t most) {
   if (std::ssize(values) > most) values.resize(static_cast<std::size_t>(most));
 }
 
-// Names and kinds alone.
+// The history's columns, by names and kinds alone.
 std::vector<RecordedColumn> columns_of(const Model& model) {
   const Output& output = model.output;
   std::vector<Reaction> reactions;
@@ -76,7 +76,7 @@ void add_history(const Model& model, DiskUse& use) {
   use.history = size.hdf5, use.csv = model.output.history_csv ? size.csv : 0;
 }
 
-// One point of each kind: what is shown of it.
+// One point of each kind with the fields that snapshots store for it.
 struct Sample {
   std::vector<OutputValues> particle;
   BodyPoints body;
@@ -127,7 +127,7 @@ void add_snapshots(const Model& model, DiskUse& use) {
         no_contacts.snapshot(), one.link.snapshot(), counts, snapshots);
     return size.data + size.xdmf;
   };
-  // Chunks are filled by several snapshots where these are small: the mean of many.
+  // Small snapshots share chunks: the size of one is the mean over many.
   constexpr std::int64_t kMany = 10000;
   use.snapshots = likely_snapshots(model);
   use.all_snapshots = size_of(use.snapshots, false);
@@ -172,7 +172,7 @@ std::string size_text(Real bytes) {
 std::string checkpoint_count(const Model& model) {
   const Real interval = model.output.checkpoint_interval;
   if (interval == 0) return "one at the end";
-  return fmt::format("{:.0f} on the way and one at the end",
+  return fmt::format("{:.0f} during the run and one at the end",
                      std::ceil(model.time.end / interval * (1 - 1e-9)) - 1);
 }
 
@@ -213,9 +213,8 @@ std::string disk_warning(const Model& model, const DiskUse& use, const std::stri
                  ? "fewer of output.history_bodies, history_particles or history_contacts, history_reactions"
                  : "a longer output.history_interval";
   return fmt::format(
-      "the results take about {} of disk while the run goes on{}, and {} are free in {}: snapshots {}, "
-      "history "
-      "{}, checkpoints {}; what helps: {}{}, or --output on another disk",
+      "the results need about {} of disk space during the run{}, but {} are free in {}: snapshots {}, "
+      "history {}, checkpoints {}; remedy: {}{}, or --output on another disk",
       size_text(use.most()), model.output.compression > 0 ? ", before compression" : "", size_text(free),
       folder, size_text(snapshots), size_text(use.history + use.csv), size_text(checkpoints), remedy,
       model.output.compression == 0 ? ", output.compression" : "");
@@ -227,18 +226,19 @@ std::string disk_lines(const Model& model, const DiskUse& use, const std::string
   const Real free = free_disk(folder);
   return fmt::format("snapshots      {} of about {}, {} together{}{}\n", use.snapshots,
                      size_text(use.snapshot), size_text(use.all_snapshots),
-                     use.contacts > 0 ? fmt::format("; with contacts {} more where particles lie densely",
+                     use.contacts > 0 ? fmt::format("; contacts add {} if particles are densely packed",
                                                     size_text(use.contacts))
                                       : "",
                      compressed) +
          fmt::format(
              "checkpoints    {}, about {} each{}{}\n", checkpoint_count(model), size_text(use.checkpoint),
-             grows ? fmt::format("; {} where particles lie densely", size_text(use.dense_checkpoint)) : "",
+             grows ? fmt::format("; {} if particles are densely packed", size_text(use.dense_checkpoint))
+                   : "",
              compressed) +
          fmt::format("history        {}{} of {} columns, about {}{}\n", use.rows_are_known ? "" : "at least ",
                      counted(use.rows, "row", "rows"), use.columns, size_text(use.history),
                      use.csv > 0 ? fmt::format(", {} as CSV", size_text(use.csv)) : "") +
-         fmt::format("disk           about {}, {} while the run goes on{}\n", size_text(use.left()),
+         fmt::format("disk           about {}, {} during the run{}\n", size_text(use.left()),
                      size_text(use.most()),
                      free < 0 ? "" : fmt::format("; {} are free in {}", size_text(free), folder));
 }

@@ -1,5 +1,5 @@
-// How much disk a run takes, before it runs: sums of what its files hold (output/hdf5_size.hpp), for
-// `scree check` and for the warning where that does not fit.
+// Disk space of a run, computed before it starts: sums over the contents of its files (output/hdf5_size.hpp),
+// for `scree check` and for the warning if the disk has too little space.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@ namespace scree {
 
 struct DiskUse {
   std::int64_t snapshots = 0, rows = 0, columns = 0;  // of the history
-  bool rows_are_known = true;                         // else these are the fewest
-  Real snapshot = 0, all_snapshots = 0;               // one more, all together, contacts left out [B]
-  Real contacts = 0;  // of all snapshots, if particles touch as they do in dense packings
+  bool rows_are_known = true;                         // otherwise `rows` is the least number
+  Real snapshot = 0, all_snapshots = 0;               // one more; all together; without contacts [B]
+  Real contacts = 0;                                  // of all snapshots, for densely packed particles
   Real history = 0, csv = 0;
-  // Of a checkpoint if nothing touches then, and if particles touch as they do in dense packings.
+  // Size of a checkpoint without contacts, and with densely packed particles.
   Real checkpoint = 0, dense_checkpoint = 0;
-  int checkpoints = 1;  // that are left
+  int checkpoints = 1;  // that remain after the run
 
-  Real left() const;  // by the run
-  // While it goes on: growing files exist twice, and a checkpoint is written beside the last one.
+  Real left() const;  // after the run
+  // Peak during the run: growing files exist twice, and a checkpoint is written beside the previous one.
   Real most() const;
 };
 
-// resolved_deck: the lengths of the deck's resolved text and of its fingerprint, which checkpoints hold.
-// Before compression.
+// Sizes before compression. resolved_deck: lengths of the deck's resolved text and of its fingerprint, which
+// checkpoints store [B].
 DiskUse disk_use(const Model& model, std::int64_t resolved_deck);
 
-// What is free to this user where the folder is, or would be made [B]; below 0 where the system does not say.
+// Space that is free to this user at the folder, existing or not [B]; negative if the system does not tell.
 Real free_disk(const std::string& folder);
 
-// That the results do not fit into what is free, and what to change; empty where they do.
+// The warning that the results exceed the free space, with a remedy; empty if they fit.
 std::string disk_warning(const Model& model, const DiskUse& use, const std::string& folder);
 
 // Lines of `scree check`: snapshots, checkpoints, history and disk.

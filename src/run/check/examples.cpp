@@ -31,12 +31,11 @@ const Example& find_example(const std::string& name) {
   if (found.size() == 1) return *found.front();
   if (found.empty())
     throw InputError(
-        fmt::format("{}: there is no such example{}; scree new lists them", name, suggestion(name, names)));
-  throw InputError(fmt::format("{}: there are two such examples, {} and {}", name, path_of(*found[0]),
-                               path_of(*found[1])));
+        fmt::format("{}: no such example{}; scree new lists them", name, suggestion(name, names)));
+  throw InputError(fmt::format("{}: ambiguous: {} or {}", name, path_of(*found[0]), path_of(*found[1])));
 }
 
-// Comments of an example speak of its place in the source tree.
+// Replaces the example's path in the source tree, which its comments mention, by the new file's name.
 std::string with_own_name(std::string text, const Example& example, const std::string& file) {
   const std::string place = fmt::format("input/{}.toml", path_of(example));
   for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + file.size()))
@@ -47,10 +46,10 @@ std::string with_own_name(std::string text, const Example& example, const std::s
 void write_new_file(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST)
-    throw InputError(path +
-                     ": is there already, and is not overwritten; scree new EXAMPLE FILE takes another name");
+    throw InputError(
+        path + ": already exists and is not overwritten; scree new EXAMPLE FILE writes to another name");
   if (file < 0) throw IoError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-  errno = ENOSPC;  // of a write that is cut short
+  errno = ENOSPC;  // the reason for a truncated write
   const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   const int error = errno;
   if (close(file) == 0 && written) return;
@@ -60,8 +59,8 @@ void write_new_file(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-// A sentence ends with a full stop before a capital letter, outside parentheses: not so "(Mech. Mach.
-// Theory)".
+// The first sentence ends with a full stop before a capital letter, outside parentheses: "(Mech. Mach.
+// Theory)" does not end one.
 std::string first_sentence(std::string_view deck) {
   std::string comment;
   while (deck.starts_with("# ")) {

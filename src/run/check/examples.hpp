@@ -1,4 +1,4 @@
-// The decks that come with the program: `scree new` writes one to begin from.
+// The example decks in the program, which `scree new` writes.
 #pragma once
 
 #include <span>
@@ -7,20 +7,20 @@
 
 namespace scree {
 
-// A deck of input/FOLDER/NAME.toml. The build makes the list (examples.cmake); decks that need other files
-// are not in it.
+// The deck input/FOLDER/NAME.toml. The build makes the list (examples.cmake), without decks that need other
+// files.
 struct Example {
   std::string_view folder, name, text;
 };
 std::span<const Example> examples();
 
-// What the deck's first comment says, to the end of its first sentence.
+// The first sentence of the deck's leading comment.
 std::string first_sentence(std::string_view deck);
-// Names and first sentences, by folder.
+// The list of examples: names and first sentences, by folder.
 std::string examples_text();
-// Writes the deck under a new name, `file` or NAME.toml where that is empty, and returns it. name: "drum", or
-// "examples/drum". Throws InputError where there is no such example, or where there is a file of that name,
-// IoError where it cannot be written.
+// Writes the example to `file`, or to NAME.toml if `file` is empty, and returns that path. name: "drum" or
+// "examples/drum". Throws InputError if there is no such example or the file exists, IoError if it cannot be
+// written.
 std::string write_example(const std::string& name, const std::string& file);
 
 }  // namespace scree

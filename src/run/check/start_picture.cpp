@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A new folder beside a file, where all ranks see it; ends with this object. Its path is known on every rank.
+// A new folder beside a file, visible to all ranks and removed by the destructor. Every rank knows its path.
 class FolderBeside {
  public:
   FolderBeside(const std::string& file, const Ranks& ranks) : ranks_(ranks) {
@@ -30,7 +30,7 @@ class FolderBeside {
     path_ = ((parent.empty() ? "." : parent) / ".scree_picture_XXXXXX").string();
     ranks.on_root([&] {
       if (mkdtemp(path_.data()) == nullptr)
-        throw IoError(fmt::format("{}: no folder can be made beside it: {}", file, std::strerror(errno)));
+        throw IoError(fmt::format("{}: cannot create a folder beside it: {}", file, std::strerror(errno)));
     });
     ranks.broadcast(std::span(path_));
   }
@@ -47,14 +47,14 @@ class FolderBeside {
   std::string path_;
 };
 
-// What pictures are drawn from.
+// The fields that pictures need.
 Output output_of_start() {
   Output output;
   output.fields = {"radius", "velocity"};
   return output;
 }
 
-// What a run writes of its start.
+// Writes the start as a run does.
 void write_start(const Model& model, const std::string& folder, const Ranks& ranks) {
   Log log(true);
   StageTimers timers;
@@ -78,7 +78,7 @@ void write_start(const Model& model, const std::string& folder, const Ranks& ran
 
 void draw_start(Model model, const std::string& resolved_deck, const std::string& program,
                 const std::string& file, const Ranks& ranks) {
-  catch_signals();  // the folder is removed first
+  catch_signals();  // so that a signal does not keep the folder from being removed
   model.output = output_of_start();
   const FolderBeside folder(file, ranks);
   write_start(model, folder.path(), ranks);

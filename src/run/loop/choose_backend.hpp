@@ -1,4 +1,4 @@
-// Where the particles of a run are computed.
+// Choice of the backend of a run.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace scree {
 
-// The backend that `name` (--backend) says, or for "auto" the one that is likely to be faster; the log says
-// why. Where the deck forces a transport between GPUs, the CPU does not stand in for one that cannot be had.
-// Throws InputError where the one that is named cannot be had or has too little memory. Collective.
+// The backend named by --backend; for "auto" the one that is likely to be faster. The log states the reason.
+// If the deck prescribes a transport between GPUs, the CPU does not replace a GPU that is missing. Throws
+// InputError if the named backend is missing or has too little memory. Collective.
 std::unique_ptr<Backend> choose_backend(const Model& model, const Ranks& ranks, const std::string& name,
                                         Log& log);
 

@@ -47,7 +47,7 @@ class Simulation {
     ranks_.on_root([&] { folder_.clear(); });
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
-    // Results are looked for in the folder of a run that is finished, too.
+    // A restart of a finished run into a new folder records its state there.
     const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
     if (options.restart.empty() || is_done) {
       const Reports::Instant now(backend_->reports());
@@ -67,7 +67,7 @@ class Simulation {
   std::string start_change() const;
   bool continues_files() const;
   void bring_into_id_order(State& state) const;
-  // Takes the state's particles away.
+  // Moves the state's particles out.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
   void show_status(const std::string& status);
@@ -85,7 +85,7 @@ class Simulation {
   Ranks ranks_;
   Log& log_;
   ResultsFolder folder_;
-  Restart restart_;  // but for its state
+  Restart restart_;  // without its state
   State state_;
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
@@ -97,7 +97,7 @@ class Simulation {
   bool body_left_ = false, load_lost_ = false, overloaded_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
-  std::int64_t list_entries_ = 0, migrated_ = 0, device_bytes_ = 0;  // of all ranks
+  std::int64_t list_entries_ = 0, migrated_ = 0, device_bytes_ = 0;  // sums over the ranks
 };
 
 void Simulation::start_or_resume() {
@@ -109,8 +109,10 @@ void Simulation::start_or_resume() {
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
     if (link_.multibody() && !link_.multibody()->redundancy().empty())
-      log_.info("redundant constraints share their reactions, which rigid bodies leave open: " +
-                link_.multibody()->redundancy());
+      log_.info(
+          "redundant constraints: the reactions, which are not unique for rigid bodies, are the minimum-norm "
+          "solution: " +
+          link_.multibody()->redundancy());
   } else {
     load_state();
     step_.counts() = state_.counts;
@@ -121,7 +123,7 @@ void Simulation::start_or_resume() {
   }
 }
 
-// A checkpoint at the end may be past it by round-off, where the end is a multiple of an interval.
+// If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
 void Simulation::check_end() const {
   const StepClock clock(model_, state_.clock);
   if (clock.time() > clock.end())
@@ -129,12 +131,12 @@ void Simulation::check_end() const {
                                  options_.restart, clock.time(), model_.time.end));
   if (clock.done())
     log_.info(fmt::format(
-        "--restart {}: nothing left to do: time.end = {} s is reached, the run is finished; a later one, "
-        "--set time.end=..., goes on from here",
+        "--restart {}: nothing left to do: the run has reached time.end = {} s; a later one, --set "
+        "time.end=..., continues it",
         options_.restart, model_.time.end));
 }
 
-// The checkpoint's particles are complete; another deck's constants hold from now on.
+// Takes over the checkpoint's particles, which are complete, and the constants of the deck if it has changed.
 void Simulation::load_state() {
   bring_into_id_order(state_);
   if (restart_.changed) take_constants(model_.particles, state_.particles);
@@ -145,12 +147,12 @@ void Simulation::load_state() {
   state_.particles = {}, state_.contacts = {}, state_.works = {};
 }
 
-// Of the bodies' velocities, on rank 0.
+// The largest change of the bodies' initial velocities, on rank 0.
 std::string Simulation::start_change() const {
   return link_.multibody() && options_.restart.empty() ? link_.multibody()->start_change() : "";
 }
 
-// A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
+// A restart in the folder of the checkpoint continues its files; in another folder new files begin.
 bool Simulation::continues_files() const {
   bool same = false;
   ranks_.on_root([&] { same = folder_.continues(); });
@@ -158,7 +160,7 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// Each rank gets the particles of its share of the ids: what it writes, and what its part of the model has.
+// Distributes the particles by ids: each rank gets its range, as for writing and in its part of the model.
 void Simulation::bring_into_id_order(State& state) const {
   std::vector<GlobalId> ids;
   for (const Particle& p : state.particles) ids.push_back(p.global_id);
@@ -179,7 +181,7 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   live_.checkpoint_written(name, state.clock.time);
 }
 
-// Warns once of each.
+// Issues each warning once.
 void Simulation::watch_bodies(const State& state) {
   const auto warn_once = [this](bool& warned, const std::string& warning) {
     if (!warning.empty()) log_.warning(warning), warned = true;
@@ -256,8 +258,8 @@ ExitCode Simulation::run_to_the_end() {
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
 }
 
-// The record may meet the same trouble: what counts is the first. On a full disk the copies of growing files,
-// which nobody needs any longer, make room for it.
+// Writing the record may fail for the same reason as the run; the first error is the one that is reported. On
+// a full disk, removing the second copies of growing files, no longer needed, makes room for the record.
 void Simulation::record_failure(const std::string& why, ExitCode code) {
   if (!ranks_.is_root()) return;
   try {
@@ -277,7 +279,7 @@ ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
   return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
 }
 
-// A GPU that has failed may hold a snapshot, and the state of an implicit run: both are lost then.
+// A failed GPU may hold a snapshot, and in implicit runs the state: both are then lost.
 void Simulation::keep_last_good_state(StepLoop& loop) {
   try {
     recorder_->write_pending();
@@ -303,7 +305,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));
-  summarize();  // what it warns of goes into the record
+  summarize();  // before the record, which includes the warnings
   log_.tell_left_out();
   ranks_.on_root([&] { write_record(status, code); });
   show_status(status);
@@ -357,16 +359,17 @@ void Simulation::summarize() const {
   const BalanceState& b = state_.balance;
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
-      "of the time beside output)",
+      "of the time without output)",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
   if (n.frozen_steps > 0)
-    log_.info(fmt::format("friction's limits were frozen in {} of the steps: shorter ones would resolve it",
-                          n.frozen_steps));
+    log_.info(
+        fmt::format("the friction limits were lagged in {} of the steps: shorter steps would resolve them",
+                    n.frozen_steps));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
   log_.info(
       fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
-                  "integration; {} left the space{}",
+                  "integration; {} escaped from the domain{}",
                   balance_error(b), b.exchanged, taken_by_integrator(b),
                   counted(state_.carried_out.left, "particle", "particles"),
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));

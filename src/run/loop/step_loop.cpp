@@ -11,13 +11,13 @@
 namespace scree {
 namespace {
 
-// Keeping a good state of an explicit run may take this share of the run's time.
+// Share of the run's time that copies of a good state of an explicit run may take.
 constexpr double kGoodStateShare = 0.02;
-// Explicit steps are taken in batches of about this length [s], and of no more substeps than this.
+// Explicit steps are taken in batches of about this duration [s], and of at most so many substeps.
 constexpr double kBatchSeconds = 0.2, kMostSubsteps = 1e6;
-// The same in mixed precision, as numbers of the deck: substeps times particles in a batch, about 0.07 s on
-// one H200; so many particles more stand for what a substep of few takes; and no fewer substeps than these,
-// 0.6 s where the particles fill its memory.
+// Batches in mixed precision, given by numbers of the deck alone: substeps times particles in a batch, about
+// 0.07 s on one H200; a number of particles added for the launch overhead of small models; and the least
+// number of substeps, 0.6 s for particles that fill the GPU's memory.
 constexpr double kMixedBatch = 1e9, kMixedIdle = 1e5, kFewestMixed = 32;
 
 }  // namespace
@@ -26,9 +26,9 @@ double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// In mixed precision a batch closes its last step with forces in double: if the clock chose that step, a
-// rerun would have other bits. So the deck alone does. Beside bodies the host's work may take the longest,
-// and the batch is short.
+// In mixed precision a batch evaluates the forces of its last step in double. If a clock determined that
+// step, a rerun would give other bits; therefore the deck alone does. With bodies the host's work may
+// dominate, and the batch is short.
 std::size_t batch_length(const Model& model, bool mixed, double step_seconds) {
   const double substeps = model.integrator.substeps;
   double steps = kBatchSeconds / step_seconds;
@@ -61,8 +61,8 @@ LoopEnd StepLoop::run(Real until) {
   return LoopEnd::done;
 }
 
-// What the world wants between two steps, the same on all ranks: a signal on any of them, rank 0's clock. The
-// state is at rest here, whoever takes the steps: a checkpoint moves none of them.
+// Handles requests between two steps, the same on all ranks: a signal on any rank, or a checkpoint that rank
+// 0's clock requests. The state is complete here, so that a checkpoint does not change the steps.
 int StepLoop::look_outside() {
   const Real interval = parts_.model.output.checkpoint_wall_interval;
   const bool due = interval > 0 && ranks().is_root() && parts_.seconds() - checkpoint_age_ >= interval;
@@ -91,7 +91,8 @@ void StepLoop::take_step(Real until) {
   close_step(h);
 }
 
-// Where a step can be shortened no further a driver may be why: of that no step length says anything.
+// If a step cannot be shortened further, the reason may be a dead point of a driver, which no step length
+// resolves.
 void StepLoop::reject(const StepOutcome& outcome) {
   try {
     if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
@@ -103,9 +104,9 @@ void StepLoop::reject(const StepOutcome& outcome) {
   }
 }
 
-// Equal steps up to the next output, but no longer than until the next look at signals and progress, and none
-// that begins at `until` or later. A batch ends where the energies are sampled, but in mixed precision, where
-// ends of batches choose the bits: there the sample is taken at the end of the batch.
+// Takes equal steps up to the next output, until signals and progress are due, and none that begins at
+// `until` or later. A batch ends where the energies are sampled. Not so in mixed precision, where the ends of
+// batches affect the bits: there the energies are sampled at the end of the batch.
 void StepLoop::take_explicit_steps(Real h, Real until) {
   const bool mixed = parts_.backend.is_mixed();
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
@@ -115,7 +116,7 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
   const double start = parts_.seconds();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
   step_seconds_ = (parts_.seconds() - start) / static_cast<double>(taken);
-  ranks().broadcast(step_seconds_);  // clocks differ
+  ranks().broadcast(step_seconds_);  // the ranks' clocks differ
   for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
   close_step(h);
 }
@@ -126,7 +127,7 @@ void StepLoop::close_step(Real h) {
   output(h);
 }
 
-// Particles outside the space: an error, or out of the pair search from the next step on.
+// Handles particles outside the domain: an error, or no contact detection from the next step on.
 void StepLoop::leave() {
   {
     const auto scope = parts_.timers.time(Stage::migrate);
@@ -136,7 +137,7 @@ void StepLoop::leave() {
     parts_.backend.particles().take_out(leavers);
     book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
   }
-  parts_.step.rebuild_list(parts_.model.contact.skin);  // has stages of its own
+  parts_.step.rebuild_list(parts_.model.contact.skin);  // measures stages of its own
 }
 
 void StepLoop::output(Real h) {
@@ -161,8 +162,9 @@ void StepLoop::output(Real h) {
 void StepLoop::keep_good_state() {
   if (implicit_) return;
   const double start = parts_.seconds();
-  parts_.records.write_pending();  // the copy counts it, also where the backend fails before it is written
-  good_.reset();                   // two copies are not needed
+  parts_.records.write_pending();  // so that the copy counts the snapshot even if the backend fails before it
+                                   // is written
+  good_.reset();                   // one copy at a time
   std::vector<Particle> particles = std::move(complete_state().particles);
   KeptContacts contacts = std::move(state_.contacts);
   std::vector<std::int64_t> works = std::move(state_.works);

@@ -1,4 +1,4 @@
-// The loop over steps: reads from top to bottom as the algorithm.
+// The loop over steps; the functions read in the order of the algorithm.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@ namespace scree {
 
 enum class LoopEnd { done, paused, stopped_by_signal };
 
-// Since some moment, by the machine's clock.
+// Time of a monotonic clock [s].
 double steady_seconds();
 
-// What the loop works on; all of it outlives the loop.
+// The objects that the loop uses; all of them must outlive it.
 struct LoopParts {
   const Model& model;
   Backend& backend;
@@ -29,29 +29,30 @@ struct LoopParts {
   CoupledStep& step;
   Records& records;
   StageTimers& timers;
-  std::function<double()> seconds = steady_seconds;  // a clock that never goes back
-  // Called with the particles that leave the space, where they leave.
+  std::function<double()> seconds = steady_seconds;  // a monotonic clock [s]
+  // Called with the particles that leave the domain, after the step in which they do.
   std::function<void(const std::vector<Leaver>&)> leaving = [](const std::vector<Leaver>&) {};
 };
 
-// Explicit steps of the bodies to take at once, where the last ones took so many seconds each. mixed: that of
-// the backend.
+// Number of explicit steps of the bodies in one batch. step_seconds: wall time per step of the last batch;
+// mixed: whether the backend computes in mixed precision.
 std::size_t batch_length(const Model& model, bool mixed, double step_seconds);
 
 class StepLoop {
  public:
-  // write_checkpoint: called with the complete state whenever one is due; may take its particles away.
+  // write_checkpoint: called with the complete state whenever a checkpoint is due; may move the particles
+  // out.
   StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
            std::function<void(const State&, Real h)> progress);
 
-  // Steps until the end or a signal, or pauses after the first step that reaches the time `until` [s]; may be
-  // called again then. Throws SimulationError when the run cannot go on.
+  // Takes steps until the end or a signal, or pauses after the first step that reaches the time `until` [s];
+  // may then be called again. Throws SimulationError if the run cannot continue.
   LoopEnd run(Real until = kInfinity);
-  int signal() const { return signal_; }  // that stopped it on some rank
-  // The state as it is, complete with the particles.
+  int signal() const { return signal_; }  // the one that stopped the run, on any rank
+  // The current state, complete with the particles.
   State& complete_state();
-  // After a failure. Implicit: the start of the failed step. Explicit: a copy kept some steps ago, because an
-  // explicit step cannot be undone.
+  // The state to save after a failure. Implicit: the start of the failed step. Explicit: a copy made some
+  // steps ago, because explicit steps cannot be undone.
   State& last_good_state();
 
  private:
@@ -72,13 +73,13 @@ class StepLoop {
   std::function<void(State&)> write_checkpoint_;
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
-  double step_seconds_ = std::numeric_limits<double>::infinity();  // of the last explicit steps
-  std::int64_t next_sample_ = 0;                                   // of the energies: a number of steps
+  double step_seconds_ = std::numeric_limits<double>::infinity();  // per step, in the last batch
+  std::int64_t next_sample_ = 0;  // number of steps at the next energy sample
   int signal_ = 0;
-  double checkpoint_age_ = 0;  // steady clock when the last one was written, or the loop began [s]
-  std::optional<State> good_;  // explicit: the copy
-  double good_cost_ = 0;       // seconds that keeping it took
-  double good_age_ = 0;        // steady clock when it was kept [s]
+  double checkpoint_age_ = 0;  // time of the clock at the last checkpoint, or at the start of the loop [s]
+  std::optional<State> good_;  // explicit: the copy of a good state
+  double good_cost_ = 0;       // duration of that copy [s]
+  double good_age_ = 0;        // time of the clock at that copy [s]
 };
 
 }  // namespace scree

@@ -14,7 +14,7 @@ void add_touching(const ShapePack& shapes, BodyPoints& to) {
   to.kind.assign(shapes.body.size(), kTouchingShape);
 }
 
-// At an offset in the body's frame; in the periodic box, as the other shapes are.
+// Adds a point at an offset in the body's frame, wrapped into the periodic box like the other shapes.
 void add_point(const Model& model, int body, BodyPointKind kind, const PointMotion& at, BodyPoints& to) {
   ImageCount unused;
   to.body.push_back(body), to.kind.push_back(kind);

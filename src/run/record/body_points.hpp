@@ -1,4 +1,4 @@
-// What snapshots show of the bodies: their shapes, and where their centres of mass are.
+// The points that snapshots show of bodies: shapes and centres of mass.
 #pragma once
 
 #include <span>
@@ -11,21 +11,21 @@
 
 namespace scree {
 
-// One entry per point: the shapes that touch something, those that do not, the centres of mass; each in the
-// deck's order.
+// One entry per point: shapes with contact detection, then shapes without it, then the centres of mass, each
+// group in the deck's order.
 struct BodyPoints {
-  std::vector<int> body, kind, contacts;        // as in BodySnapshot, and so are the others
+  std::vector<int> body, kind, contacts;        // as in BodySnapshot, like the other members
   std::vector<Real> radius;                     // [m]
   std::vector<Vec3> position, velocity, force;  // [m], [m/s], [N]
   std::vector<Real> angle, angular_velocity;    // of the body [rad], [rad/s]
   std::vector<Vec3> origin;                     // [m]
-  std::vector<Real> orientation;                // where bodies are spatial: 4 numbers a point
-  std::vector<Vec3> spin;                       // likewise [rad/s]
+  std::vector<Real> orientation;                // 4 numbers per point, for spatial bodies only
+  std::vector<Vec3> spin;                       // for spatial bodies only [rad/s]
 
   BodySnapshot view() const;
 };
 
-// shapes: those that touch something; motion and contacts: of the carriers, the bodies first.
+// shapes: those with contact detection; motion and contacts: one entry per carrier, bodies first.
 BodyPoints body_points(const Model& model, const ShapePack& shapes, std::span<const BodyMotion> motion,
                        std::span<const ContactSum> contacts);
 

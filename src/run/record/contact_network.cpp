@@ -44,21 +44,22 @@ LineSnapshot ContactNetwork::snapshot() const {
   const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
     out.fields.push_back(field_of(name, label, values));
   };
-  add("normal_force", {"N", "along the normal; above 0: pushes the two apart"}, normal_force_);
-  add("tangential_force", {"N", "size of the force across the normal"}, tangential_force_);
-  add("force", {"N", "on the particle or body at the line's start"}, force_);
-  add("overlap", {"m", "how far the two overlap; below 0 where they attract each other apart"}, overlap_);
-  if (rubs_) add("slip", {"m", "how far the spring of friction is stretched"}, slip_);
-  add("first", {"1", "global id of the particle at the line's start, the lower one of two; -1: none"},
+  add("normal_force", {"N", "normal force; positive: repulsive"}, normal_force_);
+  add("tangential_force", {"N", "magnitude of the tangential force"}, tangential_force_);
+  add("force", {"N", "contact force on the particle or body at the line's start"}, force_);
+  add("overlap", {"m", "overlap; negative: gap across which the two attract each other"}, overlap_);
+  if (rubs_) add("slip", {"m", "elongation of the tangential spring"}, slip_);
+  add("first", {"1", "global id of the particle at the line's start, the lower of two ids; -1: none"},
       first_);
-  add("second", {"1", "global id of the particle at its end; -1: none"}, second_);
-  add("kind", {"1", "what is at its end: 0 a particle, 1 a wall, 2 a body"}, kind_);
-  add("wall", {"1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none"},
+  add("second", {"1", "global id of the particle at the line's end; -1: none"}, second_);
+  add("kind", {"1", "partner at the line's end: 0 a particle, 1 a wall, 2 a body"}, kind_);
+  add("wall",
+      {"1", "wall at the line's end, counted from 0 in the deck's order, sides of the domain last; -1: none"},
       wall_);
-  add("body", {"1", "which body is at its end, counted from 0 in the deck's order; -1: none"}, body_);
+  add("body", {"1", "body at the line's end, counted from 0 in the deck's order; -1: none"}, body_);
   add("first_body",
       {"1",
-       "which body's disc, sphere or corner of a mesh is at its start, likewise; -1: none, but a particle"},
+       "body whose disc, sphere or mesh corner is at the line's start, counted likewise; -1: a particle"},
       first_body_);
   return out;
 }

@@ -1,4 +1,4 @@
-// The contacts of particles and of bodies' shapes as snapshots show them: columns of lines.
+// The contact network in snapshots: contacts of particles and of bodies' shapes as columns of lines.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace scree {
 
-// What is touched at the end of a line, as files have it.
+// Kind of the partner at a line's end, as files store it.
 enum class ContactKind : int { particle, wall, body };
 
-// This rank's part of the lines of all ranks: those of bodies' shapes, which are rank 0's, then those of
-// particles in the order of the first particles' ids.
+// This rank's part of the lines of all ranks: the contacts of bodies' shapes (on rank 0), then those of
+// particles, ordered by the id of the first particle.
 class ContactNetwork {
  public:
   ContactNetwork() = default;
-  // lines: of this rank's particles, of which all ranks have `particles` ids. Collective.
+  // lines: the contacts of this rank's particles. Collective.
   ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines);
-  // Views of it.
+  // Views of this object's columns.
   LineSnapshot snapshot() const;
-  // Those of snapshot(), for the model.
+  // The names of the fields that snapshot() has for the model.
   static std::vector<std::string> field_names(const Model& model);
 
  private:

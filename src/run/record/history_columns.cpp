@@ -43,14 +43,15 @@ void step_columns(Group step) {
                  [](const Sample& s) { return s.counts.newton_iterations; });
   step.add_count("linear_iterations", "iterations of the particles' linear solve so far",
                  [](const Sample& s) { return s.counts.linear_iterations; });
-  step.add_count("rejected_error", "steps rejected for their local error so far",
+  step.add_count("rejected_error", "steps rejected so far for their local error",
                  [](const Sample& s) { return s.counts.rejected_error; });
-  step.add_count("rejected_newton", "steps rejected for want of convergence so far",
+  step.add_count("rejected_newton", "steps rejected so far because they did not converge",
                  [](const Sample& s) { return s.counts.rejected_newton; });
-  step.add_count("contacts", "touching pairs, walls and body shapes included",
+  step.add_count("contacts", "contacts, including those with walls and body shapes",
                  [](const Sample& s) { return s.particles.contacts; });
-  step.add_count("left", "particles that have left the space so far", [](const Sample& s) { return s.left; });
-  step.add_count("bodies_outside", "bodies whose centre is outside the space",
+  step.add_count("left", "particles that have escaped from the domain so far",
+                 [](const Sample& s) { return s.left; });
+  step.add_count("bodies_outside", "bodies whose centre of mass is outside the domain",
                  [](const Sample& s) { return s.bodies_outside; });
 }
 
@@ -61,42 +62,40 @@ void energy_columns(Group energy) {
   entry("kinetic", "kinetic energy of particles and bodies", &Ledger::kinetic);
   entry("gravitational", "gravitational energy, zero at the origin", &Ledger::gravitational);
   entry("elastic_force_elements", "elastic energy of force elements", &Ledger::elastic_force_elements);
-  entry(
-      "elastic_contacts",
-      "elastic energy of contacts, zero where partners are out of reach: of normal forces, below zero where "
-      "these attract, and of the springs of friction, rolling and twisting",
-      &Ledger::elastic_contacts);
-  entry("dissipated_force_elements", "dissipated in force elements since t = 0",
+  entry("elastic_contacts",
+        "elastic energy of contacts, zero outside the interaction range: of normal forces (negative where "
+        "they are adhesive) and of the springs of friction, rolling and twisting",
+        &Ledger::elastic_contacts);
+  entry("dissipated_force_elements", "energy dissipated in force elements since t = 0",
         &Ledger::dissipated_force_elements);
-  entry("dissipated_contacts", "dissipated in contacts since t = 0", &Ledger::dissipated_contacts);
-  entry("dissipated_integrator", "taken out by the time integration since t = 0",
+  entry("dissipated_contacts", "energy dissipated in contacts since t = 0", &Ledger::dissipated_contacts);
+  entry("dissipated_integrator", "energy taken out by the time integration since t = 0",
         &Ledger::dissipated_integrator);
   entry("driver_work", "work of drivers, actuators, applied forces and walls since t = 0",
         &Ledger::driver_work);
-  entry(
-      "carried_out",
-      "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
-      "particle left",
-      &Ledger::carried_out);
+  entry("carried_out",
+        "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended "
+        "when a particle escaped",
+        &Ledger::carried_out);
   energy.add("total", "J", "kinetic, gravitational and elastic energy",
              [](const Sample& s) { return s.ledger.mechanical(); });
+  energy.add("balance_error", "J",
+             "total + dissipated + carried out - driver work, less its value at t = 0, without particles "
+             "outside the domain; with velocity-Verlet this is the effect of its steps on contacts",
+             [](const Sample& s) { return s.balance_error; });
   energy.add(
-      "balance_error", "J",
-      "total + dissipated + carried out - driver work, less its value at t = 0, without what drifts outside; "
-      "with velocity-Verlet what its steps did to contacts",
-      [](const Sample& s) { return s.balance_error; });
-  energy.add("exchanged", "J",
-             "the most kinetic energy of particles at a time, the ranges of that of bodies, of the elastic "
-             "energy of force elements and of the driver work, and what was dissipated, since t = 0",
-             [](const Sample& s) { return s.exchanged; });
+      "exchanged", "J",
+      "largest kinetic energy of particles, plus the ranges of the kinetic energy of bodies, the elastic "
+      "energy of force elements and the driver work, plus the energy dissipated, since t = 0",
+      [](const Sample& s) { return s.exchanged; });
 }
 
-// Parts of what the energy columns hold.
+// Columns with parts of the energies in energy_columns().
 void cohesion_columns(Group energy) {
   energy.add(
       "elastic_cohesion", "J",
-      "energy/elastic_contacts less what the same overlaps had without attraction: below zero where it "
-      "holds",
+      "energy/elastic_contacts less the elastic energy of the same overlaps without adhesion: negative in "
+      "cohesive contacts",
       [](const Sample& s) { return s.particles.cohesion; });
 }
 
@@ -107,30 +106,31 @@ void rotation_columns(Group rotation, bool rolls) {
   part("kinetic", "kinetic energy of the particles' rotation: a part of energy/kinetic",
        &RotationEnergies::kinetic);
   part("elastic_friction",
-       "elastic energy of the springs across the normals of contacts: a part of energy/elastic_contacts",
+       "elastic energy of the tangential springs of contacts: a part of energy/elastic_contacts",
        &RotationEnergies::friction_springs);
   part("elastic_rolling",
-       "elastic energy of the springs against rolling and twisting: a part of energy/elastic_contacts",
+       "elastic energy of the rolling and twisting springs of contacts: a part of energy/elastic_contacts",
        &RotationEnergies::rolling_springs);
   const auto loss = [&](const char* name, const std::string& of, LossKind kind) {
-    rotation.add(name, "J", "what " + of + " dissipated since t = 0: a part of energy/dissipated_contacts",
+    rotation.add(name, "J",
+                 "energy dissipated by " + of + " since t = 0: a part of energy/dissipated_contacts",
                  [kind](const Sample& s) { return s.losses.of[kind]; });
   };
   loss("loss_friction", "friction", kFrictionLoss);
   if (!rolls) return;
-  loss("loss_rolling", "resistance to rolling", kRollingLoss);
-  loss("loss_twisting", "resistance to twisting", kTwistingLoss);
+  loss("loss_rolling", "rolling resistance", kRollingLoss);
+  loss("loss_twisting", "twisting resistance", kTwistingLoss);
 }
 
 void momentum_columns(Group momentum) {
   momentum.add_vector("linear_", "kg m/s", "momentum of the particles",
                       [](const Sample& s) { return s.particles.momentum; });
   momentum.add_vector("angular_", "kg m^2/s",
-                      "angular momentum of the particles about the origin, that of their spins included",
+                      "angular momentum of the particles about the origin, including their spin",
                       [](const Sample& s) { return s.particles.angular_momentum; });
 }
 
-// k: number of the reaction.
+// k: index of the reaction.
 void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
   const char* text = "reaction on the joint's second body at its joint point";
   if (kind == BodyKind::spatial) {
@@ -140,9 +140,9 @@ void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
     const auto in_frame = [k](const Sample& s, Vec3 Reaction::*load) {
       return turned(conjugate(s.reactions[k].frame), s.reactions[k].*load);
     };
-    joint.add_vector("marker_f", "N", "the reaction along the axes of the joint's first marker",
+    joint.add_vector("marker_f", "N", "reaction in the axes of the joint's first marker",
                      [in_frame](const Sample& s) { return in_frame(s, &Reaction::force); });
-    joint.add_vector("marker_torque_", "N m", "the reaction torque along these axes",
+    joint.add_vector("marker_torque_", "N m", "reaction torque in the axes of the joint's first marker",
                      [in_frame](const Sample& s) { return in_frame(s, &Reaction::torque); });
     return;
   }
@@ -152,9 +152,9 @@ void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
             [k](const Sample& s) { return s.reactions[k].torque.z; });
 }
 
-// k: number of the bushing.
+// k: index of the bushing.
 void bushing_columns(Group bushing, std::size_t k) {
-  const std::string along = ", along the bushing's axes on the first body";
+  const std::string along = ", in the bushing's axes on the first body";
   bushing.add_vector("", "m", "displacement of the second body's point" + along,
                      [k](const Sample& s) { return s.bushings[k].shift; });
   bushing.add_vector("turn_", "rad", "rotation vector of the second body's frame" + along,
@@ -165,13 +165,14 @@ void bushing_columns(Group bushing, std::size_t k) {
                      [k](const Sample& s) { return s.bushings[k].torque; });
 }
 
-// k: number of the effort.
+// k: index of the effort.
 void effort_columns(Group effort, bool is_angle, std::size_t k) {
   effort.add("coordinate", is_angle ? "rad" : "m", "coordinate of the joint",
              [k](const Sample& s) { return s.efforts[k].coordinate; });
-  effort.add("rate", is_angle ? "rad/s" : "m/s", "its rate",
+  effort.add("rate", is_angle ? "rad/s" : "m/s", "rate of the coordinate",
              [k](const Sample& s) { return s.efforts[k].rate; });
-  effort.add("effort", is_angle ? "N m" : "N", "effort that pushes the coordinate up",
+  effort.add("effort", is_angle ? "N m" : "N",
+             "effort (generalized force) in the direction of the coordinate",
              [k](const Sample& s) { return s.efforts[k].effort; });
   effort.add("power", "W", "effort times rate", [k](const Sample& s) { return s.efforts[k].power; });
 }
@@ -192,24 +193,24 @@ const char* coordinate_text(JointCoordinate coordinate) {
   return "";
 }
 
-// k: number of the coordinate.
+// k: index of the coordinate.
 void coordinate_columns(Group joint, JointCoordinate coordinate, std::size_t k) {
   const bool angle = is_angle(coordinate);
   const std::string name = word_of(coordinate);
   joint.add(name, angle ? "rad" : "m", coordinate_text(coordinate),
             [k](const Sample& s) { return s.coordinates[k].value; });
-  joint.add(name + "_rate", angle ? "rad/s" : "m/s", "its rate",
+  joint.add(name + "_rate", angle ? "rad/s" : "m/s", "rate of the coordinate",
             [k](const Sample& s) { return s.coordinates[k].rate; });
 }
 
 std::string torque_text(const ContactTarget& target) {
   if (target.wall >= 0)
-    return "torque of these forces about the wall's point, a mesh's origin, where that has come";
+    return "torque of these forces about the wall's point, for a mesh its origin, which moves with the wall";
   return target.row ? "torque of these forces about the origin"
                     : "torque of these forces about the body's centre";
 }
 
-// k: number of the target.
+// k: index of the target.
 void contact_columns(Group contacts, const ContactTarget& target, std::size_t k) {
   const std::string what = target.wall >= 0   ? "the wall"
                            : target.mesh >= 0 ? "the mesh"
@@ -259,12 +260,12 @@ void body_columns(Group body, const Body& of, std::size_t b) {
            [b](const Sample& s) { return s.bodies[b].angular_velocity; });
 }
 
-// k: number of the particle among those that are traced.
+// k: index of the particle among the traced ones.
 void particle_columns(Group particle, bool rotates, std::size_t k) {
   particle.add_vector("", "m", "position", [k](const Sample& s) { return s.traced[k].position; });
   particle.add_vector("v", "m/s", "velocity", [k](const Sample& s) { return s.traced[k].velocity; });
   if (rotates)
-    particle.add_vector("w", "rad/s", "angular velocity along the global axes",
+    particle.add_vector("w", "rad/s", "angular velocity in the global axes",
                         [k](const Sample& s) { return s.traced[k].angular_velocity; });
 }
 

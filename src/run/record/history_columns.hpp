@@ -1,4 +1,4 @@
-// The columns of the history: name, unit, sentence and value of each in one place, and what the values are
+// The columns of the history: name, unit, description and value of each, and the sample that the values are
 // taken from.
 #pragma once
 
@@ -15,22 +15,22 @@
 
 namespace scree {
 
-// One instant, complete on rank 0.
+// The quantities of one instant, complete on rank 0.
 struct HistorySample {
-  Real time = 0, step = 0;  // step: length of the one just taken [s]
+  Real time = 0, step = 0;  // step: length of the last step [s]
   StepCounts counts;
   ParticleLedger particles;
-  Ledger ledger, inside;                      // the latter without what drifts outside the space
+  Ledger ledger, inside;                      // inside: without particles outside the domain
   Real balance_error = 0, exchanged = 0;      // [J]
   RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
-  std::int64_t left = 0, bodies_outside = 0;  // particles, bodies
-  std::vector<Reaction> reactions;            // of the joints and drivers that are recorded
-  std::vector<JointEffortSample> efforts;     // of all on joints that is recorded
-  std::vector<JointReading> coordinates;      // of the joints that are recorded
-  std::vector<BushingSample> bushings;        // those that are recorded
+  std::int64_t left = 0, bodies_outside = 0;  // escaped particles; bodies outside the domain
+  std::vector<Reaction> reactions;            // of the recorded joints and drivers
+  std::vector<JointEffortSample> efforts;     // of the recorded elements on joints
+  std::vector<JointReading> coordinates;      // of the recorded joints
+  std::vector<BushingSample> bushings;        // of the recorded bushings
   std::vector<ContactSum> contacts;           // per entry of Output::history_contacts
-  std::vector<BodyMotion> bodies;             // all of them, where some are recorded
-  std::vector<TracedParticle> traced;         // per entry of Output::history_particles; NaN: removed
+  std::vector<BodyMotion> bodies;             // all bodies, if some are recorded
+  std::vector<TracedParticle> traced;         // per entry of Output::history_particles; NaN: removed particle
 };
 
 struct RecordedColumn {
@@ -38,8 +38,7 @@ struct RecordedColumn {
   std::function<Real(const HistorySample&)> value;
 };
 
-// reactions, efforts, coordinates, bushings: of any sample; they name the joints, what acts on them, and the
-// bushings.
+// reactions, efforts, coordinates, bushings: of any sample; the columns take their names from them.
 std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
                                             const std::vector<JointEffortSample>& efforts = {},
                                             const std::vector<JointReading>& coordinates = {},

@@ -6,7 +6,7 @@
 namespace scree {
 namespace {
 
-constexpr Real kNoArm = 1e-9;  // from here down a point is its body's centre [m]
+constexpr Real kNoArm = 1e-9;  // a point at most this far from the body's centre coincides with it [m]
 
 bool acts(const TimeFunction& actuator) {
   return actuator.kind != TimeFunctionKind::constant || actuator.value != 0;
@@ -16,7 +16,7 @@ Vec3 position_of(std::span<const BodyMotion> motion, int body, Vec3 point) {
   return body == kGround ? point : point_motion(motion[static_cast<std::size_t>(body)], point).position;
 }
 
-// From the bushing's frame on its first body to the global one.
+// Rotation from the bushing's frame on its first body to the global axes.
 Mat3 axes_of(const Bushing& bushing, std::span<const BodyMotion> motion) {
   const Mat3 marker = rotation_matrix(bushing.marker[0]);
   if (bushing.body[0] == kGround) return marker;
@@ -76,7 +76,7 @@ LinkLines::Look LinkLines::look(const Multibody& multibody, const MultibodyState
   return look;
 }
 
-// In the order of the lines.
+// Appends force, torque and reaction in the order of the lines.
 void LinkLines::add_forces(const Multibody& multibody, const MultibodyState& state, Real t,
                            std::span<const BodyMotion> motion, Look& look) const {
   const auto add = [&look](Real force, Real torque, Vec3 reaction) {
@@ -109,21 +109,22 @@ LineSnapshot LinkLines::Look::snapshot() const {
   const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
     out.fields.push_back(field_of(name, label, values));
   };
-  add("link", {"1", "number of the joint or force element, which counts the names"}, link);
+  add("link", {"1", "index of the joint or force element in the list of names"}, link);
   add("kind",
       {"1",
        "0 joint, 1 spring-damper, 2 cylinder or spring-damper with an actuator, 3 bushing, 4 torsional "
        "spring-damper"},
       kind);
   add("force",
-      {"N", "size of a joint's reaction and a bushing's force; tension of a spring-damper and a cylinder"},
+      {"N", "magnitude of the reaction (joint) or force (bushing); tensile force (spring-damper, cylinder)"},
       force);
   add("torque",
       {"N m",
-       "size of a joint's reaction torque and a bushing's; of a torsional spring-damper that on its second "
-       "body"},
+       "magnitude of the torque of a joint or bushing; for a torsional spring-damper the torque on its "
+       "second body"},
       torque);
-  add("length", {"m", "of the line; of a spring-damper and a cylinder between its points"}, length);
+  add("length", {"m", "length of the line; for spring-dampers and cylinders the distance of their points"},
+      length);
   add("reaction", {"N", "force on the second body, global axes"}, reaction);
   return out;
 }

@@ -1,4 +1,4 @@
-// Joints and force elements as snapshots show them: a line for each.
+// Joints and force elements in snapshots: one line for each.
 #pragma once
 
 #include <span>
@@ -13,30 +13,31 @@
 
 namespace scree {
 
-// What a line stands for, as files have it.
+// Kind of element that a line shows, as files store it.
 enum class LinkKind : int { joint, spring_damper, actuator, bushing, torsional_spring_damper };
 
-// Joints, spring-dampers, torsional ones and bushings, each in the deck's order. The line of a force element
-// is between its two points, and so is that of a joint whose points may part. Where the two coincide, as in a
-// pin or a bushing, it is from there to the centre of mass of the second body or, where that is the ground or
-// the point itself, of the first one; of a torsional spring-damper from centre to centre.
+// Joints, spring-dampers, torsional spring-dampers and bushings, each group in the deck's order. The line of
+// a force element, or of a joint whose points may separate, connects the two points. If the points coincide
+// (revolute joints, bushings), the line runs from there to the centre of mass of the second body, or of the
+// first body if the second is the ground or has its centre at the point. The line of a torsional
+// spring-damper connects the two centres.
 class LinkLines {
  public:
-  // At one instant.
+  // The lines at one instant.
   struct Look {
-    std::vector<Vec3> ends;  // two of each [m]
+    std::vector<Vec3> ends;  // two per line [m]
     std::vector<int> link, kind;
     std::vector<Real> force, torque, length;  // [N], [N m], [m]
     std::vector<Vec3> reaction;               // on the second body, global axes [N]
 
-    LineSnapshot snapshot() const;  // views of it
+    LineSnapshot snapshot() const;  // views of this object
   };
 
-  // The model is kept.
+  // Keeps a reference to the model.
   explicit LinkLines(const Model& model);
   bool empty() const { return lines_.empty(); }
   std::vector<std::string> names() const;
-  // motion: of the bodies in this state, at the time t.
+  // motion: of the bodies in this state; t: time [s].
   Look look(const Multibody& multibody, const MultibodyState& state, Real t,
             std::span<const BodyMotion> motion) const;
 
@@ -44,8 +45,8 @@ class LinkLines {
   struct Line {
     std::string name;
     LinkKind kind;
-    int body[2];    // at either end
-    Vec3 point[2];  // in their frames [m]
+    int body[2];    // of the two ends
+    Vec3 point[2];  // in the frames of these bodies [m]
   };
   void add(const std::string& name, LinkKind kind, const int (&body)[2], const Vec3 (&point)[2]);
   void add_pin(const std::string& name, LinkKind kind, const int (&body)[2], const Vec3 (&point)[2]);

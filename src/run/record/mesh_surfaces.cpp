@@ -15,7 +15,7 @@ Real area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
          norm(cross(mesh.vertices[triangle.vertex[1]] - a, mesh.vertices[triangle.vertex[2]] - a));
 }
 
-// Of a segment, from one of its triangles: without the depth along z to which it is drawn.
+// Length of a 2D segment, from one of its triangles, without the extrusion along z.
 Real length(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
   const auto along = [&](int i, int j) {
     Vec3 way = mesh.vertices[triangle.vertex[j]] - mesh.vertices[triangle.vertex[i]];
@@ -54,9 +54,9 @@ SeriesTriangles MeshSurfaces::triangles() const {
   all.corners.resize(3 * triangles_);
   all.numbers = {
       {"surface", "mesh of a body or a wall, counted from 0 in this order", {}},
-      {"body", "body that the mesh belongs to, counted from 0 in the deck's order; -1: a wall's", {}},
-      {"wall", "wall that the mesh is, counted from 0 in the deck's order; -1: a body's", {}},
-      {"material", "material, counted from 0 in the deck's order; -1: none, it touches nothing", {}},
+      {"body", "body that the mesh belongs to, counted from 0 in the deck's order; -1: a wall", {}},
+      {"wall", "wall that the mesh belongs to, counted from 0 in the deck's order; -1: a body", {}},
+      {"material", "material, counted from 0 in the deck's order; -1: none, no contact detection", {}},
       {"triangle", "number of the triangle in its file or shape, counted from 0", {}}};
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const Part& part = parts_[p];
@@ -73,7 +73,8 @@ SeriesTriangles MeshSurfaces::triangles() const {
   return all;
 }
 
-// In the periodic box as particles are: the middle of the mesh in it, its triangles together.
+// Positions of the vertices in the periodic box. The mesh is shifted as a whole, so that its centre lies in
+// the box.
 void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* position) const {
   const Mat3 axes = rotation_matrix(orientation(carrier));
   const Vec3 point = point_motion(carrier, part.point).position,
@@ -83,8 +84,8 @@ void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* posi
   for (const Vec3 vertex : part.mesh->vertices) *position++ = point + axes * vertex + shift;
 }
 
-// What each triangle has becomes what it has per area. In 2D a segment of a line is two triangles, one after
-// the other: both get what the two have per length.
+// Divides the values of triangles by their areas. In 2D two consecutive triangles form a segment: both get
+// the sum of the two over the segment's length.
 template <class T>
 void MeshSurfaces::spread(std::vector<T>& values) const {
   if (values.empty()) return;

@@ -1,4 +1,4 @@
-// The meshes of walls and bodies as snapshots show them.
+// The meshes of walls and bodies in snapshots.
 #pragma once
 
 #include <cstdint>
@@ -13,33 +13,33 @@
 
 namespace scree {
 
-// One after the other in the order of SurfaceSet, then those that touch nothing; triangles in the order of
-// the file or the shape.
+// Meshes in the order of SurfaceSet, then those without contact detection; triangles in the order of the file
+// or the shape.
 class MeshSurfaces {
  public:
-  // Where they are at one instant, and what acts on them.
+  // Positions and loads of the meshes at one instant.
   struct Look {
-    std::vector<Vec3> position;  // of the corners [m]
-    // Per triangle, those that the output shows.
+    std::vector<Vec3> position;  // of the vertices [m]
+    // Per triangle; only the fields that the output has.
     std::vector<Real> pressure;                   // [Pa], in 2D [N/m]
-    std::vector<Vec3> shear;                      // likewise
+    std::vector<Vec3> shear;                      // [Pa], in 2D [N/m]
     std::vector<Real> impact_work, sliding_work;  // [J]
     std::vector<Real> wear_depth;                 // [m]
   };
 
-  // The model is kept.
+  // Keeps a reference to the model.
   explicit MeshSurfaces(const Model& model);
   SeriesTriangles triangles() const;
-  // motion: of the carriers (bodies, then placed walls); works: of all ranks, none where none is shown.
+  // motion: of the carriers (bodies, then placed walls); works: of all ranks, empty if no field needs them.
   Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
             const std::vector<std::int64_t>& works) const;
 
  private:
   struct Part {
-    Index surface;      // of the placed ones, or -1: it touches nothing
+    Index surface;      // index among the placed surfaces; -1: no contact detection
     int carrier, wall;  // wall: index into Model::walls, or -1 where the carrier is a body
     int material;
-    Vec3 point;                               // its origin in the carrier's frame [m]
+    Vec3 point;                               // origin of the mesh in the carrier's frame [m]
     std::size_t first_point, first_triangle;  // rows
     const SurfaceMesh* mesh;
   };

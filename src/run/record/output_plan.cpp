@@ -14,7 +14,7 @@ std::int64_t outputs(Real end, Real interval) {
   return 1 + static_cast<std::int64_t>(std::fmin(std::ceil(end / interval * (1 - 1e-9)), kMost));
 }
 
-// In the order in which the fields count them.
+// The lists of names, in the order in which the fields number their entries.
 std::vector<SeriesNames> names_of(const Model& model) {
   SeriesNames bodies{kBodyNames, {}}, groups{kGroupNames, {}};
   for (const Body& body : model.bodies) bodies.entries.push_back(body.name);

@@ -1,4 +1,4 @@
-// What a run writes, as the deck has it planned: how often, and how its files are laid out.
+// The files of a run as planned from the deck: numbers of outputs and layout.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,17 @@
 
 namespace scree {
 
-// Snapshots: at the start, at every interval, and at the end; an end that an interval meets counts once.
+// Number of snapshots: at the start, at every interval, and at the end; an end at a multiple of the interval
+// counts once.
 std::int64_t likely_snapshots(const Model& model);
-// Rows of the history, likewise; of a row per step where steps are fixed. 0: not known.
+// Number of rows of the history, counted likewise, or one per fixed step. 0: not known.
 std::int64_t likely_rows(const Model& model);
-// Of a row per step where steps adapt, if nothing ever touches.
+// The least number of rows: with adaptive steps and one row per step the number without any contact.
 std::int64_t fewest_rows(const Model& model);
 
-// Of new files, on one rank; triangles are left out.
+// Options of new files on one rank, without triangles.
 SeriesOptions series_options(const Model& model);
-// Views of the values of the fields that the deck wants, in its order.
+// Views of the values of the fields that the deck selects, in its order.
 std::vector<PointField> point_fields(const Output& output, const std::vector<OutputValues>& values);
 
 }  // namespace scree

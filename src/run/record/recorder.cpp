@@ -17,7 +17,7 @@
 namespace scree {
 namespace {
 
-// The ones that the deck wants recorded.
+// The reactions that the deck selects for the history.
 std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_reactions == 0) return {};
   std::vector<Reaction> reactions = link.multibody()->reactions(state.bodies, state.clock.time);
@@ -47,7 +47,7 @@ std::vector<BushingSample> bushings_of(const Model& model, const BodyLink& link,
   return bushings;
 }
 
-// Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
+// Positions of the particles that the deck traces, NaN for removed ones. Complete on rank 0.
 std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
   if (wanted.empty()) return {};
@@ -62,7 +62,7 @@ std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Ba
   return traced;
 }
 
-// The part of all ranks' particles that this rank writes, with the fields that follow from their ids.
+// This rank's part of the output in the order of the ids, with the fields that are functions of the id.
 ParticleOutput in_id_order(const Ranks& ranks, const Model& model, ParticleOutput p) {
   const IdOrder order(ranks, model.particles.totals.count, p.global_id);
   p.global_id = order.apply(std::move(p.global_id)), p.position = order.apply(std::move(p.position));
@@ -109,7 +109,8 @@ WantedLines Recorder::wanted_lines() const {
   return lines;
 }
 
-// Several ranks write together, and they do not wait for their devices at the same time.
+// Snapshots are written late only on a single rank: with several ranks the writing is collective, and the
+// ranks wait for their devices at different times.
 bool Recorder::writes_late() const { return backend_.computes_asynchronously() && link_.ranks().alone(); }
 
 Recorder::~Recorder() { backend_.set_idle_work({}); }
@@ -161,12 +162,12 @@ void Recorder::take_energies(const State& state, HistorySample& sample) const {
   sample.ledger =
       make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   sample.inside = inside_ledger(sample.ledger, sample.particles, state.carried_out);
-  // Not yet at the start: the first step can tell more.
+  // The check is left out at the start, where the first step gives a more specific error.
   if (state.balance.open && link_.ranks().any(!std::isfinite(sample.ledger.mechanical())))
     throw SimulationError("stage output: the energy of particles and bodies is not finite");
 }
 
-// Fills the energies, and brings the balance up to date.
+// Fills in the energies and updates the balance.
 void Recorder::balance(State& state, HistorySample& sample) const {
   take_energies(state, sample);
   sample.losses = sample.particles.rotation.losses;

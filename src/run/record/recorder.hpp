@@ -1,4 +1,4 @@
-// History rows and snapshots from the state of both sides.
+// Writes history rows and snapshots from the states of particles and bodies.
 #pragma once
 
 #include <optional>
@@ -21,39 +21,40 @@ namespace scree {
 
 class Recorder : public Records {
  public:
-  // Continues existing files after state.history_rows rows and state.snapshots snapshots, or starts new ones.
+  // Continues existing files after state.history_rows rows and state.snapshots snapshots, or starts new
+  // files.
   Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
            const State& state);
   ~Recorder() override;
-  Recorder(const Recorder&) = delete;  // the backend knows its address
+  Recorder(const Recorder&) = delete;  // the backend holds its address
   Recorder& operator=(const Recorder&) = delete;
 
   void history(State& state, Real h) override;
   void sample_energies(State& state) override;
-  // After a restart with another deck: what that adds to the energies or takes from them, at this instant, is
-  // neither a balance error nor exchanged. The balance goes on from its last sample.
+  // Called after a restart with another deck. The change of the energies by the new deck counts neither as
+  // balance error nor as exchanged; the balance continues from its last sample.
   void rebase_balance(State& state);
-  // Takes one. On one rank a backend that computes asynchronously goes on with its steps, and the snapshot is
-  // written while the host would only wait for them, at the latest by flush() or before the next one.
+  // Takes a snapshot. On a single rank an asynchronous backend continues with its steps meanwhile, and the
+  // snapshot is written while the host would be idle, at the latest by flush() or before the next snapshot.
   void snapshot(State& state) override;
-  // Where the backend fails to hand out the particles, the snapshot is given up.
+  // Writes a pending snapshot. It is dropped if the backend fails to return the particles.
   void write_pending() override;
-  // Brings all that was recorded to disk.
+  // Brings all recorded data to disk.
   void flush();
-  void flush_history();  // rank 0's part of it alone, at any time
-  void finish();         // after the last record: flushes, and brings up to date what is written seldom
-  // Touching, at the last row of the history; below zero before the first.
+  void flush_history();  // the part of rank 0 alone, at any time
+  void finish();         // after the last record: flushes, and completes what is written seldom
+  // Number of contacts at the last row of the history; negative before the first row.
   std::int64_t contacts() const { return contacts_; }
   std::int64_t snapshots_written() const { return snapshots_->snapshots(); }
 
  private:
-  // Taken; its particles are with the backend until they are written.
+  // A snapshot taken but not written; its particles stay in the backend until then.
   struct PendingSnapshot {
     Real time;
     BodyPoints bodies;            // on rank 0
-    MeshSurfaces::Look surfaces;  // likewise, where there are meshes
-    ContactLines contacts;        // where they are shown
-    LinkLines::Look links;        // on rank 0, where they are shown
+    MeshSurfaces::Look surfaces;  // on rank 0, with meshes
+    ContactLines contacts;        // if the output has them
+    LinkLines::Look links;        // on rank 0, if the output has them
   };
 
   WantedLines wanted_lines() const;
@@ -65,10 +66,10 @@ class Recorder : public Records {
   const Model& model_;
   Backend& backend_;
   const BodyLink& link_;
-  std::optional<MeshSurfaces> surfaces_;  // on rank 0, where there are meshes
-  std::optional<LinkLines> links_;        // likewise, where they are shown
+  std::optional<MeshSurfaces> surfaces_;  // on rank 0, with meshes
+  std::optional<LinkLines> links_;        // on rank 0, if the output has them
   std::vector<RecordedColumn> columns_;   // on rank 0
-  std::optional<HistoryWriter> history_;  // likewise
+  std::optional<HistoryWriter> history_;  // on rank 0
   std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
   std::int64_t contacts_ = -1;

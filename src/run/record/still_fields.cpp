@@ -19,8 +19,8 @@ std::string still_fields(const Model& model) {
   });
   if (still.empty()) return "";
   return fmt::format(
-      "output.fields: {} will be the same in all snapshots: no particle rotates, as no pair in contact.pairs "
-      "has friction",
+      "output.fields: {} will be the same in all snapshots: no particle rotates because no pair in "
+      "contact.pairs has friction",
       fmt::join(still, ", "));
 }
 

@@ -1,4 +1,4 @@
-// Fields of a snapshot that never change, though the deck asks for them.
+// Snapshot fields that the deck selects although they are constant in time.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// A warning where output.fields names fields of rotation and no particle rotates; "" elsewhere.
+// The warning for selected fields of rotation in a model without rotating particles; otherwise empty.
 std::string still_fields(const Model& model);
 
 }  // namespace scree

@@ -7,20 +7,20 @@
 namespace scree {
 namespace {
 
-// Placed walls are carriers behind the bodies, in their order.
+// Index of a placed wall's carrier: placed walls follow the bodies, in their order.
 std::size_t carrier_of_wall(const Model& model, int wall) {
   std::size_t carrier = model.bodies.size();
   for (int w = 0; w < wall; ++w) carrier += model.walls[static_cast<std::size_t>(w)].is_placed();
   return carrier;
 }
 
-// A carrier's torque is about its origin; this is about the wall's point, where that has come.
+// Moves the torque from the carrier's origin to the wall's point, which moves with the wall.
 ContactSum on_wall(const Wall& wall, ContactSum sum, const BodyMotion& motion) {
   sum.torque -= cross(body_arm(motion, wall.point), sum.force);
   return sum;
 }
 
-// The contacts of a row as one: torques about the origin, because the bodies move.
+// The contacts of a row of bodies summed up, with torques about the global origin because the bodies move.
 ContactSum row_sum(const std::vector<int>& bodies, const std::vector<ContactSum>& contacts,
                    const std::vector<BodyMotion>& motion) {
   ContactSum sum;
@@ -66,7 +66,7 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
           SurfaceSet::placed_mesh(model, target.bodies.front(), target.mesh))];
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
-    else if (!motion.empty())  // rank 0
+    else if (!motion.empty())  // on rank 0
       sum = row_sum(target.bodies, on_carriers, motion);
   }
   return sums;

@@ -1,4 +1,4 @@
-// What the history says of the contacts of chosen bodies, rows of bodies and walls.
+// Contact sums of selected bodies, rows of bodies and walls for the history.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace scree {
 
-// One entry for each of Output::history_contacts, at this instant; complete on rank 0. Collective. Asks the
-// backend only for what is recorded.
+// One entry per element of Output::history_contacts, at the current instant; complete on rank 0. Collective.
+// Requests only recorded quantities from the backend.
 std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link, const State& state,
                                         Backend& backend);
 

@@ -14,11 +14,12 @@
 namespace scree {
 namespace {
 
-constexpr Real kMostShare = 0.01;  // of the energy exchanged
-// Share of the contacts' dissipation that explicit steps of the chosen length may leave unaccounted for.
+constexpr Real kMostShare = 0.01;  // largest change of energy without a warning, over the energy exchanged
+// Energy that explicit steps of the chosen length may leave unaccounted for, over the dissipation of the
+// contacts.
 constexpr Real kUnaccounted = 0.03;
-constexpr Real kRoundOff = 1e-9;  // of the energies that there are: less than that is no reason to warn
-constexpr Real kLastBits = 16 * std::numeric_limits<Real>::epsilon();  // of a position
+constexpr Real kRoundOff = 1e-9;  // energies below this share of the energies present are round-off
+constexpr Real kLastBits = 16 * std::numeric_limits<Real>::epsilon();  // round-off of a position, relative
 constexpr std::int64_t kSamplesPerDoubling = 16;
 
 EnergyExtremes wider(const EnergyExtremes& a, const EnergyExtremes& b) {
@@ -27,8 +28,8 @@ EnergyExtremes wider(const EnergyExtremes& a, const EnergyExtremes& b) {
           std::max(a.most_work, b.most_work)};
 }
 
-// Below which the energies' last bits may be what is seen [J]. The weights of particles stand for sums that
-// cancel, and for positions far from the origin.
+// Energies below this are round-off [J]. The term with the particles' weights covers sums that cancel and
+// positions far from the origin.
 Real round_off(const Ledger& ledger, const Model& model) {
   Real all = 0;
   for (const Real entry : ledger.entries()) all += std::abs(entry);
@@ -38,18 +39,18 @@ Real round_off(const Ledger& ledger, const Model& model) {
   return kRoundOff * all + kLastBits * weights * far;
 }
 
-// By how much one impact's energy is misjudged in the steps that are tried, as a share of it: that of the
-// velocities of the rebound, along the normal and across it.
+// Relative error of the energy of one impact in the steps of a trial, from the errors of the normal and the
+// tangential rebound velocity.
 Real energy_error(const StepTrial& trial) {
   const TrialResult& r = trial.result;
   const Real along = r.exact.restitution, across = std::abs(r.exact.across);
-  const Real slope = trial.rubs ? std::tan(trial.incidence) : 0;  // of the approach
+  const Real slope = trial.rubs ? std::tan(trial.incidence) : 0;  // tangential over normal approach velocity
   const Real wrong = along * along * r.normal_error + across * std::max(across, Real(0.1)) * r.across_error;
   return 2 * wrong / (1 + slope * slope);
 }
 
-// The largest of the deck's impacts in its explicit steps. Unknown beside bodies with shapes, or with meshes
-// on planes: no trial covers the contacts of bodies in their own steps.
+// The largest energy error of the deck's impacts in its explicit steps. Empty for bodies with shapes and for
+// meshes that touch planes: no trial covers contacts of bodies, which take steps of their own.
 std::optional<Real> impact_error(const Model& model) {
   const auto has_shapes = [](const Body& body) { return !body.shapes.empty(); };
   if (std::ranges::any_of(model.bodies, has_shapes) || largest_corner_radius(model) > 0) return {};
@@ -59,20 +60,20 @@ std::optional<Real> impact_error(const Model& model) {
   return largest;
 }
 
-// after: what follows the share in the sentence.
+// after: text that follows the share within the sentence.
 std::string share_text(Real energy, Real exchanged, const char* after = "") {
   return exchanged > 0 ? fmt::format(", {:.2g} % of the {:.4g} J exchanged{}", 100 * energy / exchanged,
                                      exchanged, after)
                        : "";
 }
 
-// Explicit steps whose impacts are right: what is missing was not lost, but not accounted for.
+// The message where explicit steps resolve the impacts: the energy is missing in the accounting alone.
 std::string accounting_warning(const BalanceState& balance, Real error, Real impacts) {
   return fmt::format(
-      "{:.3g} J{} are not accounted for: explicit steps account for what contacts dissipate, {:.3g} J here, "
-      "to first order in time.step only. Their motion is of second order: impacts in these steps keep within "
-      "{:.2g} % of their energy (scree check shows the rebounds). A shorter time.step brings the ledger "
-      "closer",
+      "{:.3g} J{} are not accounted for: explicit steps integrate the dissipation of contacts, {:.3g} J "
+      "here, to first order in time.step only. The motion is of second order: the energy of impacts in these "
+      "steps is right within {:.2g} % (scree check prints the rebounds). A shorter time.step reduces the "
+      "balance error",
       std::abs(error), share_text(std::abs(error), balance.exchanged, ","), balance.last.dissipated_contacts,
       100 * impacts);
 }
@@ -81,8 +82,8 @@ std::string remedy(const Model& model, std::optional<Real> impacts) {
   if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
     return impacts.value_or(0) > kMostShare
                ? fmt::format(
-                     "shorten time.step, in which impacts are off by up to {:.2g} % of their energy "
-                     "(scree check shows the rebounds)",
+                     "shorten time.step: in these steps the energy of impacts is off by up to {:.2g} % "
+                     "(scree check prints the rebounds)",
                      100 * *impacts)
                : "shorten time.step";
   return model.time.control == StepControl::adaptive
@@ -131,8 +132,9 @@ void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& n
   balance.last = ledger;
 }
 
-// What forces could do, weights on the way from the origin, and the motion in a step that comes of the last
-// bits of positions: where nothing moves all energies are that small, and so is what was exchanged.
+// The round-off has three terms: the energy that the forces could exchange, the weights times their distances
+// from the origin, and the kinetic energy of velocities that result from the last bits of positions. In a
+// system without motion all energies, and the energy exchanged, are that small.
 BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State& state) {
   const Real t = state.clock.time;
   const MultibodyEnergies energies = bodies.energies(state.bodies, t);
@@ -148,9 +150,10 @@ BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State&
   return {energies.kinetic + std::abs(energies.elastic), state.bodies.integrator_loss, small};
 }
 
-// HHT has an entry of its own for its effect. The effect of velocity-Verlet on contacts is the balance error;
-// its entry is a function of state, which goes to and fro. Bodies may hold much and exchange next to nothing,
-// as a crank that is driven at constant speed: energy taken out of them is then measured by what they hold.
+// HHT has a ledger entry for its numerical dissipation. The effect of velocity-Verlet on contacts is the
+// balance error; its own ledger entry is a function of the state and oscillates. Bodies may hold much energy
+// and exchange almost none, for example a crank driven at constant speed: energy taken out of bodies is then
+// compared with the energy that they hold.
 std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   const Real error = balance_error(balance), taken = taken_by_integrator(balance);

@@ -25,8 +25,8 @@ std::string bodies_outside_warning(const Model& model, const MultibodyState& sta
   const BodiesOutside outside = bodies_outside(model, state);
   if (outside.count == 0) return "";
   return fmt::format(
-      "body \"{}\" is outside the space at t = {:.6g} s: bodies that leave are counted, neither stopped nor "
-      "removed",
+      "body \"{}\" is outside the domain at t = {:.6g} s: a body that leaves is counted, but neither stopped "
+      "nor removed",
       model.bodies[outside.first].name, t);
 }
 

@@ -1,4 +1,4 @@
-// Bodies that have left the space. Nothing stops or removes them: they are counted.
+// Bodies outside the domain: they are counted, and neither stopped nor removed.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace scree {
 
-// How many bodies have their centre beyond a side of the space that is not periodic, wall or open, and the
-// first of them in the deck's order.
+// Number of bodies whose centre of mass is beyond a non-periodic side of the domain, wall or open, and the
+// index of the first one in the deck's order.
 struct BodiesOutside {
   std::int64_t count = 0;
   std::size_t first = 0;
 };
-// state: of rank 0; no bodies are outside on others.
+// state: of rank 0; other ranks find no bodies.
 BodiesOutside bodies_outside(const Model& model, const MultibodyState& state);
-// Of a state at time t [s]; empty where none is outside.
+// The warning for a state at time t [s]; empty if no body is outside.
 std::string bodies_outside_warning(const Model& model, const MultibodyState& state, Real t);
 
 }  // namespace scree

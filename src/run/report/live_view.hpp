@@ -1,4 +1,4 @@
-// What a run shows of itself while it goes on: its progress line, and the file that `scree status` reads.
+// Output of a run while it goes on: the progress line, and the file that `scree status` reads.
 #pragma once
 
 #include <chrono>
@@ -13,27 +13,27 @@
 
 namespace scree {
 
-// Looks at nothing but what the host has at hand: it costs no step anything, and moves none.
+// Uses data on the host alone, so that it neither slows steps down nor changes them.
 class LiveView {
  public:
-  // backend: its description.
+  // backend: description of the backend.
   LiveView(const Model& model, const RunOptions& options, const std::string& backend, Log& log);
 
-  // The state that the steps begin with.
+  // Takes the state before the first step.
   void begin(const State& state);
-  // After each step or batch of them; h: length of the last one [s]; contacts: touching at the last row of
-  // the history, below zero where there was none. Rewrites the progress line, or prints it: in a log a line
-  // per tenth of the run, and after ten minutes without one. Whether it is time to bring to disk what was
-  // recorded.
+  // Called after each step or batch of steps. h: length of the last step [s]; contacts: number at the last
+  // row of the history, negative before the first row. Rewrites the progress line on a terminal; in a log it
+  // prints a line per tenth of the run, and after ten minutes without one. Returns whether recorded data
+  // should be flushed to disk.
   bool look(const State& state, Real h, std::int64_t contacts);
-  // name: of the file.
+  // Notes a new checkpoint. name: file name; time: simulated time [s].
   void checkpoint_written(const std::string& name, Real time);
-  // Leaves the status file, on rank 0. A disk that is full does not end a run here: results will tell. word:
-  // RunStatus::state; contacts: as above.
+  // Writes the status file, on rank 0. A full disk does not end the run here, because writing the results
+  // will report it. word: RunStatus::state; contacts: as above.
   void write(const std::string& word, const State& state, std::int64_t contacts, std::int64_t snapshots);
 
   const std::string& started() const { return status_.started; }  // UTC
-  double wall_seconds() const;                                    // since then
+  double wall_seconds() const;                                    // wall time since the start [s]
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -47,7 +47,7 @@ class LiveView {
   RunStatus status_;
   RecentRate rate_;
   Clock::time_point start_ = Clock::now(), last_look_ = start_, last_logged_ = start_, last_flush_ = start_;
-  Real start_time_ = 0;  // simulated
+  Real start_time_ = 0;  // simulated time [s]
   int tenths_reported_ = 0;
 };
 

@@ -7,7 +7,7 @@
 namespace scree {
 namespace {
 
-constexpr double kRecent = 20;  // rates are of about so long a time [s]
+constexpr double kRecent = 20;  // period over which rates are averaged [s]
 
 }  // namespace
 
@@ -44,7 +44,7 @@ std::string progress_line(const Progress& p) {
 
 void RecentRate::add(double wall, std::int64_t steps, Real time) {
   samples_.push_back({wall, steps, time});
-  // The oldest one that stays is just older than the others are to be.
+  // The oldest sample kept is just older than the averaging period.
   while (samples_.size() > 2 && wall - samples_[1].wall > kRecent) samples_.pop_front();
 }
 

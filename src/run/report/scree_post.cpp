@@ -28,7 +28,7 @@ bool can_run(const fs::path& path) {
   return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
 }
 
-// Empty where there is none.
+// Path of the program on the PATH; empty if it is not there.
 std::string on_the_path() {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -45,7 +45,7 @@ std::string above_this_program() {
   return "";
 }
 
-// Of waitpid(). A signal does not end that call.
+// The status of waitpid(), which a signal to this process does not interrupt.
 int status_at_end(pid_t process) {
   constexpr useconds_t kLook = 20000;  // [us]
   int status = 0;
@@ -56,7 +56,7 @@ int status_at_end(pid_t process) {
   return status;
 }
 
-// What it said last, without the word that begins its messages.
+// The last message of the program, without the prefix "error: ".
 std::string last_message(const std::string& path) {
   std::ifstream file(path);
   std::string last;
@@ -66,7 +66,7 @@ std::string last_message(const std::string& path) {
   return last.starts_with(word) ? last.substr(word.size()) : last;
 }
 
-// Throws unless it went well. It ends with 2 where it was asked for what it cannot do.
+// Throws if the program failed. Its exit code 2 means a request that it cannot fulfil.
 void judge(int status, const std::string& program, const std::string& said) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   const std::string end = WIFSIGNALED(status)
@@ -82,14 +82,14 @@ void judge(int status, const std::string& program, const std::string& said) {
 std::string find_scree_post() {
   if (const char* const named = std::getenv("SCREE_POST"); named != nullptr && *named != '\0') {
     if (can_run(named)) return named;
-    throw InputError(fmt::format("environment variable SCREE_POST = {}: is no program", named));
+    throw InputError(
+        fmt::format("environment variable SCREE_POST = {}: is not an executable program", named));
   }
   for (const std::string& found : {on_the_path(), above_this_program()})
     if (!found.empty()) return found;
   throw InputError(
-      "--picture needs the program scree-post, which draws: it is not on the PATH, and the environment "
-      "variable "
-      "SCREE_POST does not name it; pip install ./postprocess installs it");
+      "--picture needs the program scree-post for drawing: it is not on the PATH, and the environment "
+      "variable SCREE_POST does not name it; pip install ./postprocess installs it");
 }
 
 void run_scree_post(const std::string& program, const std::vector<std::string>& words,

@@ -1,4 +1,4 @@
-// The program that draws: scree-post of the Python package in postprocess/.
+// Runs scree-post of the Python package in postprocess/, which draws pictures.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace scree {
 
-// Its path: what the environment variable SCREE_POST names, or the first one on the PATH, or that of the
-// source tree which this program was built in. Throws InputError where there is none.
+// Path of scree-post: the value of the environment variable SCREE_POST, or the first one on the PATH, or that
+// in the source tree of this build. Throws InputError if there is none.
 std::string find_scree_post();
-// Runs it with these words and waits for it; what it says goes into the file `log`. Where it fails, throws
-// the last line of that: InputError where it was asked for what it cannot do, else IoError. A signal to this
-// process (run/report/signals.hpp) ends it, too, which is no failure.
+// Runs the program with these arguments and waits for it; its output goes into the file `log`. A failure
+// throws the last line of the output: InputError if the request cannot be fulfilled, else IoError. A signal
+// to this process (run/signals.hpp) also ends the program, and does not count as a failure.
 void run_scree_post(const std::string& program, const std::vector<std::string>& words,
                     const std::string& log);
 

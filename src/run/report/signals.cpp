@@ -12,7 +12,7 @@ volatile std::sig_atomic_t received = 0;
 
 void remember(int signal) { received = signal; }
 
-// nohup has a program ignore the end of its terminal.
+// nohup makes a program ignore the hangup of its terminal.
 bool hangup_is_ignored() {
   struct sigaction now {};
   return sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;

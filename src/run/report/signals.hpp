@@ -1,15 +1,15 @@
-// Signals that ask for a checkpoint and a clean end: SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, and SIGHUP
-// unless whoever started the program had it ignored (nohup). SLURM sends one before the time limit. SIGPIPE
-// and SIGXFSZ are ignored: nobody reads the log any longer, and the run goes on; a file may not grow any
-// longer, and the write fails like any other.
+// Signals that request a checkpoint and a clean end: SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, and SIGHUP
+// unless it is ignored at the start (nohup). SLURM sends one of them before the time limit. SIGPIPE and
+// SIGXFSZ are ignored: a run whose log has no reader continues, and a write beyond the limit of the file size
+// fails like any other.
 #pragma once
 
 namespace scree {
 
-// Also where whoever started the program has blocked them. To be called again when MPI has started: what it
-// is built on may put handlers of its own in the place of ours.
+// Installs the handlers, also for signals that were blocked at the start. Must be called again after the
+// start of MPI, which may install handlers of its own.
 void catch_signals();
-// The signal that has arrived on this rank, or 0.
+// Number of the signal that has arrived on this rank, or 0.
 int signal_received();
 
 }  // namespace scree

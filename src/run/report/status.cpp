@@ -21,12 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Seen {
-  RunStatus told;                  // by the run, of itself
-  std::optional<LockOwner> owner;  // of the folder, now
+  RunStatus told;                  // status that the run has written
+  std::optional<LockOwner> owner;  // current owner of the folder
   std::string word;                // running, done, stopped, failed, killed, starting
 };
 
-// A run takes the folder before it has a status of its own: until then there is that of the run before.
+// A run locks the folder before it writes a status: until then the file is that of the previous run.
 bool is_of_earlier_run(const RunStatus& told, const LockOwner& owner) {
   return !owner.since.empty() && told.written < owner.since;
 }
@@ -39,7 +39,7 @@ std::string word_of(const RunStatus& told, const std::optional<LockOwner>& owner
 
 Seen look_into(const std::string& folder) {
   std::error_code error;
-  if (!fs::is_directory(folder, error)) throw InputError(folder + ": there is no such folder");
+  if (!fs::is_directory(folder, error)) throw InputError(folder + ": no such folder");
   Seen seen;
   seen.owner = FolderLock(folder).owner();
   const bool told = fs::is_regular_file(folder + "/" + kStatusName, error);
@@ -47,35 +47,35 @@ Seen look_into(const std::string& folder) {
     seen.word = "starting";
     return seen;
   }
-  if (!told) throw InputError(fmt::format("{}: no run has left a {} here", folder, kStatusName));
+  if (!told) throw InputError(fmt::format("{}: contains no {} of a run", folder, kStatusName));
   seen.told = read_status(folder);
   seen.word = word_of(seen.told, seen.owner);
   if (seen.word != "killed") return seen;
-  seen.owner = FolderLock(folder).owner();  // one may have begun since
+  seen.owner = FolderLock(folder).owner();  // a new run may have started meanwhile
   seen.word = word_of(seen.told, seen.owner);
   return seen;
 }
 
-// Of something that was done at a time of some machine's clock.
+// Age of a UTC time of any machine's clock.
 std::string age_text(const std::string& utc) { return duration_text(seconds_since(utc)) + " ago"; }
 
 std::string owner_text(const LockOwner& owner) {
   const bool here = owner.host == LockOwner::this_process().host;
   return owner.described() +
-         (here ? ", alive" : ", another host than this one: it counts as alive while it holds the folder");
+         (here ? ", alive" : ", another host: it counts as alive while it holds the folder's lock");
 }
 
 std::string state_text(const Seen& seen) {
   const RunStatus& told = seen.told;
   if (seen.word == "starting")
-    return "starting: " + owner_text(*seen.owner) + "; it has not told of itself yet";
+    return "starting: " + owner_text(*seen.owner) + "; it has not written a status yet";
   const std::string age = age_text(told.written);
-  if (seen.word == "running")
-    return fmt::format("running: {}; last told of itself {}", owner_text(*seen.owner), age);
+  if (seen.word == "running") return fmt::format("running: {}; last status {}", owner_text(*seen.owner), age);
   const std::string process = fmt::format("process {} on host {}", told.process, told.host);
   if (seen.word == "killed")
-    return fmt::format("killed: {} last told of itself {} that it runs, and holds the folder no longer",
-                       process, age);
+    return fmt::format(
+        "killed: {} wrote its last status {} as running, and does not hold the folder's lock any more",
+        process, age);
   return fmt::format("{}; {}, {}", told.state, process, age);
 }
 
@@ -99,12 +99,12 @@ std::string bytes_text(double bytes) {
 }
 
 std::string checkpoint_text(const RunStatus& told) {
-  if (told.checkpoint.empty()) return "none of this run";
+  if (told.checkpoint.empty()) return "none in this run";
   return fmt::format("{}, t = {:.6g} s, written {}", told.checkpoint, told.checkpoint_time,
                      age_text(told.checkpoint_written));
 }
 
-// What the run told, a line each.
+// The lines on the run's own status.
 std::string told_lines(const Seen& seen) {
   const RunStatus& told = seen.told;
   const Progress& p = told.progress;
@@ -115,7 +115,7 @@ std::string told_lines(const Seen& seen) {
   if (goes_on) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
   text += fmt::format("wall time      {}, since {}\n", duration_text(told.wall_seconds), told.started);
   text += fmt::format("steps          {}, the last one of {:.2e} s\n", p.steps, p.step);
-  text += fmt::format("rate           {}{}\n", rate_text(p), goes_on ? "" : " at last");
+  text += fmt::format("rate           {}{}\n", rate_text(p), goes_on ? "" : " at the end");
   text +=
       fmt::format("contacts       {}{}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts), at_last_row);
   text += fmt::format("energy         balance error {:.2e} J of {:.4g} J exchanged ({}){}\n", p.balance_error,
@@ -149,7 +149,7 @@ Row row_of(const std::string& folder) {
           seen.word == "running" ? duration_text(p.seconds_left) : ""};
 }
 
-// A row of a folder and a message alone widens no other column.
+// Aligns the columns. Rows with a folder and a message alone do not widen the other columns.
 std::string aligned(const std::vector<Row>& rows) {
   std::array<std::size_t, kColumns> widths{};
   for (const Row& row : rows)

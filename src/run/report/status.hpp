@@ -1,4 +1,4 @@
-// The report of `scree status`: what can be told of a run from outside, while it goes on or after it.
+// The report of `scree status` on a run, from outside, during the run or after it.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace scree {
 
-// Several lines on the run in a folder: its state, progress, rate, energy balance, files. Throws InputError
-// where there is no such folder or no run in it, IoError where its status file cannot be read.
+// Several lines on the run in a folder: state, progress, rate, energy balance, files. Throws InputError if
+// there is no such folder or no run in it, IoError if its status file cannot be read.
 std::string status_report(const std::string& folder);
-// A line for each folder, under a header. A folder of which nothing can be told has the reason in its line.
+// One line per folder, below a header. A folder without a readable status has the reason in its line.
 struct StatusTable {
   std::string text;
-  ExitCode code = ExitCode::done;  // of the last folder of which nothing could be told
+  ExitCode code = ExitCode::done;  // of the last folder without a readable status
 };
 StatusTable status_table(const std::vector<std::string>& folders);
 

@@ -17,8 +17,8 @@ std::string percent(Real share) {
 }
 
 std::string good_steps(const StepTrial& trial) {
-  if (trial.any_step_good) return "any step would do";
-  return fmt::format("steps up to {:g} s keep within {}", two_digits_below(trial.good_step),
+  if (trial.any_step_good) return "every step length suffices";
+  return fmt::format("steps up to {:g} s: error at most {}", two_digits_below(trial.good_step),
                      percent(kGoodRebound));
 }
 
@@ -28,23 +28,23 @@ Real degrees(Real angle) { return angle * 180 / std::numbers::pi_v<Real>; }
 
 std::string trial_lines(const StepTrial& trial) {
   const TrialResult& r = trial.result;
-  const std::string steps = trial.is_adaptive ? fmt::format("steps that adapt, to about {:.2g} s", trial.step)
+  const std::string steps = trial.is_adaptive ? fmt::format("adaptive steps of about {:.2g} s", trial.step)
                                               : fmt::format("steps of {:.4g} s", trial.step);
   const bool linear = trial.limit.law.exponent == 1;
-  std::string lines =
-      fmt::format("               rebounds{} with {:.4g} of the speed{}, in {} with {:.4g}, {} off; {}\n",
-                  linear ? "" : fmt::format(" at {:.3g} m/s", trial.speed), r.exact.restitution,
-                  trial.rubs ? " along the normal" : "", steps, r.mean.restitution, percent(r.normal_error),
-                  good_steps(trial));
+  std::string lines = fmt::format("               restitution{}: {:.4g}{}; in {}: {:.4g}, error {}; {}\n",
+                                  linear ? "" : fmt::format(" at {:.3g} m/s", trial.speed),
+                                  r.exact.restitution, trial.rubs ? " (normal)" : "", steps,
+                                  r.mean.restitution, percent(r.normal_error), good_steps(trial));
   if (trial.rubs)
     lines += fmt::format(
-        "               at {:.0f} degrees it leaves at {:.1f} degrees, in these steps at {:.1f}, {} off\n",
+        "               impact at {:.0f} degrees: rebound at {:.1f} degrees, in these steps at {:.1f}, error "
+        "{}\n",
         degrees(trial.incidence), degrees(r.exact.angle()), degrees(r.mean.angle()), percent(r.across_error));
   return lines;
 }
 
 std::string step_warning(const Model& model) {
-  constexpr Real kLeastError = 1e-4;  // that one estimate of the step lets tell
+  constexpr Real kLeastError = 1e-4;  // smallest error that the estimate of a single step resolves
   if (model.time.control == StepControl::adaptive) return "";
   std::vector<StepTrial> bad = try_steps(model);
   std::erase_if(bad, [](const StepTrial& trial) { return !(trial.result.error() > kBadRebound); });
@@ -55,20 +55,23 @@ std::string step_warning(const Model& model) {
   const TrialResult& r = worst.result;
   const std::vector<std::string>& names = model.contact.material_names;
   const auto rebound = [&](const TrialRebound& one) {
-    return fmt::format("{:.4g} of the speed{}", one.restitution,
+    return fmt::format("restitution {:.4g}{}", one.restitution,
                        worst.rubs ? fmt::format(" and {:.1f} degrees", degrees(one.angle())) : "");
   };
   const std::string others =
-      bad.size() == 1 ? ""
-                      : fmt::format(", and of {}", counted(std::ssize(bad) - 1, "other pair", "other pairs"));
+      bad.size() == 1
+          ? ""
+          : fmt::format(", and of {},", counted(std::ssize(bad) - 1, "other pair", "other pairs"));
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
-  const std::string remedy =
-      implicit ? fmt::format("; steps up to {:g} s keep within {}, time.control = \"adaptive\" within {}",
-                             two_digits_below(worst.good_step), percent(kGoodRebound),
-                             percent(std::max(worst.adaptive_error, kLeastError)))
-               : left_out_step(model);
+  const std::string remedy = implicit ? fmt::format(
+                                            "; the error is at most {1} with steps up to {0:g} s, and {2} "
+                                            "with time.control = \"adaptive\"",
+                                            two_digits_below(worst.good_step), percent(kGoodRebound),
+                                            percent(std::max(worst.adaptive_error, kLeastError)))
+                                      : left_out_step(model);
   return fmt::format(
-      "time.step: steps of {:.4g} s misjudge rebounds of \"{}\" on \"{}\"{} by {}: {} instead of {}{}{}",
+      "time.step: with steps of {:.4g} s the rebound of \"{}\" on \"{}\"{} has an error of {}: {} instead of "
+      "{}{}{}",
       worst.step, names[static_cast<std::size_t>(worst.limit.material[0])],
       names[static_cast<std::size_t>(worst.limit.material[1])], others, percent(r.error()), rebound(r.mean),
       rebound(r.exact), worst.rubs ? fmt::format(", at {:.0f} degrees", degrees(worst.incidence)) : "",

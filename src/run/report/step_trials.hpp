@@ -1,4 +1,4 @@
-// What check and run say of the impacts in the deck's steps.
+// Texts of `scree check` and of a run on the accuracy of impacts in the deck's steps.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 
 namespace scree {
 
-// What check prints of one.
+// The lines of `scree check` on one trial.
 std::string trial_lines(const StepTrial& trial);
-// Of the worst pair past kBadRebound; empty if there is none. Steps that adapt are left alone.
+// The warning for the worst pair whose error is above kBadRebound; empty if there is none, and for adaptive
+// steps.
 std::string step_warning(const Model& model);
 
 }  // namespace scree

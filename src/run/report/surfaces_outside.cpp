@@ -13,13 +13,13 @@
 namespace scree {
 namespace {
 
-constexpr int kInstants = 100;  // of walls that move
-// Where between two of as many equal spans an instant is, by the golden ratio: no motion's period fits to
-// all.
+constexpr int kInstants = 100;  // number of samples of a wall's motion
+// Position of a sample within its interval, by the golden ratio, so that the samples do not match a period of
+// the motion.
 constexpr Real kGolden = 0.6180339887498949;
 constexpr std::size_t kNamed = 3;  // carriers in one warning
 
-// The sides that are open; the others are at infinity.
+// Box of the open sides of the domain; its other sides are at infinity.
 Box open_sides(const Space& space) {
   const Box all = open_box(space);
   Box open{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
@@ -35,7 +35,8 @@ bool something_leaves(const Model& model) {
   return model.particles.totals.count > 0 && model.space.leaving != Leaving::error;
 }
 
-// Calls visit(point, radius) for the spheres and vertices that stand for a carrier's surfaces, in its frame.
+// Calls visit(point, radius) for spheres and vertices, in the carrier's frame, whose hull contains the
+// carrier's surfaces.
 template <class Visit>
 void for_each_extreme(const Model& model, const Body& body, const Visit& visit) {
   for (const Shape& shape : body.shapes) visit(shape.offset, shape.radius);
@@ -51,7 +52,7 @@ void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) 
     visit(wall.point + v, Real(0));
 }
 
-// Lines of planar models are drawn along z, where their space has no sides.
+// Whether a surface is beyond an open side. 2D lines extend along z, where their domain has no sides.
 template <class Carrier>
 bool reaches_beyond(const Model& model, const Carrier& carrier, const BodyMotion& motion, const Box& open) {
   const Mat3 axes = rotation_matrix(orientation(motion));
@@ -62,7 +63,7 @@ bool reaches_beyond(const Model& model, const Carrier& carrier, const BodyMotion
   return beyond;
 }
 
-// Grows to hold another box.
+// The bounding box of the boxes added.
 class BoxAround {
  public:
   void add(Vec3 low, Vec3 high) {
@@ -98,7 +99,7 @@ std::optional<Box> box_of(const Model& model, const Wall& wall) {
 std::string body_text(const Body& body) { return fmt::format("body \"{}\"", body.name); }
 std::string wall_text(const Wall& wall) { return fmt::format("wall \"{}\"", wall.name); }
 
-// Walls that are placed, in their order, whenever they are farthest.
+// Placed walls, in their order, that are beyond an open side at any sampled instant.
 std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
   const WallMotions motions(model);
   std::vector<const Wall*> placed;
@@ -122,10 +123,10 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
 std::string what_is_lost(const Model& model) {
   return model.space.leaving == Leaving::remove
              ? "are removed"
-             : "are searched no longer, so that no surface holds or carries them";
+             : "are excluded from contact detection, so that no surface holds them";
 }
 
-// The image of p that is the nearest to `middle` [m].
+// The periodic image of p nearest to `middle` [m].
 Vec3 image_beside(Vec3 middle, Vec3 p, Vec3 periods) {
   const auto along = [](Real m, Real x, Real period) {
     return period > 0 ? x - std::round((x - m) / period) * period : x;
@@ -147,8 +148,7 @@ std::string outside_at_start(const Model& model) {
   for (std::size_t k = 0; k < std::min(beyond.size(), kNamed); ++k) names += (k == 0 ? "" : ", ") + beyond[k];
   if (beyond.size() > kNamed) names += fmt::format(" and {} more", beyond.size() - kNamed);
   return fmt::format(
-      "{} {} beyond an open side of the space: particles that leave there {}; a larger space "
-      "would keep them",
+      "{} {} beyond an open side of the domain: particles that leave there {}; a larger domain keeps them",
       names, beyond.size() > 1 ? "reach" : "reaches", what_is_lost(model));
 }
 
@@ -173,8 +173,8 @@ std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<
       const Vec3 place = image_beside(middle, leaver.position, periods) - motion[c].position;
       if (!box.reaches(transposed_times(axes, place), diameter)) continue;
       return fmt::format(
-          "particle {} leaves the space at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
-          "larger space would keep them",
+          "particle {} leaves the domain at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
+          "larger domain keeps them",
           leaver.global_id, t, names_[c], what_is_lost(model_));
     }
   }

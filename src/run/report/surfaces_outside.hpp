@@ -1,5 +1,5 @@
-// Surfaces that reach beyond the open sides of the space: particles that leave there are searched no longer,
-// so that what a bucket carries out of the space falls through it.
+// Surfaces that extend beyond open sides of the domain. Particles that leave there are excluded from contact
+// detection, so that the load of a bucket falls through it.
 #pragma once
 
 #include <optional>
@@ -13,23 +13,23 @@
 
 namespace scree {
 
-// A warning of the bodies whose shapes and meshes reach beyond an open side at t = 0, and of the walls of
-// triangles that do until the end of the run, where walls move looked at in some hundred instants. Empty
-// without any, without particles, and where a particle that leaves is an error.
+// The warning on bodies whose shapes and meshes extend beyond an open side at t = 0, and on triangle walls
+// that do so during the run, tested at about a hundred instants if they move. Empty if there are none,
+// without particles, and if a particle that leaves is an error.
 std::string outside_at_start(const Model& model);
 
-// Where particles take leave of surfaces that could hold them.
+// Finds particles that leave the domain at surfaces that could hold them.
 class SurfacesOutside {
  public:
   explicit SurfacesOutside(const Model& model);
-  // A warning of the first of the leavers that is among the surfaces of a body, or of a wall, that reaches
-  // beyond an open side: in the box around them, or less than a particle's diameter from it. Empty if there
-  // is none. motion: of the bodies, then of the placed walls, at the time t [s].
+  // The warning on the first escaped particle at the surfaces of a body or wall that extends beyond an open
+  // side: inside the surfaces' bounding box or less than a particle's diameter from it. Empty if there is
+  // none. motion: of the bodies, then of the placed walls, at time t [s].
   std::string warning(std::span<const Leaver> leavers, std::span<const BodyMotion> motion, Real t) const;
 
  private:
   const Model& model_;
-  std::vector<std::optional<Box>> boxes_;  // of each carrier in its own frame; none of carriers of planes
+  std::vector<std::optional<Box>> boxes_;  // per carrier, in its own frame; none for planes
   std::vector<std::string> names_;
 };
 

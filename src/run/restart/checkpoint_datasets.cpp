@@ -23,7 +23,7 @@ namespace {
   throw IoError(path + ": not a valid checkpoint: " + what);
 }
 
-// A dataset of `group` that one of the two has and the other has not, or with another number of values.
+// Refuses datasets of `group` that only one of the two maps has, or that differ in their number of values.
 template <class Values>
 void check_group(const std::string& path, const std::string& group,
                  const std::map<std::string, Values>& found, const std::map<std::string, Values>& expected) {
@@ -79,12 +79,12 @@ State sized_state(const Model& model) {
 
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
   State sizes = sized_state(model);
-  // Before the angles of joints in space were counted there were none.
+  // Older checkpoints have no counted angles of spatial joints.
   if (checkpoint.reals.count("bodies/counted_angles") == 0) {
     sizes.bodies.position.resize(sizes.bodies.position.size() - sizes.bodies.counted_angles);
     sizes.bodies.counted_angles = 0;
   }
-  // A model that does not ask for works leaves them, whatever meshes they are of.
+  // A model without accumulated works accepts those of a checkpoint, of whatever meshes.
   const bool has_works = checkpoint.integers.count(kWorksName) > 0;
   if (!has_works) sizes.works.clear();
   if (has_works && !model.output.adds_up_works())
@@ -98,7 +98,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.shape_contacts.numbers = shape_numbers_in(checkpoint);
   if (checkpoint.reals.count(kShapeHistory) > 0)
     sizes.shape_contacts.values.resize(checkpoint.real_array(kShapeHistory).size());
-  // What contacts remember may be there or not, and so may rotation: no history is none.
+  // Contact history and rotation are optional in a checkpoint: without them it starts empty.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";

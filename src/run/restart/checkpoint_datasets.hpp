@@ -1,4 +1,4 @@
-// Which datasets a checkpoint has, and how long they are.
+// Names and lengths of the datasets of a checkpoint.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace scree {
 
-// A state whose arrays, but for those of particles and contacts, are as long as this model's.
+// A state whose arrays are as long as this model's, except those of particles and contacts.
 State sized_state(const Model& model);
-// Throws IoError naming file and dataset where they are not those of a state of this model, each with its
-// length. texts: that the checkpoint has besides.
+// Throws IoError with file and dataset unless the datasets and their lengths are those of a state of this
+// model. texts: names of the texts that the checkpoint has in addition.
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts);
 
 }  // namespace scree

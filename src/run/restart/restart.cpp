@@ -36,8 +36,9 @@ bool starts_with_any(const std::string& text, std::initializer_list<const char*>
                      [&](const char* start) { return text.starts_with(start); });
 }
 
-// The numbers of a checkpoint stand in the order of the deck's bodies, joints, drivers and particles, and
-// positions along periodic axes on a grid that belongs to the space.
+// Whether a key must be the same in both decks. Numbers in a checkpoint follow the order of the deck's
+// bodies, joints, drivers and particles, and positions along periodic axes lie on a grid that depends on the
+// domain.
 bool must_stay(const DeckDifference& difference, bool periodic) {
   static const std::set<std::string> kLists = {"",
                                                "bodies",
@@ -80,7 +81,8 @@ bool is_periodic(const Space& space) {
   return std::count(space.boundary.begin(), space.boundary.end(), Boundary::periodic) > 0;
 }
 
-// Functions of time that have the same values up to t in both decks: the checkpoint is that of either.
+// Functions of time that have the same values up to time t in both decks: with respect to them the checkpoint
+// belongs to either deck.
 class SameFunctions {
  public:
   SameFunctions(const Deck& before, const Deck& after, Real t) : t_(t) {
@@ -118,7 +120,7 @@ class SameFunctions {
   std::vector<std::string> keys_;
 };
 
-// Keys in which the deck is another one for the time up to the checkpoint's.
+// The keys in which the two decks differ for the time up to the checkpoint.
 Differences differences_until(const Checkpoint& checkpoint, const RunOptions& options) {
   if (checkpoint.text("fingerprint") == options.fingerprint) return {};
   Differences differences = deck_differences(checkpoint.text("fingerprint"), options.fingerprint);
@@ -127,7 +129,7 @@ Differences differences_until(const Checkpoint& checkpoint, const RunOptions& op
     const SameFunctions same(parse_deck(checkpoint.text("deck"), "checkpoint", {}),
                              parse_deck(options.resolved_deck, "deck", {}), time.empty() ? 0 : time[0]);
     std::erase_if(differences, [&](const DeckDifference& d) { return same.hold(d); });
-  } catch (const InputError&) {  // a deck of a version with other keys: all that differs counts
+  } catch (const InputError&) {  // a deck of a version with other keys: every difference counts
   }
   return differences;
 }
@@ -135,7 +137,8 @@ Differences differences_until(const Checkpoint& checkpoint, const RunOptions& op
 [[noreturn]] void refuse(const Differences& differences, const RunOptions& options) {
   throw InputError(fmt::format(
       "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output and "
-      "parallel may differ, unless --allow-changes lets the run go on, not bit for bit. Keys that differ: {}",
+      "parallel may differ. With --allow-changes the run continues, but not bit for bit. Keys that differ: "
+      "{}",
       options.restart, listed(differences)));
 }
 
@@ -146,8 +149,8 @@ void check_allowed(const Differences& differences, const Model& model, const Run
     if (must_stay(difference, is_periodic(model.space))) refused.push_back(difference);
   if (refused.empty()) return;
   throw InputError(
-      fmt::format("--restart {}: the checkpoint's numbers have no meaning where these keys "
-                  "differ, with --allow-changes neither: {}",
+      fmt::format("--restart {}: the checkpoint's values have no meaning if these keys differ, not even with "
+                  "--allow-changes: {}",
                   options.restart, listed(refused)));
 }
 
@@ -161,17 +164,17 @@ void check_works(const Checkpoint& checkpoint, const Differences& differences, c
   for (const DeckDifference& difference : differences)
     if (names(difference, "mesh"))
       throw InputError(fmt::format(
-          "--restart {}: output.surface_fields asks for works or wear, which are those of the triangles that "
-          "the checkpoint was written with; other meshes are not allowed: {}",
+          "--restart {}: output.surface_fields selects work or wear, which belong to the triangles of the "
+          "checkpoint; the meshes must not change: {}",
           options.restart, to_text(difference)));
   if (checkpoint.integers.count(kWorksName) > 0) return;
-  throw InputError(fmt::format(
-      "--restart {}: output.surface_fields asks for works or wear, which count from t = 0, and the run that "
-      "wrote the checkpoint has not added them up",
-      options.restart));
+  throw InputError(
+      fmt::format("--restart {}: output.surface_fields selects work or wear, which count from t = 0, but the "
+                  "run that wrote the checkpoint did not accumulate them",
+                  options.restart));
 }
 
-// Arrays of other lengths belong to another model where the deck is another one, else to a damaged file.
+// Array lengths that do not match belong to another model if the decks differ, otherwise the file is damaged.
 void check_fits(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
                 const RunOptions& options) {
   try {
@@ -179,20 +182,20 @@ void check_fits(const Checkpoint& checkpoint, const Differences& differences, co
   } catch (const IoError& error) {
     if (differences.empty()) throw;
     throw InputError(
-        fmt::format("--restart {}: the checkpoint does not fit the model of this deck ({}), with "
-                    "--allow-changes neither. Keys that differ: {}",
+        fmt::format("--restart {}: the checkpoint does not fit the model of this deck ({}), not even with "
+                    "--allow-changes. Keys that differ: {}",
                     options.restart, error.what(), listed(differences)));
   }
 }
 
-// Whether other surfaces, or features of meshes, may have the numbers by which contacts with them are
-// remembered.
+// Whether the difference may change the numbers of surfaces or mesh features, which are parts of contact
+// keys.
 bool renumbers_surfaces(const DeckDifference& difference) {
   return starts_with_any(difference.pattern, {"walls", "space."}) || names(difference, "mesh") ||
          names(difference, "shapes");
 }
 
-// Of what contacts remember of the old law, where the new one remembers something else.
+// Reduces the contact history to the sides of open surfaces if the new law has another history.
 void keep_sides_alone(const Model& model, State& state) {
   const auto differs = [](const auto& contacts, int numbers) {
     return contacts.numbers != 0 && contacts.numbers != numbers;
@@ -204,8 +207,8 @@ void keep_sides_alone(const Model& model, State& state) {
     state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
 }
 
-// The deck's values hold from now on. What the state carries on from the steps before belongs to the old
-// ones, forces and accelerations to the old model.
+// Applies the values of the new deck. Step data in the state follow from the old deck, forces and
+// accelerations from the old model.
 void apply(const Differences& differences, const Model& model, Restart& restart) {
   if (differences.empty()) return;
   restart.changed = true;
@@ -229,10 +232,8 @@ void apply(const Differences& differences, const Model& model, Restart& restart)
 void check_hash(const State& state, const Checkpoint& checkpoint, const Ranks& ranks) {
   const std::string found = hash_of_all(state, ranks), &written = checkpoint.text(kHash);
   if (found != written)
-    throw IoError(
-        fmt::format("{}: the checkpoint is damaged: the hash of its state is {}, of what was "
-                    "written {}",
-                    checkpoint.path, found, written));
+    throw IoError(fmt::format("{}: the checkpoint is damaged: the hash of its state is {}, but {} was stored",
+                              checkpoint.path, found, written));
 }
 
 }  // namespace
@@ -270,7 +271,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   });
   check_hash(restart.state, checkpoint, ranks);
   if (!model.output.adds_up_works()) restart.state.works = {};
-  // Of a version that did not count them: from here on.
+  // A checkpoint of a version without counted angles: they are counted from here on.
   MultibodyState& bodies = restart.state.bodies;
   const auto angles = static_cast<std::size_t>(counted_angles(model));
   bodies.position.resize(bodies.position.size() - bodies.counted_angles + angles, 0);
@@ -279,10 +280,10 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   apply(differences, model, restart);
   if (restart.changed)
     log.warning(fmt::format(
-        "--allow-changes: from t = {:.9g} s on this run has another deck than before, and is not bit for bit "
-        "that of either{}. Keys that differ: {}",
-        restart.state.clock.time,
-        restart.forces_changed ? "; forces and accelerations are computed anew" : "", listed(differences)));
+        "--allow-changes: from t = {:.9g} s on the run has another deck, and its results are not bit for bit "
+        "those of either{}. Keys that differ: {}",
+        restart.state.clock.time, restart.forces_changed ? "; forces and accelerations are recomputed" : "",
+        listed(differences)));
   return restart;
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kHistory = "contacts/history";
 
-// The other rows have names of their own where sides of sheets are all that is kept: a file that lacks
-// the history is none.
+// Contacts that store their side alone have other names for these rows, so that a file without the history is
+// refused.
 struct RowNames {
   const char *counts, *partners, *images;
 };
@@ -25,7 +25,7 @@ const RowNames& names_of(const KeptContacts& contacts) {
   return contacts.numbers == kSidesAlone ? kOfSides : kOfContacts;
 }
 
-// rows of one integer each.
+// Adds a dataset of rows with one integer each.
 template <class Number>
 void add_integers(const char* name, const char* description, std::int64_t rows, const Number& number,
                   Checkpoint& out) {
@@ -42,7 +42,8 @@ std::vector<T> read_rows(const CheckpointRows<T>& rows, std::int64_t first, std:
   return values;
 }
 
-// Whose rows are this rank's: those of the contacts of its particles, of which the ranks below have so many.
+// Reads the rows of this rank's contacts. below_own, below_rows: contacts of the particles of the ranks
+// below, and rows that those ranks read.
 void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t below_rows,
                    KeptContacts& contacts) {
   const RowNames& names = names_of(contacts);
@@ -51,7 +52,7 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
              images = read_rows(in.row_array<std::int64_t>(names.images), first, count);
   for (std::size_t k = 0; k < partners.size(); ++k) {
     if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= 27)
-      throw IoError(in.path + ": the partner of a contact or its image is none");
+      throw IoError(in.path + ": the partner or the image of a contact is not valid");
     contacts.keys.push_back(row_key(partners[k], static_cast<std::int8_t>(images[k])));
   }
   if (contacts.width() > 0) contacts.values = read_rows(in.row_array<Real>(kHistory), first, count);
@@ -69,11 +70,11 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
       [&contacts](std::int64_t i) { return contacts.contacts(i); }, out);
   add_integers(
       names.partners,
-      "of each contact: id of the other particle, or 2^48 plus the number of the surface and 2^20 times that "
-      "of the feature of a mesh, 2^49 where the centre is past a sheet",
+      "of each contact: id of the other particle; or 2^48 plus the number of the surface, plus 2^20 times "
+      "the number of the mesh feature, plus 2^49 if the centre has penetrated an open surface",
       count, [key](std::int64_t k) { return id_of(key(k)); }, out);
   add_integers(
-      names.images, "which of its images, beside the particle: 13 plus the periods in x, 3 in y, 9 in z",
+      names.images, "image of the partner: 13 plus the periods in x, 3 times those in y, 9 times those in z",
       count, [key](std::int64_t k) { return key(k) % 27; }, out);
   const int numbers = contacts.width();
   if (numbers == 0) return;
@@ -81,7 +82,7 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
                              [&contacts, numbers](std::int64_t first, std::int64_t rows, Real* to) {
                                std::copy_n(contacts.values.begin() + first * numbers, rows * numbers, to);
                              },
-                             "of the law", "what the contact remembers, as this particle has it"};
+                             "of the law", "history of the contact, as seen from this particle"};
 }
 
 int numbers_in(const Checkpoint& checkpoint) {
@@ -100,7 +101,8 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
     const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(names.counts);
     contacts.set_counts(read_rows(counts, 0, counts.count));
     for (const std::int64_t count : contacts.counts())
-      if (count < 0 || count > all) throw IoError(in.path + ": a particle has no such number of contacts");
+      if (count < 0 || count > all)
+        throw IoError(in.path + ": the number of contacts of a particle is not valid");
   });
   const std::int64_t own = contacts.offsets.back(), below = ranks.sum_below(own),
                      below_rows = ranks.sum_below(rows);
@@ -114,7 +116,7 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
 
 void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash) {
   for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
-    // Where nothing else is remembered the side is where the centre is, unless that is past the sheet.
+    // Without a history the side follows from the centre, unless the centre has penetrated the surface.
     if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[static_cast<std::size_t>(k)])) continue;
     hash.add(contacts.keys[static_cast<std::size_t>(k)]);
     for (const Real value : contacts.values_of(k)) hash.add(value);

@@ -1,5 +1,4 @@
-// What contacts remember, as rows of a checkpoint and in the hash of the state: only where a run remembers
-// something.
+// The contact history as rows of a checkpoint and in the state hash; only for contact laws with a history.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +13,19 @@
 
 namespace scree {
 
-// The rows: of all particles one after the other, per particle the number of its contacts, then per contact
-// the partner and the values. The contacts must outlive the checkpoint, and stay the same.
+// Adds the rows, in the order of the particles: per particle the number of its contacts, per contact the
+// partner and the values. The contacts must outlive the checkpoint and must not change meanwhile.
 void add_contacts(const KeptContacts& contacts, Checkpoint& out);
-// Per contact in the checkpoint; 0 where it has no such rows.
+// Number of values per contact in the checkpoint; 0 without such rows.
 int numbers_in(const Checkpoint& checkpoint);
-// Of the particles whose rows this rank has. Throws IoError, on every rank, where the rows do not fit
-// together. Collective.
+// The contacts of the particles whose rows this rank has. Throws IoError, on every rank, if the rows are
+// inconsistent. Collective.
 KeptContacts unpack_contacts(const Checkpoint& checkpoint, const Ranks& ranks);
 
-// In the hash of one particle.
+// Adds the contacts of one particle to its hash.
 void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash);
-// What cannot be one of contacts of these particles, in a deck of so many, in words; empty if nothing.
+// Message on the first contact that is not valid for these particles, in a deck with `of_deck` particles;
+// empty if all are valid.
 std::string contacts_trouble(const KeptContacts& contacts, const std::vector<Particle>& particles,
                              std::int64_t of_deck);
 

@@ -1,4 +1,4 @@
-// What takes down what a run computes.
+// Interface through which the step loop records results.
 #pragma once
 
 #include "base/types.hpp"
@@ -6,18 +6,18 @@
 
 namespace scree {
 
-// The step loop calls it when the state has reached an output's time.
+// The step loop calls these functions when the state has reached an output time.
 class Records {
  public:
   virtual ~Records() = default;
 
-  // h: length of the step just taken [s]. Books the energy balance in the state and counts the row there.
+  // h: length of the last step [s]. Updates the energy balance in the state, and the number of rows there.
   virtual void history(State& state, Real h) = 0;
-  // Takes the extremes of the energies at this instant into the state's balance: see next_energy_sample().
+  // Updates the extremes of the energies in the state's balance: see next_energy_sample().
   virtual void sample_energies(State& state) = 0;
-  // Counts it in the state; may write it later.
+  // Takes a snapshot, which may be written later, and updates the number of snapshots in the state.
   virtual void snapshot(State& state) = 0;
-  // Writes what was taken and not yet written.
+  // Writes a snapshot that was taken but not yet written.
   virtual void write_pending() = 0;
 };
 

@@ -1,4 +1,4 @@
-// What this start of the program takes, beside the starts before it.
+// Time and steps of this start of the program, together with those of earlier starts.
 #pragma once
 
 #include <chrono>
@@ -10,19 +10,20 @@
 
 namespace scree {
 
-// "1.20 s wall, 1.10 s CPU" of the last one; where there are others "; with 2 starts before it ..." of all.
+// Text on the last start, "1.20 s wall, 1.10 s CPU", and on all starts if there are several: "; all 2 starts
+// of the run ...".
 std::string took_text(const std::vector<RunStart>& starts);
 
 class StartBook {
  public:
-  // earlier: of the checkpoint that the run goes on from. state: that the steps begin with. The wall clock
-  // runs from here on, as the processor's does for this process.
+  // earlier: starts stored in the checkpoint of a restart; state: before the first step. Wall time counts
+  // from the construction, CPU time likewise.
   StartBook(std::vector<RunStart> earlier, const State& state, const std::string& started,
             const std::string& backend, int ranks);
 
   void begin_loop() { loop_start_ = Clock::now(), in_loop_ = true; }
   void end_loop();
-  // With this one last, up to the state.
+  // All starts, this one last, up to the given state.
   std::vector<RunStart> starts(const State& state) const;
 
  private:
@@ -31,7 +32,7 @@ class StartBook {
   double loop_seconds() const;
 
   std::vector<RunStart> earlier_;
-  RunStart own_;  // but for what it has taken
+  RunStart own_;  // without its duration
   std::int64_t first_step_;
   double start_cpu_;
   Clock::time_point start_ = Clock::now(), loop_start_ = start_;

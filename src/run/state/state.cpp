@@ -45,7 +45,7 @@ void visit_ledger(Visitor& visit, LedgerType& ledger) {
   visit("balance/carried_out", ledger.carried_out);
 }
 
-// By LossKind.
+// Names in the order of LossKind.
 constexpr std::array<const char*, kLossKinds> kCarriedLosses = {
     "carried_out/friction_loss", "carried_out/rolling_loss", "carried_out/twisting_loss"};
 
@@ -103,8 +103,8 @@ void visit_state(Visitor& visit, StateType& state) {
   visit_ledger(visit, state.balance.last);
 }
 
-// Not part of the hash: how much a run has written says nothing about what it computed, and the number of
-// frozen steps, there where particles rotate, follows from the rest.
+// Visits values that are not part of the hash: amounts of output do not belong to the computed state, and the
+// number of lagged steps, stored for particles that rotate, follows from the rest of the state.
 template <class Visitor, class StateType>
 void visit_output(Visitor& visit, StateType& state) {
   visit("clock/histories", state.clock.histories);
@@ -115,8 +115,8 @@ void visit_output(Visitor& visit, StateType& state) {
   if (state.there.rotates) visit("counts/frozen_steps", state.counts.frozen_steps);
 }
 
-// What a checkpoint holds of a particle: its identity and the fields that are there. visit: as
-// for_each_field's.
+// Visits the datasets of the particles in a checkpoint: the ids and the fields that are present. visit: as in
+// for_each_field().
 template <class Visit>
 void for_each_dataset(const FieldsThere& there, const Visit& visit) {
   visit(ParticleField{"global_id", "1", "identity, which survives sorting and migration", kState},
@@ -143,7 +143,7 @@ void add_rows(const std::vector<Particle>& particles, const ParticleField& field
                                              field.unit, field.description};
 }
 
-// Piece by piece: besides the particles there is room for one piece.
+// Reads piece by piece, so that memory for a single piece suffices besides the particles.
 template <class T>
 void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*member,
                   std::vector<Particle>& particles) {
@@ -212,7 +212,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
 
 namespace {
 
-// How many numbers each remembers follows from how many there are, unless they are known to have none.
+// Derives the number of values per contact from the array lengths, unless the contacts store sides alone.
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
   const bool has_values = contacts.numbers != kSidesAlone && count > 0;
@@ -232,7 +232,7 @@ int shape_numbers_in(const Checkpoint& in) { return in.integers.count(kShapeSide
 
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
-  ranks.together([&] {  // a file may be unreadable where one rank's rows are
+  ranks.together([&] {  // one rank's rows may be unreadable
     Reader reader(checkpoint);
     state.there = fields_there(checkpoint);
     state.shape_contacts.numbers = shape_numbers_in(checkpoint);
@@ -290,7 +290,7 @@ void check_state(const State& state, const std::string& path, std::int64_t parti
     const std::string wrong = contacts_trouble(state.contacts, state.particles, particles);
     if (!wrong.empty()) refuse(path, wrong);
   });
-  std::vector<GlobalId> ends;  // of the ranks' parts: the first id and the last
+  std::vector<GlobalId> ends;  // first and last id of each rank's part
   if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};
   ends = ranks.gather_everywhere(ends);
   for (std::size_t k = 2; k < ends.size(); k += 2) check_ids_increase(path, ends[k - 1], ends[k]);

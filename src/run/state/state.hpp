@@ -1,4 +1,4 @@
-// State: all that changes in time, and the particles' constants. A checkpoint stores exactly this.
+// State: all variables that change in time, and the particles' constants. A checkpoint stores exactly this.
 #pragma once
 
 #include <string>
@@ -13,20 +13,21 @@
 
 namespace scree {
 
-// Extremes of energies at instants that follow from the number of steps alone (next_energy_sample) [J].
+// Extremes of energies over sample instants, which depend on the number of steps alone (next_energy_sample)
+// [J].
 struct EnergyExtremes {
-  Real most_kinetic = 0;                     // of particles that have not left
+  Real most_kinetic = 0;                     // of particles that have not escaped
   Real least_elastic = 0, most_elastic = 0;  // of force elements
   Real least_work = 0, most_work = 0;        // Ledger::driver_work
 };
 
-// Energy balance since t = 0. Its ledgers are those of inside_ledger().
+// Energy balance since t = 0. Its ledgers come from inside_ledger().
 struct BalanceState {
-  bool open = false;          // whether the first row of the history was taken
+  bool open = false;          // whether the history has its first row
   Real start = 0;             // Ledger::accounted() at t = 0 [J]
   Real start_integrator = 0;  // Ledger::dissipated_integrator at t = 0 [J]
   Real exchanged = 0;         // energy_exchanged() at the last row [J]
-  Real exchanged_before = 0;  // the same with the decks before --allow-changes changed them [J]
+  Real exchanged_before = 0;  // energy_exchanged() with the decks before --allow-changes changed them [J]
   EnergyExtremes extremes;
   Ledger last;  // at the last row
 };
@@ -35,50 +36,51 @@ struct State {
   ClockState clock;
   StepCounts counts;
   MultibodyState bodies;
-  // Of one rank, ordered by global id; they live in the backend between checkpoints.
+  // The particles of one rank, ordered by global id; between checkpoints they are in the backend.
   std::vector<Particle> particles;
-  FieldsThere there;      // of these
-  KeptContacts contacts;  // of these, where the law remembers something
+  FieldsThere there;      // fields that the particles have
+  KeptContacts contacts;  // of these particles, for laws with a history
   ShapeLosses shapes;
-  ShapeContacts
-      shape_contacts;  // where the law remembers something; rank 0's, in the backend like the others
-  // Lost at the triangles of meshes (TriangleWorks), where the output asks for it; in a checkpoint those of
-  // all ranks. Between checkpoints they live in the backend, too.
+  ShapeContacts shape_contacts;  // for laws with a history; on rank 0, between checkpoints in the backend
+  // Dissipation at the triangles of meshes (TriangleWorks), if the output asks for it; in a checkpoint summed
+  // over all ranks. Between checkpoints it is in the backend.
   std::vector<std::int64_t> works;
   CarriedOut carried_out;
   BalanceState balance;
-  // Taken so far; all of them are on disk before a checkpoint with these counts is.
+  // Numbers recorded so far. All of them are on disk before a checkpoint with these numbers.
   std::int64_t history_rows = 0, snapshots = 0;
 };
 
-// The dataset of State::works.
+// Name of the dataset of State::works.
 inline constexpr const char* kWorksName = "surfaces/works";
-// The datasets of State::shape_contacts, the latter two where sides of sheets are all that is kept, and of
-// what ShapeLosses has lost by rubbing.
+// Names of the datasets of State::shape_contacts (kShapeSides*: contacts that store their side alone) and of
+// the frictional losses in ShapeLosses.
 inline constexpr const char *kShapeContactsOf = "shapes/contact_shape",
                             *kShapeContactsWith = "shapes/contact_partner",
                             *kShapeHistory = "shapes/contact_history", *kShapeSidesOf = "shapes/side_shape",
                             *kShapeSidesWith = "shapes/side_partner",
                             *kShapeRubbing = "shapes/rubbing_losses";
-// ShapeContacts::numbers as far as the names of datasets tell: kSidesAlone, else 0.
+// ShapeContacts::numbers according to the names of the datasets: kSidesAlone or 0.
 int shape_numbers_in(const Checkpoint& in);
-// Which fields the checkpoint's particles have.
+// The fields that the particles of a checkpoint have.
 FieldsThere fields_there(const Checkpoint& in);
-// With this rank's particles; to be used as long as the state is there, and the same.
+// The state as a checkpoint, with this rank's particles. It refers to the state, which must not change or end
+// before it.
 Checkpoint pack(const State& state);
 Checkpoint pack(const State&& state) = delete;
-// Of all bits of the state but the counts of what was written; several ranks' hashes, each of the particles
-// of its own, add up (modulo 2^64) to that of the whole. with_rest: all but the particles, which one rank
-// counts.
+// Hash of all bits of the state except the amounts of output. The hashes of ranks, each of its own particles,
+// add up (modulo 2^64) to the hash of the whole. with_rest: includes everything but the particles, for one
+// rank only.
 std::uint64_t state_hash(const State& state, bool with_rest);
-// With the particles of the checkpoint's rows on this rank. Throws IoError naming what is missing, on every
-// rank. Collective.
+// The state of a checkpoint, with the particles of this rank's rows. Throws IoError naming what is missing,
+// on every rank. Collective.
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks = {});
-// Throws IoError naming the file, on every rank, where a read state cannot be one of a model with this number
-// of particles: where ids do not increase from particle to particle and from rank to rank, are outside
-// [0, particles), or are missing without having been removed, and where a value is not finite. Collective.
+// Checks a state that was read against the number of particles of the deck. Throws IoError naming the file,
+// on every rank, if ids do not increase from particle to particle and from rank to rank, are outside [0,
+// particles), or are missing without a removal, or if a value is not finite. Collective.
 void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks);
-// The same where a particle's radius, mass or material is none of the deck that the state belongs to.
+// Throws IoError likewise if the radius, mass or material of a particle does not occur in the deck of the
+// state.
 void check_constants(const State& state, const std::string& path, const ParticleTotals& deck);
 
 }  // namespace scree

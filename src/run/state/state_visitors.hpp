@@ -1,4 +1,4 @@
-// What is done with every value of a state: state.cpp names them, once for all of these.
+// Visitors of all values of a state; state.cpp has the one list of the values' names.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace scree {
 
 inline constexpr const char *kPositions = "bodies/position", *kCountedAngles = "bodies/counted_angles";
 
-// One list of members serves both directions: pack() and unpack() visit the same fields in the same order.
+// Packs values into a checkpoint. One list of members serves pack() and unpack(), so that both visit the same
+// fields in the same order.
 class Writer {
  public:
   explicit Writer(Checkpoint& out) : out_(out) {}
@@ -26,7 +27,7 @@ class Writer {
   void operator()(const char* name, const std::int64_t& value) { out_.integers[name] = {value}; }
   void operator()(const char* name, const bool& value) { out_.integers[name] = {value ? 1 : 0}; }
   void operator()(const char* name, const std::vector<Real>& values) { out_.reals[name] = values; }
-  // What most runs have none of: nothing is written there.
+  // Writes values that most runs do not have, if there are any.
   void if_any(const char* name, const std::vector<Real>& values) {
     if (!values.empty()) (*this)(name, values);
   }
@@ -97,7 +98,7 @@ class Reader {
   const Checkpoint& in_;
 };
 
-// Over the bits of what it visits; a checkpoint of a million particles must not wait for it.
+// Hashes the bits of all values; it must be fast for a million particles.
 class Hasher {
  public:
   void operator()(const char*, const Real& value) { hash_.add(value); }
@@ -114,7 +115,8 @@ class Hasher {
     if (losses != RubbingLosses{})
       for (const Real value : losses.of) hash_.add(value);
   }
-  // Of the angles the turns, where one has been round: all else of them follows from the bodies' poses.
+  // Hashes poses, and of counted angles the full revolutions if any angle has made one: the rest of an angle
+  // follows from the bodies' poses.
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto turns = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
     const std::span<const Real> all(position), counted = all.last(angles);

@@ -25,7 +25,7 @@ ClockState with_new_steps(const ClockState& state, const TimeControl& time) {
 }
 
 StepClock::StepClock(const Model& model) : time_(model.time), output_(model.output) {
-  // An end that is an output time but for round-off becomes it: a run that goes on from there has the same
+  // An end that equals an output time up to round-off becomes that time, so that a continued run has the same
   // times.
   for (const Real interval :
        {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval}) {
@@ -45,7 +45,7 @@ StepClock::StepClock(const Model& model, const ClockState& state) : StepClock(mo
   recount(state_.histories, output_.history_interval);
   recount(state_.snapshots, output_.snapshot_interval);
   recount(state_.checkpoints, output_.checkpoint_interval);
-  // Of a run with other intervals, at its end but for round-off: no step is as short as what is left.
+  // A state of a run with other intervals, at its end up to round-off: the remainder is too short for a step.
   if (std::abs(state_.time - time_.end) <= same_time_margin()) time_.end = state_.time;
   if (state_.time < state_.end && state_.end != next_output()) open_segment();
 }
@@ -140,7 +140,7 @@ void StepClock::accepted(Real error) {
     state_.time = h == state_.end - state_.time ? state_.end : state_.time + h;
     const Real wanted = error > 0 ? kSafety / std::cbrt(error) : kMostGrowth;
     const Real growth = std::clamp(wanted, kMostShrinkage, state_.just_rejected ? Real(1) : kMostGrowth);
-    // A step shortened to land on an output time says little about the next one.
+    // A step shortened to reach an output time is no basis for the next step length.
     const Real base = h < state_.next_step && growth >= 1 ? state_.next_step : h;
     state_.next_step = std::clamp(base * growth, time_.min_step, time_.max_step);
     state_.just_rejected = false;

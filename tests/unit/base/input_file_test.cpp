@@ -23,7 +23,7 @@ TEST_CASE("files that are no input, each with its reason") {
   CHECK(input_file_trouble((folder / "none").string()) == "cannot be read: No such file or directory");
   CHECK(input_file_trouble((folder / "short/none").string()) == "cannot be read: Not a directory");
   CHECK(input_file_trouble(folder.string()) == "is a folder; must be a file");
-  CHECK(input_file_trouble("/dev/zero") == "is no regular file");
+  CHECK(input_file_trouble("/dev/zero") == "is not a regular file");
   std::filesystem::remove_all(folder);
 }
 

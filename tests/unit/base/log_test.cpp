@@ -19,9 +19,9 @@ TEST_CASE("of warnings of one kind ten are kept, and the others counted") {
   log.tell_left_out();
   REQUIRE(log.warnings().size() == 32);
   CHECK(log.warnings()[30] ==
-        "1 more warning as this one: robot.toml:0:3: bodies.arma.density: no material has it");
+        "1 more warning like this one: robot.toml:0:3: bodies.arma.density: no material has it");
   CHECK(log.warnings()[31].starts_with(
-      "57 more warnings as this one: mesh \"link 0\": its triangles are small"));
+      "57 more warnings like this one: mesh \"link 0\": its triangles are small"));
   log.tell_left_out();
   CHECK(log.warnings().size() == 32);
   log.warning("mesh \"late\": its triangles are small beside the particles: near 2 of them");

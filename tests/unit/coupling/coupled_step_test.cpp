@@ -197,7 +197,7 @@ TEST_CASE("a step that does not converge names the side that is at fault") {
   const std::string touching = trouble({"particles.falling.origin=[-0.03, -0.04]"});
   CAPTURE(touching);
   CHECK(contains(touching, "stage particle_correct: no convergence in 1 iterations; the largest residual, "));
-  CHECK(contains(touching, "is that of particle 0"));
+  CHECK(contains(touching, "occurs at particle 0"));
   // The particles move on along their prediction, far from everything.
   const std::string bodies =
       trouble({"gravity=[0, 0]", "particles.falling.origin=[0.5, 0.5]", "particles.falling.radius=0.01"});
@@ -213,7 +213,7 @@ TEST_CASE("a step too long for the pair search says so, and only where something
   Coupled step(fast);
   const StepOutcome outcome = step.step->implicit_step(step.bodies, 0, 0.02);
   CHECK(outcome.verdict == Verdict::not_converged);
-  CHECK(contains(outcome.trouble, "stage neighbors: the step moves a particle or a shape of a body by 2 m"));
+  CHECK(contains(outcome.trouble, "stage neighbors: the step displaces a particle or a shape of a body by 2 m"));
   // A body alone that turns by many of its radii per step: no list has to cover it.
   petsc();
   const Model model = model_of(kSmallDeck + R"(

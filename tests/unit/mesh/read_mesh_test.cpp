@@ -170,7 +170,7 @@ TEST_CASE("what is said of files that cannot be read") {
   fs::create_directory(folder / "folder.stl");
   CHECK(said("folder.stl") == at + "folder.stl: is a folder; must be a file");
   fs::create_symlink("/dev/zero", folder / "endless.stl");
-  CHECK(said("endless.stl") == at + "endless.stl: is no regular file");
+  CHECK(said("endless.stl") == at + "endless.stl: is not a regular file");
   std::ofstream(folder / "empty.ply");
   CHECK(said("empty.ply") == at + "empty.ply: is empty");
   std::ofstream(folder / "step.stp") << "x";

@@ -31,7 +31,7 @@ TEST_CASE("every deck loads, builds, and resolves to itself") {
     const Model model = build_model(deck, log);
     CHECK(model.bodies.size() + model.particles.size() > 0);
     for (const std::string& warning : log.warnings())
-      CHECK(warning.starts_with("time.step: steps of 0.001 s"));
+      CHECK(warning.starts_with("time.step: with steps of 0.001 s"));
     CHECK(parse_deck(deck.resolved_text(), deck.path, {}).fingerprint() == deck.fingerprint());
   }
   CHECK(decks >= 13);

@@ -77,7 +77,7 @@ TEST_CASE("tables of another kind are told what they are and what CSV is") {
   CHECK(trouble("e.csv", "x,y,z\n1 2 3\n") ==
         ":2: 1 value; must be 3, as the header, and blanks are no commas");
   CHECK(trouble("f.csv", "x,y,z\n1,2 000,3\n") == ":2: column y = 2 000: must be a number");
-  CHECK(trouble("g.xlsx", "PK\x03\x04 and more").starts_with(": is a ZIP archive, as spreadsheets are"));
+  CHECK(trouble("g.xlsx", "PK\x03\x04 and more").starts_with(": is a ZIP archive, e.g. a spreadsheet"));
   CHECK(trouble("h.vtk", "# vtk DataFile Version 3.0\nx\nASCII\n")
             .starts_with(": is a legacy VTK file; must be CSV"));
   CHECK(trouble("i.csv", "x,y,z\r1,2,3\r") ==
@@ -190,7 +190,7 @@ TEST_CASE("what is no file") {
   };
   CHECK(contains(error(folder.file("")), "is a folder"));
   CHECK(contains(error(folder.file("absent.csv")), "absent.csv cannot be read: No such file or directory"));
-  CHECK(contains(error("/dev/zero"), "/dev/zero is no regular file"));
+  CHECK(contains(error("/dev/zero"), "/dev/zero is not a regular file"));
 }
 
 TEST_CASE("wrong values in HDF5 files name dataset and row") {

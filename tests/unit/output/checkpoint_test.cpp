@@ -149,7 +149,7 @@ TEST_CASE("datasets outside the groups of a checkpoint are refused") {
     file.close();
   }
   seal_file(scratch / "c.h5", {});
-  CHECK(refusal(bytes_of(scratch / "c.h5")).find("\"more/values\" is no part of a checkpoint") !=
+  CHECK(refusal(bytes_of(scratch / "c.h5")).find("\"more/values\" does not belong to a checkpoint") !=
         std::string::npos);
 }
 

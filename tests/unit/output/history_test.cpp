@@ -105,9 +105,9 @@ TEST_CASE("a history that does not fit is refused") {
     return std::string("nothing was refused");
   };
   CHECK(message(more).find("lacks the column that the restarted run is to write, bodies/bob/x; keep "
-                           "output.history_bodies as it was") != std::string::npos);
+                           "output.history_bodies unchanged") != std::string::npos);
   auto fewer = kColumns;
   fewer.pop_back();
-  CHECK(message(fewer).find("keep output.history_reactions as it was") != std::string::npos);
+  CHECK(message(fewer).find("keep output.history_reactions unchanged") != std::string::npos);
   CHECK_THROWS_AS(HistoryWriter(scratch / "no_such_directory", kColumns, true, 0), IoError);
 }

@@ -135,7 +135,7 @@ TEST_CASE("what has the lock's name and is no file is refused, and nobody's lock
       }
       return std::string("nothing was refused");
     };
-    const std::string words = path + " is " + (is_folder ? "a folder" : "no file") + ", and has the name";
+    const std::string words = path + " is " + (is_folder ? "a folder" : "no file") + ", but has the name";
     CHECK(message_of_use([](const ResultsFolder& f) { f.check(); }).find(words) != std::string::npos);
     CHECK(message_of_use([](ResultsFolder& f) { f.claim(); }).find(words) != std::string::npos);
     CHECK(!FolderLock(scratch.path()).owner());

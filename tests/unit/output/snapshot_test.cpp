@@ -294,7 +294,7 @@ TEST_CASE("a file without a field that is to be written is left as it is") {
   } catch (const IoError& error) {
     message = error.what();
   }
-  CHECK(message.find("bodies.vtkhdf: holds no field orientation") != std::string::npos);
+  CHECK(message.find("bodies.vtkhdf: lacks the field orientation") != std::string::npos);
   CHECK(Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 2);
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{2});
 }

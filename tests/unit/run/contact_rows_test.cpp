@@ -156,11 +156,11 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
     }
     return "";
   };
-  CHECK(contains(unpacked("contacts/count", -1), "no such number of contacts"));
-  CHECK(contains(unpacked("contacts/count", 1000), "no such number of contacts"));
+  CHECK(contains(unpacked("contacts/count", -1), "number of contacts of a particle is not valid"));
+  CHECK(contains(unpacked("contacts/count", 1000), "number of contacts of a particle is not valid"));
   CHECK(contains(unpacked("contacts/count", 2), "do not fit together"));
-  CHECK(contains(unpacked("contacts/image", 27), "its image is none"));
-  CHECK(contains(unpacked("contacts/partner", -1), "its image is none"));
+  CHECK(contains(unpacked("contacts/image", 27), "image of a contact is not valid"));
+  CHECK(contains(unpacked("contacts/partner", -1), "image of a contact is not valid"));
 }
 
 TEST_CASE("what contacts with walls remember can be left out") {
