@@ -3,6 +3,8 @@
 #include <array>
 #include <fstream>
 
+#include "base/index.hpp"
+
 namespace scree {
 
 namespace {
@@ -70,7 +72,7 @@ std::string beginning_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(kFileBeginning, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  bytes.resize(as_size(file.gcount()));
   return bytes;
 }
 

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/index.hpp"
+
 namespace scree {
 
 namespace {
@@ -29,7 +31,7 @@ std::string input_file_trouble(const std::string& path) {
   std::array<char, kLfsBeginning.size()> beginning{};
   file.read(beginning.data(), beginning.size());
   if (file.bad()) return std::string("cannot be read: ") + std::strerror(errno);
-  if (is_lfs_pointer({beginning.data(), static_cast<std::size_t>(file.gcount())})) return kLfsPointerTrouble;
+  if (is_lfs_pointer({beginning.data(), as_size(file.gcount())})) return kLfsPointerTrouble;
   return "";
 }
 

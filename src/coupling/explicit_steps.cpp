@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "coupling/coupled_step.hpp"
 
 namespace scree {
@@ -36,8 +37,8 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
       open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
     }
   } else {
-    const Index most = static_cast<Index>(times.size()) * substeps;
-    taken = static_cast<std::size_t>(run->take_steps(most, false, timers_).closed / substeps);
+    const Index most = as_index(times.size()) * substeps;
+    taken = as_size(run->take_steps(most, false, timers_).closed / substeps);
   }
   counts_.steps += static_cast<std::int64_t>(taken);
   return taken;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/index.hpp"
+
 namespace scree {
 
 namespace {
@@ -68,8 +70,7 @@ std::array<Real, 21> WrenchSlope::packed() const {
   const auto unit = [this](std::size_t k) { return k < 3 ? 1 : reach_; };
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = i; j < 6; ++j)
-      out[static_cast<std::size_t>(packed6(static_cast<int>(i), static_cast<int>(j)))] =
-          unit(i) * unit(j) * (slope_[i][j] + slope_[j][i]) / 2;
+      out[as_size(packed6(as_index(i), as_index(j)))] = unit(i) * unit(j) * (slope_[i][j] + slope_[j][i]) / 2;
   return out;
 }
 
@@ -123,7 +124,7 @@ void LoadedBodies::give(ContactWrenches& step) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     step.wrench[b].force = mean_[b].force + (now_[b].force - predicted_[b].force);
     step.wrench[b].torque = mean_[b].torque + (now_[b].torque - predicted_[b].torque);
-    if (bodies_[b].stiffness > 0) step.stiffness.push_back({static_cast<int>(b), slope_[b].packed(), {}});
+    if (bodies_[b].stiffness > 0) step.stiffness.push_back({as_index(b), slope_[b].packed(), {}});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/input_file.hpp"
 #include "model/data/id_range.hpp"
 #include "output/durable_file.hpp"
@@ -79,13 +80,12 @@ void write_rows(SharedRows& file, const std::string& group, const RowMap<T>& arr
                 const std::map<std::string, Extent>& extents) {
   for (const auto& [name, rows] : arrays) {
     std::vector<T> piece;
-    file.write_pieces<T>(
-        group + name, rows.width, extents.at(name).own,
-        [&, &rows = rows](std::int64_t first, std::int64_t count) {
-          piece.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(rows.width));
-          rows.copy(first, count, piece.data());
-          return piece.data();
-        });
+    file.write_pieces<T>(group + name, rows.width, extents.at(name).own,
+                         [&, &rows = rows](std::int64_t first, std::int64_t count) {
+                           piece.resize(as_size(count) * as_size(rows.width));
+                           rows.copy(first, count, piece.data());
+                           return piece.data();
+                         });
   }
 }
 
@@ -129,7 +129,7 @@ std::string format_in_bytes(const std::string& path) {
   std::string bytes(kLooked, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(bytes.data(), static_cast<std::streamsize>(kLooked));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  bytes.resize(as_size(file.gcount()));
   const std::string attribute("format\0", 7);
   for (std::size_t at = bytes.find(attribute); at != std::string::npos; at = bytes.find(attribute, at + 1)) {
     const std::size_t name = bytes.find(kFormatName, at);

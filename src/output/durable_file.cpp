@@ -13,6 +13,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace scree {
 
@@ -39,7 +40,7 @@ int write_and_sync(int file, const std::string& text) {
   for (std::size_t done = 0; done < text.size() && error == 0;) {
     const ssize_t written = write(file, text.data() + done, text.size() - done);
     if (written >= 0) {
-      done += static_cast<std::size_t>(written);
+      done += as_size(written);
     } else if (errno != EINTR) {
       error = errno;
     }
@@ -61,7 +62,7 @@ std::string read_text_file(const std::string& path) {
   int error = 0;
   while (count != 0 && error == 0) {
     count = read(file, piece.data(), piece.size());
-    if (count > 0) text.append(piece.data(), static_cast<std::size_t>(count));
+    if (count > 0) text.append(piece.data(), as_size(count));
     if (count < 0 && errno != EINTR) error = errno;
   }
   close(file);

@@ -13,7 +13,8 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
-#include "model/data/id_range.hpp"
+#include "base/index.hpp"
+#include "model/id_range.hpp"
 #include "output/durable_file.hpp"
 
 namespace scree {
@@ -41,7 +42,7 @@ class ReadFile {
   std::int64_t size() const { return size_; }
   void read(std::int64_t from, std::int64_t count, char* to) const {
     while (count > 0) {
-      const ssize_t done = pread(file_, to, static_cast<std::size_t>(count), from);
+      const ssize_t done = pread(file_, to, as_size(count), from);
       if (done < 0 && errno == EINTR) continue;
       if (done == 0) errno = EIO;  // the file is shorter than before
       if (done <= 0) fail("read", errno);
@@ -66,13 +67,13 @@ const std::int64_t kLineBytes = std::ssize(seal_line(0));
 std::uint64_t checksum(const ReadFile& file, std::int64_t bytes, const Ranks& ranks) {
   std::uint64_t sum = 0;
   ranks.together([&] {
-    std::vector<char> piece(static_cast<std::size_t>(std::min(bytes, kPieceBytes)));
+    std::vector<char> piece(as_size(std::min(bytes, kPieceBytes)));
     const IdRange own = id_range((bytes + kPieceBytes - 1) / kPieceBytes, ranks.rank(), ranks.size());
     for (std::int64_t k = own.first; k < own.last; ++k) {
       const std::int64_t from = k * kPieceBytes, count = std::min(kPieceBytes, bytes - from);
       file.read(from, count, piece.data());
       BitHash hash;
-      hash.add(k), hash.add(count), hash.add(piece.data(), static_cast<std::size_t>(count));
+      hash.add(k), hash.add(count), hash.add(piece.data(), as_size(count));
       sum += hash.hash();
     }
   });
@@ -90,7 +91,7 @@ void seal_file(const std::string& path, const Ranks& ranks) {
 
 Seal check_seal(const std::string& path, const Ranks& ranks) {
   std::optional<ReadFile> file;
-  std::string line(static_cast<std::size_t>(kLineBytes), ' ');
+  std::string line(as_size(kLineBytes), ' ');
   ranks.together([&] {
     file.emplace(path);
     if (file->size() >= kLineBytes) file->read(file->size() - kLineBytes, kLineBytes, line.data());

@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "model/builder/hdf5_open.hpp"
+#include "base/index.hpp"
+#include "model/hdf5_open.hpp"
 #include "output/hdf5_parts.hpp"
 
 namespace scree {
@@ -286,7 +287,7 @@ std::string Hdf5File::read_text(const std::string& name) const {
 }
 
 std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
-  std::vector<char*> values(static_cast<std::size_t>(value_count(name)));
+  std::vector<char*> values(as_size(value_count(name)));
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   Hdf5Id type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
   if (H5Tis_variable_str(type) <= 0) throw IoError(fmt::format("{}: {} is no list of texts", path_, name));

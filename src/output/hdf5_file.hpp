@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/types.hpp"
 
 namespace scree {
@@ -105,7 +106,7 @@ class Hdf5File {
   // Reads all values of a dataset of either kind, row by row. Throws also if the file has another type.
   template <class T>
   std::vector<T> read_array(const std::string& name) const {
-    std::vector<T> values(static_cast<std::size_t>(value_count(name)));
+    std::vector<T> values(as_size(value_count(name)));
     read_array(name, hdf5_type<T>(), values.data());
     return values;
   }

@@ -7,6 +7,7 @@
 
 #include <array>
 
+#include "base/index.hpp"
 #include "output/shared_rows.hpp"
 
 namespace scree {
@@ -25,7 +26,7 @@ std::string mpi_version() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;
   MPI_Get_library_version(text.data(), &length);
-  const std::string sentence(text.data(), static_cast<std::size_t>(length));
+  const std::string sentence(text.data(), as_size(length));
   return sentence.substr(0, sentence.find_first_of(",\n"));
 }
 

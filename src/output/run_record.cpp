@@ -11,6 +11,7 @@
 #include <sstream>
 #include <type_traits>
 
+#include "base/index.hpp"
 #include "base/version.hpp"
 #include "output/durable_file.hpp"
 #include "output/library_versions.hpp"
@@ -122,7 +123,7 @@ toml::array stage_array(const StageTimers& timers) {
   toml::array stages;
   for (int s = 0; s < static_cast<int>(Stage::count); ++s) {
     const StageTimers::Entry& entry = timers[static_cast<Stage>(s)];
-    toml::table stage{{"stage", kStageNames[static_cast<std::size_t>(s)]}, {"calls", entry.calls}};
+    toml::table stage{{"stage", kStageNames[as_size(s)]}, {"calls", entry.calls}};
     insert_number(stage, "seconds", entry.seconds);
     stages.push_back(stage);
   }

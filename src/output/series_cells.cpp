@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
+
 namespace scree {
 
 namespace {
@@ -15,7 +17,7 @@ void write_numbers(SharedRows& file, const std::string& name, std::int64_t first
   std::vector<std::int64_t> piece;
   file.write_pieces<std::int64_t>(name, 1, {first_row + numbers.first, numbers.count},
                                   [&](std::int64_t first, std::int64_t count) {
-                                    piece.resize(static_cast<std::size_t>(count));
+                                    piece.resize(as_size(count));
                                     std::int64_t k = numbers.first + first;
                                     for (std::int64_t& value : piece) value = step * k++;
                                     return piece.data();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "output/hdf5_size.hpp"
 #include "output/xdmf.hpp"
 
@@ -86,7 +87,7 @@ SeriesSize series_size(const std::string& name, const SeriesOptions& options, co
   const std::int64_t middle = snapshots / 2;
   const std::string grid = xdmf_grid(series, {like.time, like.points, middle * like.points, 0, 0, middle});
   return {size.bytes(), static_cast<Real>(xdmf_document(name, options.title, "").size() +
-                                          grid.size() * static_cast<std::size_t>(snapshots))};
+                                          grid.size() * as_size(snapshots))};
 }
 
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace scree {
 
@@ -53,7 +54,7 @@ bool SeriesTriangles::has(const std::string& name) const {
 
 void create_triangles(Hdf5File& file, const SeriesTriangles& triangles) {
   const std::int64_t count = triangles.count();
-  std::vector<std::int64_t> offsets(static_cast<std::size_t>(count) + 1);
+  std::vector<std::int64_t> offsets(as_size(count) + 1);
   for (std::size_t k = 0; k < offsets.size(); ++k) offsets[k] = 3 * static_cast<std::int64_t>(k);
   write_once(file, "Polygons/NumberOfCells", {count}, "triangles");
   write_once(file, "Polygons/NumberOfConnectivityIds", {3 * count}, "corners of triangles");

@@ -7,7 +7,8 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
-#include "model/builder/hdf5_open.hpp"
+#include "base/index.hpp"
+#include "model/hdf5_open.hpp"
 #include "output/durable_file.hpp"
 
 #if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)
@@ -116,7 +117,7 @@ void SharedRows::read_back() {
   if (!file.valid()) fail("read back");
   std::vector<std::byte> values;
   for (const Written& w : written_) {
-    values.resize(static_cast<std::size_t>(w.rows.count) * w.type.bytes());
+    values.resize(as_size(w.rows.count) * w.type.bytes());
     const Hdf5Id dataset(H5Dopen2(file, w.name.c_str(), H5P_DEFAULT), H5Dclose);
     if (!dataset.valid()) fail("read back dataset " + w.name);
     const RowSelection selected(dataset, w.rows.first, w.rows.count);
@@ -144,8 +145,7 @@ void SharedRows::put(const std::string& name, RowType type, RowPart rows, const 
       !dataset.close())
     fail("write dataset " + name);
   if (reads_back_ && rows.count > 0)
-    written_.push_back(
-        {name, type, rows, hash_of(values, static_cast<std::size_t>(rows.count) * type.bytes())});
+    written_.push_back({name, type, rows, hash_of(values, as_size(rows.count) * type.bytes())});
 }
 
 // Every rank takes part in as many writes as the rank with the most rows.
@@ -168,13 +168,13 @@ void SharedRows::write_through_root(const std::string& name, RowType type, RowPa
   const auto give = [&](std::int64_t k) {
     const RowPart now = piece_of(part, rows, k);
     return Ranks::Bytes(static_cast<const std::byte*>(piece(now.first, now.count)),
-                        static_cast<std::size_t>(now.count) * bytes);
+                        as_size(now.count) * bytes);
   };
-  ranks_.hand_to_root(
-      (part.count + rows - 1) / rows, give, [&](int rank, std::int64_t k, Ranks::Bytes values) {
-        const RowPart whole = parts[static_cast<std::size_t>(rank)], now = piece_of(whole, rows, k);
-        put(name, type, {whole.first + now.first, now.count}, values.data());
-      });
+  ranks_.hand_to_root((part.count + rows - 1) / rows, give,
+                      [&](int rank, std::int64_t k, Ranks::Bytes values) {
+                        const RowPart whole = parts[as_size(rank)], now = piece_of(whole, rows, k);
+                        put(name, type, {whole.first + now.first, now.count}, values.data());
+                      });
 }
 
 }  // namespace scree

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/hdf5_parts.hpp"
 #include "partition/ranks.hpp"
@@ -59,7 +60,7 @@ class SharedRows {
   struct RowType {
     hid_t value;
     int width;
-    std::size_t bytes() const { return static_cast<std::size_t>(width) * H5Tget_size(value); }
+    std::size_t bytes() const { return as_size(width) * H5Tget_size(value); }
   };
   using Piece = std::function<const void*(std::int64_t first, std::int64_t count)>;
   void write(const std::string& name, RowType type, RowPart part, const Piece& piece);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/version.hpp"
 #include "output/durable_file.hpp"
 #include "output/xdmf.hpp"
@@ -101,7 +102,7 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
     throw IoError(
         fmt::format("{}: has {} snapshots, but the restarted run has written {}", path(), snapshots(), keep));
   }
-  if (snapshots() > keep) cut(static_cast<std::size_t>(keep));
+  if (snapshots() > keep) cut(as_size(keep));
 }
 
 void VtkHdfSeries::read_places() {
@@ -123,10 +124,10 @@ void VtkHdfSeries::read_places() {
           fmt::format("{}: snapshot {} refers to part {} of {}", path(), s, part[s], points.size()));
     }
     places_[s] = {time[s],
-                  points[static_cast<std::size_t>(part[s])],
+                  points[as_size(part[s])],
                   first_point[s],
                   part[s],
-                  first_cell[4 * s + static_cast<std::size_t>(cells().column)],
+                  first_cell[4 * s + as_size(cells().column)],
                   static_cast<std::int64_t>(s)};
   }
 }

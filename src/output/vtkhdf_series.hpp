@@ -21,6 +21,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "output/series_cells.hpp"
@@ -107,7 +108,7 @@ class VtkHdfSeries {
   void follow(const PointSnapshot& snapshot);
   // Updates the .xdmf. Throws IoError.
   void finish();
-  int snapshots() const { return static_cast<int>(places_.size()); }
+  int snapshots() const { return as_index(places_.size()); }
   const std::string& path() const { return file_.path(); }
 
  private:

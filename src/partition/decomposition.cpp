@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace scree {
 namespace {
@@ -46,7 +47,7 @@ struct Decomposition::Histograms {
 
 Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::span<const Vec4> position,
                              std::span<const std::int64_t> weight)
-    : grid_(grid), boxes_(static_cast<std::size_t>(ranks.size())) {
+    : grid_(grid), boxes_(as_size(ranks.size())) {
   if (grid.count() < ranks.size())
     throw InputError(
         "mpirun -n " + std::to_string(ranks.size()) + ": the domain has only " +
@@ -62,15 +63,14 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
       const int axis = cuts_[node_of[i]].axis;
       if (axis < 0) continue;
       const Index layer = grid_.cell(axis, xyz(position[i])) - nodes_[node_of[i]].box.lower[axis];
-      h.weight[h.first[node_of[i]] + static_cast<std::size_t>(layer)] += weight[i];
+      h.weight[h.first[node_of[i]] + as_size(layer)] += weight[i];
     }
     ranks.sum(std::span<std::int64_t>(h.weight));
     split(h);
     for (std::size_t i = 0; i < position.size(); ++i) {
       const DomainCut& cut = cuts_[node_of[i]];
       if (cut.axis >= 0)
-        node_of[i] =
-            static_cast<std::size_t>(cut.below + (grid_.cell(cut.axis, xyz(position[i])) >= cut.cut));
+        node_of[i] = as_size(cut.below + (grid_.cell(cut.axis, xyz(position[i])) >= cut.cut));
     }
   }
 }
@@ -82,7 +82,7 @@ Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_no
   for (std::size_t n = first_node; n < nodes_.size(); ++n) {
     const Node& node = nodes_[n];
     if (node.ranks == 1) {
-      boxes_[static_cast<std::size_t>(node.first_rank)] = node.box;
+      boxes_[as_size(node.first_rank)] = node.box;
       continue;
     }
     int& axis_of_cut = cuts_[n].axis;
@@ -92,9 +92,9 @@ Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_no
       const Real extent = layers * grid_.edge.*kAxes[axis];
       if (layers > 1 && extent > longest) longest = extent, axis_of_cut = axis;
     }
-    h.nodes.push_back(static_cast<int>(n)), h.first[n] = h.weight.size();
+    h.nodes.push_back(as_index(n)), h.first[n] = h.weight.size();
     const Index layers = node.box.upper[axis_of_cut] - node.box.lower[axis_of_cut];
-    h.weight.resize(h.weight.size() + static_cast<std::size_t>(layers));
+    h.weight.resize(h.weight.size() + as_size(layers));
   }
   return h;
 }
@@ -123,7 +123,7 @@ std::pair<int, Index> Decomposition::cut_of(const Node& node, int axis, const st
 
 void Decomposition::split(const Histograms& h) {
   for (const int index : h.nodes) {
-    const auto n = static_cast<std::size_t>(index);
+    const auto n = as_size(index);
     const Node node = nodes_[n];
     const int axis = cuts_[n].axis;
     const auto [ranks_below, layers_below] = cut_of(node, axis, &h.weight[h.first[n]]);
@@ -131,7 +131,7 @@ void Decomposition::split(const Histograms& h) {
         upper{node.box, node.first_rank + ranks_below, node.ranks - ranks_below};
     const Index cut = node.box.lower[axis] + layers_below;
     lower.box.upper[axis] = upper.box.lower[axis] = cut;
-    cuts_[n].cut = cut, cuts_[n].below = static_cast<int>(nodes_.size());
+    cuts_[n].cut = cut, cuts_[n].below = as_index(nodes_.size());
     add(lower), add(upper);
   }
 }
@@ -143,7 +143,7 @@ void Decomposition::add(const Node& node) {
 
 DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {
   if (!exists()) return subdomain.periodic_box();
-  const CellBox& cells = boxes_[static_cast<std::size_t>(rank)];
+  const CellBox& cells = boxes_[as_size(rank)];
   DomainBox box;
   for (int axis = 0; axis < 3; ++axis) {
     const bool open = subdomain.period().*kAxes[axis] == 0;

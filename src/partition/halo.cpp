@@ -3,14 +3,15 @@
 #include <algorithm>
 
 #include "base/for_each.hpp"
+#include "base/index.hpp"
 
 namespace scree {
 
 std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width) {
   const HaloPlan plan({}, {}, subdomain, width);
   std::vector<Ghost> ghosts;
-  for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
-    plan.for_each_target(xyz(position[static_cast<std::size_t>(i)]), [&](const HaloTarget& t) {
+  for (Index i = 0; i < as_index(position.size()); ++i)
+    plan.for_each_target(xyz(position[as_size(i)]), [&](const HaloTarget& t) {
       ghosts.push_back({i, t.image, {}, t.shift});
     });
   return ghosts;
@@ -22,7 +23,7 @@ void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, cons
   find_ghosts(position);
   images_.clear();
   for (const Ghost& ghost : own_) images_.push_back(ghost.image);
-  images_.resize(static_cast<std::size_t>(plan_.ghosts()));
+  images_.resize(as_size(plan_.ghosts()));
   for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
   std::vector<std::int8_t> sent(sent_.size());
   std::transform(sent_.begin(), sent_.end(), sent.begin(), [](const Ghost& g) { return g.image; });
@@ -33,9 +34,9 @@ void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, cons
 void Halo::find_ghosts(std::span<const Vec4> position) {
   own_.clear(), sent_.clear();
   std::vector<std::vector<Ghost>> ghosts(plan_.neighbors().size());
-  for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
-    plan_.for_each_target(xyz(position[static_cast<std::size_t>(i)]), [&](const HaloTarget& t) {
-      (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
+  for (Index i = 0; i < as_index(position.size()); ++i)
+    plan_.for_each_target(xyz(position[as_size(i)]), [&](const HaloTarget& t) {
+      (t.neighbor == HaloTarget::kItself ? own_ : ghosts[as_size(t.neighbor)])
           .push_back({i, t.image, {}, t.shift});
     });
   std::vector<std::size_t> counts;
@@ -48,12 +49,12 @@ void Halo::find_ghosts(std::span<const Vec4> position) {
 
 void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity,
                          std::optional<std::span<Vec4>> spin, Index first_ghost) const {
-  const auto n = static_cast<Index>(own_.size());
+  const auto n = as_index(own_.size());
   for_each(Serial{}, n, HaloPositionItem{own_.data(), position.data(), first_ghost});
   for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
   if (spin) for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), spin->data(), first_ghost});
   for (std::size_t k = 0; k < sent_.size(); ++k) {
-    const auto source = static_cast<std::size_t>(sent_[k].source);
+    const auto source = as_size(sent_[k].source);
     buffer_[0][k] = moved(sent_[k], position[source]), buffer_[1][k] = velocity[source];
     if (spin) buffer_[2][k] = (*spin)[source];
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/for_each.hpp"
+#include "base/index.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "partition/decomposition.hpp"
@@ -63,9 +64,9 @@ class Halo {
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 std::span<const Vec4> position, Real width);
 
-  Index size() const { return static_cast<Index>(images_.size()); }
+  Index size() const { return as_index(images_.size()); }
   // Number of entries sent per update, and of ranks that receive some.
-  Index sent() const { return static_cast<Index>(sent_.size()); }
+  Index sent() const { return as_index(sent_.size()); }
   Index receivers() const { return plan_.receivers(); }
   // Number of the shift of each ghost.
   const std::vector<std::int8_t>& images() const { return images_; }
@@ -94,9 +95,9 @@ class Halo {
 template <class T>
 void Halo::update(std::span<T> field, Index first_ghost) const {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Vec4));
-  for_each(Serial{}, static_cast<Index>(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
+  for_each(Serial{}, as_index(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
   T* packed = reinterpret_cast<T*>(buffer_[0].data());
-  for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[static_cast<std::size_t>(sent_[k].source)];
+  for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[as_size(sent_[k].source)];
   const HaloMessage message{packed, field.data() + first_ghost, sizeof(T)};
   plan_.transfer({&message, 1});
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/countable.hpp"
+#include "base/index.hpp"
 #include "partition/entry_type.hpp"
 
 namespace scree {
@@ -33,7 +34,7 @@ class HaloPlan::Transfers {
   Transfers(const Ranks& ranks, std::size_t most) : communicator_(MPI_Comm_f2c(ranks.communicator())) {
     requests_.reserve(most);
   }
-  ~Transfers() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
+  ~Transfers() { MPI_Waitall(as_index(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
   Transfers(const Transfers&) = delete;
   Transfers& operator=(const Transfers&) = delete;
 
@@ -81,7 +82,7 @@ void HaloPlan::find_targets(const Decomposition& decomposition, const Subdomain&
     });
   };
   add(ranks_.rank(), HaloTarget::kItself);
-  for (std::size_t k = 0; k < neighbors_.size(); ++k) add(neighbors_[k].rank, static_cast<int>(k));
+  for (std::size_t k = 0; k < neighbors_.size(); ++k) add(neighbors_[k].rank, as_index(k));
 }
 
 void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
@@ -101,7 +102,7 @@ void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
   std::size_t ghosts = own;
   for (HaloNeighbor& n : neighbors_) {
     n.first_received = countable_ghosts(ghosts);
-    ghosts += static_cast<std::size_t>(n.received);
+    ghosts += as_size(n.received);
   }
   own_ = countable_ghosts(own), ghosts_ = countable_ghosts(ghosts);
 }
@@ -119,14 +120,14 @@ void HaloPlan::transfer(std::span<const HaloMessage> messages) const {
   Transfers transfers(ranks_, 2 * messages.size() * neighbors_.size());
   for (std::size_t k = 0; k < messages.size(); ++k)
     for (const HaloNeighbor& n : neighbors_)
-      transfers.receive(static_cast<char*>(messages[k].ghosts) +
-                            static_cast<std::size_t>(n.first_received) * messages[k].element,
-                        n.received, types[k], n.rank, kFieldTag + static_cast<int>(k));
+      transfers.receive(
+          static_cast<char*>(messages[k].ghosts) + as_size(n.first_received) * messages[k].element,
+          n.received, types[k], n.rank, kFieldTag + as_index(k));
   for (std::size_t k = 0; k < messages.size(); ++k)
     for (const HaloNeighbor& n : neighbors_)
-      transfers.send(static_cast<const char*>(messages[k].packed) +
-                         static_cast<std::size_t>(n.first_sent) * messages[k].element,
-                     n.sent, types[k], n.rank, kFieldTag + static_cast<int>(k));
+      transfers.send(
+          static_cast<const char*>(messages[k].packed) + as_size(n.first_sent) * messages[k].element, n.sent,
+          types[k], n.rank, kFieldTag + as_index(k));
 }
 
 }  // namespace scree

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/hd.hpp"
+#include "base/index.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "partition/decomposition.hpp"
@@ -83,7 +84,7 @@ class HaloPlan {
   // Calls visit(target) for the targets in which a particle at p is a ghost.
   template <class Visit>
   void for_each_target(Vec3 p, const Visit& visit) const {
-    ::scree::for_each_target(box_, reach_, targets_.data(), static_cast<int>(targets_.size()), p, visit);
+    ::scree::for_each_target(box_, reach_, targets_.data(), as_index(targets_.size()), p, visit);
   }
   const std::vector<HaloNeighbor>& neighbors() const { return neighbors_; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
+
 namespace scree {
 namespace {
 
@@ -16,9 +18,9 @@ std::vector<std::size_t> sorting_order(std::span<const GlobalId> ids) {
 }  // namespace
 
 IdOrder::IdOrder(const Ranks& ranks, std::int64_t count, std::span<const GlobalId> ids)
-    : ranks_(ranks), sent_(sorting_order(ids)), counts_(static_cast<std::size_t>(ranks.size())) {
+    : ranks_(ranks), sent_(sorting_order(ids)), counts_(as_size(ranks.size())) {
   if (ranks.alone()) return;
-  for (const GlobalId id : ids) ++counts_[static_cast<std::size_t>(id_owner(count, id, ranks.size()))];
+  for (const GlobalId id : ids) ++counts_[as_size(id_owner(count, id, ranks.size()))];
   arrived_ = sorting_order(apply(std::vector<GlobalId>(ids.begin(), ids.end())));
 }
 

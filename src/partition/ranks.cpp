@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/log.hpp"
 #include "partition/entry_type.hpp"
 
@@ -36,8 +37,7 @@ std::int64_t ordered_bits(Real value) {
 std::vector<int> offsets_of(const std::vector<int>& counts) {
   std::vector<int> offsets(counts.size());
   for (std::size_t r = 1; r < counts.size(); ++r)
-    offsets[r] =
-        mpi_count(static_cast<std::size_t>(offsets[r - 1]) + static_cast<std::size_t>(counts[r - 1]));
+    offsets[r] = mpi_count(as_size(offsets[r - 1]) + as_size(counts[r - 1]));
   return offsets;
 }
 
@@ -142,7 +142,7 @@ void Ranks::max(std::span<Real> values) const {
   std::array<std::int64_t, kMost> bits;
   if (values.size() > kMost) throw std::logic_error("Ranks::max: too many values at once");
   std::transform(values.begin(), values.end(), bits.begin(), ordered_bits);
-  MPI_Allreduce(MPI_IN_PLACE, bits.data(), static_cast<int>(values.size()), MPI_INT64_T, MPI_MAX,
+  MPI_Allreduce(MPI_IN_PLACE, bits.data(), as_index(values.size()), MPI_INT64_T, MPI_MAX,
                 communicator_of(communicator_));
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = std::bit_cast<Real>(bits[k]);
 }
@@ -185,14 +185,13 @@ void Ranks::sum(std::span<__int128> values) const {
   std::vector<std::int64_t> limbs(values.size() * kLimbs);
   for (std::size_t k = 0; k < values.size(); ++k)
     for (int limb = 0; limb < kLimbs; ++limb)
-      limbs[k * kLimbs + static_cast<std::size_t>(limb)] = static_cast<std::int64_t>(
+      limbs[k * kLimbs + as_size(limb)] = static_cast<std::int64_t>(
           static_cast<std::uint32_t>(static_cast<unsigned __int128>(values[k]) >> (32 * limb)));
   sum(std::span<std::int64_t>(limbs));
   for (std::size_t k = 0; k < values.size(); ++k) {
     unsigned __int128 total = 0;
     for (int limb = 0; limb < kLimbs; ++limb)
-      total += static_cast<unsigned __int128>(limbs[k * kLimbs + static_cast<std::size_t>(limb)])
-               << (32 * limb);
+      total += static_cast<unsigned __int128>(limbs[k * kLimbs + as_size(limb)]) << (32 * limb);
     values[k] = static_cast<__int128>(total);
   }
 }
@@ -210,7 +209,7 @@ void Ranks::share_failure(std::exception_ptr failure, int from) const {
   broadcast_bytes(head, sizeof head, from);
   if (head[0] == kNone) return;
   own.kind = static_cast<Failure>(head[0]);
-  own.message.resize(static_cast<std::size_t>(head[1]));
+  own.message.resize(as_size(head[1]));
   broadcast_bytes(own.message.data(), own.message.size(), from);
   throw_as(own);
 }
@@ -266,7 +265,7 @@ void Ranks::end_job(const char* message, int exit_code) const {
 
 std::vector<int> Ranks::counts_of(std::size_t own) const {
   const int count = mpi_count(own);
-  std::vector<int> counts(static_cast<std::size_t>(size_));
+  std::vector<int> counts(as_size(size_));
   MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_of(communicator_));
   return counts;
 }
@@ -275,7 +274,7 @@ void Ranks::gather_bytes(const void* own, const std::vector<int>& counts, std::s
                          void* all) const {
   const EntryType type(element);
   const std::vector<int> offsets = offsets_of(counts);
-  MPI_Allgatherv(own, counts[static_cast<std::size_t>(rank_)], type, all, counts.data(), offsets.data(), type,
+  MPI_Allgatherv(own, counts[as_size(rank_)], type, all, counts.data(), offsets.data(), type,
                  communicator_of(communicator_));
 }
 
@@ -290,7 +289,7 @@ std::size_t Ranks::arriving(int sender, std::size_t element) const {
   MPI_Probe(sender, kGatherTag, communicator_of(communicator_), &status);
   int count = 0;
   MPI_Get_count(&status, type, &count);
-  return static_cast<std::size_t>(count);
+  return as_size(count);
 }
 
 void Ranks::receive(int sender, void* data, std::size_t count, std::size_t element) const {
@@ -319,7 +318,7 @@ void Ranks::hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int
   for (std::int64_t k = 0; is_root() && k < pieces; ++k) taken(0, k, give(k));
   std::vector<std::byte> piece;
   for (int sender = 1; is_root() && sender < size_; ++sender)
-    for (std::int64_t k = 0; k < of_rank[static_cast<std::size_t>(sender)]; ++k) {
+    for (std::int64_t k = 0; k < of_rank[as_size(sender)]; ++k) {
       piece.resize(arriving(sender, 1));
       receive(sender, piece.data(), piece.size(), 1);
       taken(sender, k, piece);
@@ -344,7 +343,7 @@ void Ranks::deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_c
   std::vector<MPI_Request> requests;
   char* to = static_cast<char*>(received);
   for (int r = 0; r < size_; ++r) {
-    const auto count = static_cast<std::size_t>(received_counts[static_cast<std::size_t>(r)]);
+    const auto count = as_size(received_counts[as_size(r)]);
     in_pieces(count, most, [&](std::size_t first, std::size_t piece) {
       MPI_Irecv(to + first * element, mpi_count(piece), type, r, kDealTag, communicator,
                 &requests.emplace_back());
@@ -353,7 +352,7 @@ void Ranks::deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_c
   }
   const char* from = static_cast<const char*>(sent);
   for (int r = 0; r < size_; ++r) {
-    const auto count = static_cast<std::size_t>(sent_counts[static_cast<std::size_t>(r)]);
+    const auto count = as_size(sent_counts[as_size(r)]);
     in_pieces(count, most, [&](std::size_t first, std::size_t piece) {
       MPI_Isend(from + first * element, mpi_count(piece), type, r, kDealTag, communicator,
                 &requests.emplace_back());

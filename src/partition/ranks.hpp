@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/types.hpp"
 
 namespace scree {
@@ -155,7 +156,7 @@ std::vector<T> Ranks::gather_everywhere(std::vector<T> values) const {
   if (alone()) return values;
   const std::vector<int> counts = counts_of(values.size());
   std::size_t total = 0;
-  for (const int count : counts) total += static_cast<std::size_t>(count);
+  for (const int count : counts) total += as_size(count);
   std::vector<T> all(total);
   gather_bytes(values.data(), counts, sizeof(T), all.data());
   return all;
@@ -166,8 +167,7 @@ std::vector<T> Ranks::deal_out(std::span<const T> values, const std::vector<std:
   static_assert(std::is_trivially_copyable_v<T>);
   if (alone()) return {values.begin(), values.end()};
   const std::vector<std::int64_t> received = deal_counts(counts);
-  std::vector<T> in(
-      static_cast<std::size_t>(std::accumulate(received.begin(), received.end(), std::int64_t{0})));
+  std::vector<T> in(as_size(std::accumulate(received.begin(), received.end(), std::int64_t{0})));
   deal_bytes(values.data(), counts, in.data(), received, sizeof(T));
   return in;
 }

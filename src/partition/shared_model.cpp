@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "partition/decomposition.hpp"
 
 namespace scree {
@@ -14,7 +15,7 @@ class Receivers {
   Receivers(const Decomposition& decomposition, const Space& space, Real reach)
       : decomposition_(decomposition), reach_(reach), period_(Subdomain(space).period()) {
     for (std::size_t r = 0; r < decomposition.boxes().size(); ++r)
-      boxes_.push_back(decomposition.box(static_cast<int>(r), Subdomain(space)));
+      boxes_.push_back(decomposition.box(as_index(r), Subdomain(space)));
   }
 
   // Calls visit(rank) once per receiving rank, for the owner first.
@@ -23,9 +24,9 @@ class Receivers {
     const int owner = decomposition_.owner(p);
     visit(owner);
     // Far inside the owner's box; boxes end at the periodic sides of the domain.
-    if (boxes_[static_cast<std::size_t>(owner)].inside(p, reach_)) return;
-    for (int r = 0; r < static_cast<int>(boxes_.size()); ++r)
-      if (r != owner && any_image_near(boxes_[static_cast<std::size_t>(r)], p)) visit(r);
+    if (boxes_[as_size(owner)].inside(p, reach_)) return;
+    for (int r = 0; r < as_index(boxes_.size()); ++r)
+      if (r != owner && any_image_near(boxes_[as_size(r)], p)) visit(r);
   }
 
  private:
@@ -57,17 +58,16 @@ std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, c
     decomposition = Decomposition(ranks_, make_domain_grid(space, reach), position, weight);
   }
   const Receivers receivers(decomposition, space, reach);
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(ranks_.size()));
+  std::vector<std::int64_t> counts(as_size(ranks_.size()));
   for (const StartItem& item : own)
-    receivers.for_each_of(item.position, [&](int r) { ++counts[static_cast<std::size_t>(r)]; });
+    receivers.for_each_of(item.position, [&](int r) { ++counts[as_size(r)]; });
   std::vector<std::size_t> next(counts.size());
-  for (std::size_t r = 1; r < next.size(); ++r)
-    next[r] = next[r - 1] + static_cast<std::size_t>(counts[r - 1]);
-  std::vector<StartItem> sent(next.back() + static_cast<std::size_t>(counts.back()));
+  for (std::size_t r = 1; r < next.size(); ++r) next[r] = next[r - 1] + as_size(counts[r - 1]);
+  std::vector<StartItem> sent(next.back() + as_size(counts.back()));
   for (StartItem item : own) {
     item.is_own = true;  // true for the first receiver
     receivers.for_each_of(item.position, [&](int r) {
-      sent[next[static_cast<std::size_t>(r)]++] = item;
+      sent[next[as_size(r)]++] = item;
       item.is_own = false;
     });
   }

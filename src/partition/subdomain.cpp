@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/derived/space_box.hpp"
+#include "base/index.hpp"
+#include "model/space_box.hpp"
 
 namespace scree {
 namespace {
@@ -20,7 +21,7 @@ Real rounding_constant(Real min, Real max) {
 Subdomain::Subdomain(const Space& space)
     : space_(space), box_(open_box(space)), periodic_(::scree::periodic_box(space)), walls_(wall_box(space)) {
   const auto axis = [&](int side, Real Vec3::*along) {
-    if (space.boundary[static_cast<std::size_t>(side)] != Boundary::periodic) return;
+    if (space.boundary[as_size(side)] != Boundary::periodic) return;
     const Real min = space.min.*along, max = space.max.*along;
     const Real constant = rounding_constant(min, max);
     snap_.*along = constant;

@@ -109,6 +109,29 @@ def long_python_lines(root):
     return findings
 
 
+def closing_parenthesis(text, opening):
+    """Index of the parenthesis that closes the one at `opening`; the text's length if there is none."""
+    depth = 0
+    for k in range(opening, len(text)):
+        depth += {"(": 1, ")": -1}.get(text[k], 0)
+        if depth == 0:
+            return k
+    return len(text)
+
+
+def default_tolerances(root):
+    """Uses of Catch's Approx without an epsilon or a margin: its default of 1.2e-5 is nobody's decision."""
+    findings = []
+    for file in files(root, CPP, "tests"):
+        text = (root / file).read_text(encoding="utf-8")
+        for use in re.finditer(r"\bApprox\s*[({]", text):
+            end = closing_parenthesis(text, use.end() - 1) if text[use.end() - 1] == "(" else use.end()
+            if not re.match(r"\)\s*\.\s*(epsilon|margin)\(", text[end:]):
+                line = text.count("\n", 0, use.start()) + 1
+                findings.append(f"{file}:{line}: Approx with the default tolerance; state .epsilon() or .margin()")
+    return findings
+
+
 def texts_without_encoding(root):
     """Where Python reads or writes a text by the encoding of the locale: in Latin-1 that is not the UTF-8 of decks."""
     findings = []

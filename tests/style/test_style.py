@@ -47,6 +47,9 @@ class Project(unittest.TestCase):
     def test_python_lines_are_short(self):
         self.assert_none(checks.long_python_lines(ROOT))
 
+    def test_comparisons_state_their_tolerance(self):
+        self.assert_none(checks.default_tolerances(ROOT))
+
     def test_texts_have_an_encoding(self):
         self.assert_none(checks.texts_without_encoding(ROOT))
 
@@ -116,6 +119,15 @@ class Checks(unittest.TestCase):
                 self.assertEqual(checks.long_files(root), [f"a.{suffix}: 401 lines, at most 400"])
         with tree(a_DOT_py="\n" + "x" * 121 + "\n") as root:
             self.assertEqual(checks.long_python_lines(root), ["a.py:2: 121 columns, at most 120"])
+
+    def test_tolerances(self):
+        right = "CHECK(f(1) == Approx(g(2) * (1 - h())).epsilon(1e-12));\nCHECK(a == Catch::Approx(0)\n    .margin(kUlp));\n"
+        with tree(tests__a_DOT_cpp=right, src__a_DOT_cpp="Approx(1)") as root:
+            self.assertEqual(checks.default_tolerances(root), [])
+        for wrong in ("CHECK(a == Approx(g(2)));", "CHECK(a == Catch::Approx(1).scale(2));", "Approx(1", "Approx{1}"):
+            with self.subTest(wrong=wrong), tree(tests__a_DOT_hpp=right + wrong) as root:
+                self.assertEqual(checks.default_tolerances(root), [
+                    "tests/a.hpp:4: Approx with the default tolerance; state .epsilon() or .margin()"])
 
     def test_encodings(self):
         right = 'open("a", "rb"); open("a", encoding="utf-8"); p.read_text(encoding="utf-8"); run.open("folder")\n'

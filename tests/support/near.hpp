@@ -12,6 +12,9 @@ namespace scree {
 
 // From 1 to the next number: what round-off is counted in.
 inline constexpr Real kUlp = std::numeric_limits<Real>::epsilon();
+// Relative difference of two evaluations of the same quantity in another order of operations: the round-off of
+// some thousand operations.
+inline constexpr Real kAccumulatedRoundOff = 1e-12;
 
 // How far a value may be from the expected one, by the larger of the two. What is not given is zero.
 struct Within {

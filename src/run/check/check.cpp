@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/host_memory.hpp"
+#include "base/index.hpp"
 #include "base/printable.hpp"
 #include "dem/backend/device.hpp"
 #include "dem/history/kept_contacts.hpp"
@@ -42,8 +43,7 @@ std::string sides_line(const Space& space) {
   std::string sides;
   bool open = false;
   for (int side = 0; side < 2 * space.dimension; ++side) {
-    sides +=
-        fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[static_cast<std::size_t>(side)], kind(side));
+    sides += fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[as_size(side)], kind(side));
     open = open || space.boundary[side] == Boundary::open;
   }
   return fmt::format(
@@ -141,9 +141,9 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
     const KelvinVoigt& law = limit.law;
     const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
     lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m{}, {}\n",
-                         names[static_cast<std::size_t>(limit.material[0])],
-                         names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
-                         law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
+                         names[as_size(limit.material[0])], names[as_size(limit.material[1])],
+                         law.normal_stiffness, law.exponent == 1 ? "" : fmt::format("^{}", law.exponent),
+                         law.normal_damping,
                          !sized              ? ""
                          : law.exponent == 1 ? " (smallest partners)"
                                              : " (smallest partners, at 1 % overlap)",
@@ -281,7 +281,7 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
   for (int rank = 1; rank < ranks.size(); ++rank)
     if (share(rank) > share(fullest)) fullest = rank;
   const DeviceLoad load = load_of_device(claims, fullest);
-  const auto device_of = [&](int rank) { return claims[static_cast<std::size_t>(rank)].device; };
+  const auto device_of = [&](int rank) { return claims[as_size(rank)].device; };
   const std::string together = load.ranks == 1
                                    ? ""
                                    : fmt::format(", {} for the {} ranks that share one GPU",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/mat3.hpp"
 #include "model/checks/memory.hpp"
 #include "model/data/body_layout.hpp"
@@ -43,7 +44,7 @@ std::string mesh_partners_line(const Model& model) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes)
       if (meets_planes(model, b, shape))
-        corners += std::ssize(model.meshes[static_cast<std::size_t>(shape.mesh)].corners->corners);
+        corners += std::ssize(model.meshes[as_size(shape.mesh)].corners->corners);
   const std::string planes =
       corners == 0 ? "" : fmt::format(", with planes at {}", counted(corners, "corner", "corners"));
   return fmt::format(

@@ -8,19 +8,20 @@
 #include <filesystem>
 #include <vector>
 
-#include "dem/history/kept_contacts.hpp"
-#include "model/checks/memory.hpp"
-#include "model/derived/choose_law.hpp"
-#include "model/derived/connections.hpp"
-#include "model/derived/joint_coordinates.hpp"
-#include "run/record/body_points.hpp"
-#include "run/record/contact_network.hpp"
-#include "run/record/history_columns.hpp"
-#include "run/record/link_lines.hpp"
-#include "run/record/mesh_surfaces.hpp"
-#include "run/record/output_plan.hpp"
-#include "run/restart/checkpoint_datasets.hpp"
-#include "run/state/contact_rows.hpp"
+#include "base/index.hpp"
+#include "dem/kept_contacts.hpp"
+#include "model/choose_law.hpp"
+#include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
+#include "model/memory.hpp"
+#include "run/body_points.hpp"
+#include "run/checkpoint_datasets.hpp"
+#include "run/contact_network.hpp"
+#include "run/contact_rows.hpp"
+#include "run/history_columns.hpp"
+#include "run/link_lines.hpp"
+#include "run/mesh_surfaces.hpp"
+#include "run/output_plan.hpp"
 
 namespace scree {
 namespace {
@@ -30,7 +31,7 @@ constexpr std::int64_t kTouchingInPlane = 4, kTouchingInSpace = 6;
 
 template <class Values>
 void cut_to(Values& values, std::int64_t most) {
-  if (std::ssize(values) > most) values.resize(static_cast<std::size_t>(most));
+  if (std::ssize(values) > most) values.resize(as_size(most));
 }
 
 // The history's columns, by names and kinds alone.
@@ -40,9 +41,7 @@ std::vector<RecordedColumn> columns_of(const Model& model) {
   const auto add_reaction = [&](const std::string& name, const Joint& joint) {
     reactions.push_back({name, {}, {}, between(model, joint.body)});
   };
-  const auto joint_of = [&](int joint) -> const Joint& {
-    return model.joints[static_cast<std::size_t>(joint)];
-  };
+  const auto joint_of = [&](int joint) -> const Joint& { return model.joints[as_size(joint)]; };
   for (const Joint& joint : model.joints) add_reaction(joint.name, joint);
   for (const Driver& driver : model.drivers) add_reaction(driver.name, joint_of(driver.joint));
   for (const Coupler& coupler : model.couplers) add_reaction(coupler.name, joint_of(coupler.joints[0]));
@@ -139,7 +138,7 @@ void add_checkpoint(const Model& model, std::int64_t resolved_deck, DiskUse& use
   State state = sized_state(model);
   state.contacts.numbers = kept_numbers(model, history_of(model.contact));
   Checkpoint checkpoint = pack(state);
-  checkpoint.texts = {{"fingerprint", std::string(static_cast<std::size_t>(resolved_deck), ' ')},
+  checkpoint.texts = {{"fingerprint", std::string(as_size(resolved_deck), ' ')},
                       {"deck", ""},
                       {"state_hash", std::string(16, ' ')},
                       {"changes", ""},

@@ -4,9 +4,10 @@
 #include <chrono>
 
 #include "base/error.hpp"
-#include "dem/particles/particle_store.hpp"
-#include "run/report/balance.hpp"
-#include "run/report/signals.hpp"
+#include "base/index.hpp"
+#include "dem/particle_store.hpp"
+#include "run/balance.hpp"
+#include "run/signals.hpp"
 
 namespace scree {
 namespace {
@@ -110,7 +111,7 @@ void StepLoop::reject(const StepOutcome& outcome) {
 void StepLoop::take_explicit_steps(Real h, Real until) {
   const bool mixed = parts_.backend.is_mixed();
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
-  if (!mixed) most = std::min(most, static_cast<std::size_t>(next_sample_ - parts_.step.counts().steps));
+  if (!mixed) most = std::min(most, as_size(next_sample_ - parts_.step.counts().steps));
   std::vector<Real> times = clock_.equal_steps(most);
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = parts_.seconds();

@@ -1,6 +1,7 @@
 #include "run/record/body_points.hpp"
 
-#include "model/derived/connections.hpp"
+#include "base/index.hpp"
+#include "model/connections.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {
@@ -42,23 +43,20 @@ BodyPoints body_points(const Model& model, const ShapePack& shapes, std::span<co
                        std::span<const ContactSum> contacts) {
   BodyPoints points;
   add_touching(shapes, points);
-  const int bodies = static_cast<int>(model.bodies.size());
+  const int bodies = as_index(model.bodies.size());
   for (int b = 0; b < bodies; ++b)
-    for (const Shape& shape : model.bodies[static_cast<std::size_t>(b)].drawn_shapes) {
-      add_point(model, b, kDrawnShape, point_motion(motion[static_cast<std::size_t>(b)], shape.offset),
-                points);
+    for (const Shape& shape : model.bodies[as_size(b)].drawn_shapes) {
+      add_point(model, b, kDrawnShape, point_motion(motion[as_size(b)], shape.offset), points);
       points.radius.push_back(shape.radius), points.force.push_back({}), points.contacts.push_back(0);
     }
   for (int b = 0; b < bodies; ++b) {
-    const ContactSum& sum = contacts[static_cast<std::size_t>(b)];
-    add_point(model, b, kCenterOfMass, point_motion(motion[static_cast<std::size_t>(b)], {}), points);
+    const ContactSum& sum = contacts[as_size(b)];
+    add_point(model, b, kCenterOfMass, point_motion(motion[as_size(b)], {}), points);
     points.radius.push_back(0), points.force.push_back(sum.force);
     points.contacts.push_back(static_cast<int>(sum.contacts));
   }
   const bool spatial = has_spatial_bodies(model);
-  for (const int b : points.body)
-    add_motion(motion[static_cast<std::size_t>(b)], model.bodies[static_cast<std::size_t>(b)], spatial,
-               points);
+  for (const int b : points.body) add_motion(motion[as_size(b)], model.bodies[as_size(b)], spatial, points);
   return points;
 }
 

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "model/derived/joint_coordinates.hpp"
+#include "base/index.hpp"
+#include "model/joint_coordinates.hpp"
 
 namespace scree {
 namespace {
@@ -292,7 +293,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {
-    const auto b = static_cast<std::size_t>(body);
+    const auto b = as_size(body);
     body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);
   }
   for (std::size_t k = 0; k < output.history_particles.size(); ++k)

@@ -1,5 +1,6 @@
 #include "run/record/link_lines.hpp"
 
+#include "base/index.hpp"
 #include "base/mat3.hpp"
 #include "model/derived/connections.hpp"
 
@@ -13,14 +14,14 @@ bool acts(const TimeFunction& actuator) {
 }
 
 Vec3 position_of(std::span<const BodyMotion> motion, int body, Vec3 point) {
-  return body == kGround ? point : point_motion(motion[static_cast<std::size_t>(body)], point).position;
+  return body == kGround ? point : point_motion(motion[as_size(body)], point).position;
 }
 
 // Rotation from the bushing's frame on its first body to the global axes.
 Mat3 axes_of(const Bushing& bushing, std::span<const BodyMotion> motion) {
   const Mat3 marker = rotation_matrix(bushing.marker[0]);
   if (bushing.body[0] == kGround) return marker;
-  return rotation_matrix(orientation(motion[static_cast<std::size_t>(bushing.body[0])])) * marker;
+  return rotation_matrix(orientation(motion[as_size(bushing.body[0])])) * marker;
 }
 
 }  // namespace
@@ -69,7 +70,7 @@ LinkLines::Look LinkLines::look(const Multibody& multibody, const MultibodyState
     ImageCount unused;
     const Vec3 inside = subdomain_.wrap(start, unused);
     look.ends.insert(look.ends.end(), {inside, inside + branch});
-    look.link.push_back(static_cast<int>(k)), look.kind.push_back(static_cast<int>(line.kind));
+    look.link.push_back(as_index(k)), look.kind.push_back(static_cast<int>(line.kind));
     look.length.push_back(norm(branch));
   }
   add_forces(multibody, state, t, motion, look);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/mat3.hpp"
 #include "dem/reports/triangle_works.hpp"
 #include "partition/subdomain.hpp"
@@ -37,11 +38,11 @@ MeshSurfaces::MeshSurfaces(const Model& model) : model_(model) {
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& drawn : model.bodies[b].drawn_meshes)
-      add({-1, static_cast<int>(b), -1, drawn.material, drawn.offset, 0, 0, nullptr}, drawn.mesh);
+      add({-1, as_index(b), -1, drawn.material, drawn.offset, 0, 0, nullptr}, drawn.mesh);
 }
 
 void MeshSurfaces::add(Part part, int mesh) {
-  part.mesh = model_.meshes[static_cast<std::size_t>(mesh)].surface.get();
+  part.mesh = model_.meshes[as_size(mesh)].surface.get();
   part.first_point = points_, part.first_triangle = triangles_;
   points_ += part.mesh->vertices.size(), triangles_ += part.mesh->triangles.size();
   parts_.push_back(part);
@@ -60,14 +61,14 @@ SeriesTriangles MeshSurfaces::triangles() const {
       {"triangle", "number of the triangle in its file or shape, counted from 0", {}}};
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const Part& part = parts_[p];
-    const int of_part[] = {static_cast<int>(p), part.wall < 0 ? part.carrier : -1, part.wall, part.material};
+    const int of_part[] = {as_index(p), part.wall < 0 ? part.carrier : -1, part.wall, part.material};
     for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
-      const auto row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
+      const auto row = part.first_triangle + as_size(part.mesh->original[t]);
       for (std::size_t k = 0; k < 3; ++k)
         all.corners[3 * row + k] =
             static_cast<std::int64_t>(part.first_point) + part.mesh->triangles[t].vertex[k];
       for (std::size_t k = 0; k < 4; ++k) all.numbers[k].values.push_back(of_part[k]);
-      all.numbers[4].values.push_back(static_cast<int>(t));
+      all.numbers[4].values.push_back(as_index(t));
     }
   }
   return all;
@@ -92,7 +93,7 @@ void MeshSurfaces::spread(std::vector<T>& values) const {
   for (const Part& part : parts_)
     for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
       const MeshTriangle& triangle = part.mesh->triangles[t];
-      const auto number = static_cast<std::size_t>(part.mesh->original[t]);
+      const auto number = as_size(part.mesh->original[t]);
       T& value = values[part.first_triangle + number];
       if (model_.space.dimension == 3)
         value = 1 / area(*part.mesh, triangle) * value;
@@ -109,7 +110,7 @@ void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look
     to.resize(triangles_);
     for (const Part& part : parts_)
       for (std::size_t t = 0; part.surface >= 0 && t < part.mesh->triangles.size(); ++t) {
-        const std::size_t row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
+        const std::size_t row = part.first_triangle + as_size(part.mesh->original[t]);
         to[row] = values[row].*value;
       }
   };
@@ -127,12 +128,12 @@ MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::s
   if (model_.output.shows(SurfaceField::shear)) look.shear.resize(triangles_);
   take_works(works, look);
   for (const Part& part : parts_)
-    place(part, motion[static_cast<std::size_t>(part.carrier)], look.position.data() + part.first_point);
+    place(part, motion[as_size(part.carrier)], look.position.data() + part.first_point);
   for (const TriangleLoad& load : loads) {
     const auto part = std::ranges::find(parts_, load.surface, &Part::surface);
     const SurfaceMesh& mesh = *part->mesh;
-    const auto t = static_cast<std::size_t>(load.triangle);
-    const std::size_t row = part->first_triangle + static_cast<std::size_t>(mesh.original[t]);
+    const auto t = as_size(load.triangle);
+    const std::size_t row = part->first_triangle + as_size(mesh.original[t]);
     if (!look.pressure.empty()) look.pressure[row] = load.normal;
     if (!look.shear.empty()) look.shear[row] = load.tangential;
   }

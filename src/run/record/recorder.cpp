@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "dem/reports/triangle_works.hpp"
-#include "model/derived/connections.hpp"
+#include "base/index.hpp"
+#include "dem/triangle_works.hpp"
+#include "model/connections.hpp"
 #include "partition/id_order.hpp"
 #include "run/record/contact_network.hpp"
 #include "run/record/output_plan.hpp"
@@ -21,7 +22,7 @@ namespace {
 std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_reactions == 0) return {};
   std::vector<Reaction> reactions = link.multibody()->reactions(state.bodies, state.clock.time);
-  const auto wanted = static_cast<std::size_t>(model.output.history_reactions);
+  const auto wanted = as_size(model.output.history_reactions);
   if (reactions.size() > wanted) reactions.resize(wanted);
   return reactions;
 }
@@ -29,7 +30,7 @@ std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, con
 std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_efforts == 0) return {};
   std::vector<JointEffortSample> efforts = link.multibody()->joint_efforts(state.bodies, state.clock.time);
-  const auto wanted = static_cast<std::size_t>(model.output.history_efforts);
+  const auto wanted = as_size(model.output.history_efforts);
   if (efforts.size() > wanted) efforts.resize(wanted);
   return efforts;
 }
@@ -42,7 +43,7 @@ std::vector<JointReading> coordinates_of(const BodyLink& link, const State& stat
 std::vector<BushingSample> bushings_of(const Model& model, const BodyLink& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_bushings == 0) return {};
   std::vector<BushingSample> bushings = link.multibody()->bushings(state.bodies, state.clock.time);
-  const auto wanted = static_cast<std::size_t>(model.output.history_bushings);
+  const auto wanted = as_size(model.output.history_bushings);
   if (bushings.size() > wanted) bushings.resize(wanted);
   return bushings;
 }

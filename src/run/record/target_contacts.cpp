@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "dem/surfaces/surfaces.hpp"
+#include "base/index.hpp"
+#include "dem/surfaces.hpp"
 
 namespace scree {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 // Index of a placed wall's carrier: placed walls follow the bodies, in their order.
 std::size_t carrier_of_wall(const Model& model, int wall) {
   std::size_t carrier = model.bodies.size();
-  for (int w = 0; w < wall; ++w) carrier += model.walls[static_cast<std::size_t>(w)].is_placed();
+  for (int w = 0; w < wall; ++w) carrier += model.walls[as_size(w)].is_placed();
   return carrier;
 }
 
@@ -39,7 +40,7 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
                                         Backend& backend) {
   const std::vector<ContactTarget>& targets = model.output.history_contacts;
   const auto is_plane = [&](const ContactTarget& target) {
-    return target.wall >= 0 && !model.walls[static_cast<std::size_t>(target.wall)].is_placed();
+    return target.wall >= 0 && !model.walls[as_size(target.wall)].is_placed();
   };
   const auto is_mesh = [](const ContactTarget& target) { return target.mesh >= 0; };
   std::vector<int> planes;
@@ -58,12 +59,10 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
     if (is_plane(target))
       sum = *plane++;
     else if (target.wall >= 0)
-      sum = on_wall(model.walls[static_cast<std::size_t>(target.wall)],
-                    on_carriers[carrier_of_wall(model, target.wall)],
+      sum = on_wall(model.walls[as_size(target.wall)], on_carriers[carrier_of_wall(model, target.wall)],
                     link.motion()[carrier_of_wall(model, target.wall)]);
     else if (is_mesh(target))
-      sum = on_surfaces[static_cast<std::size_t>(
-          SurfaceSet::placed_mesh(model, target.bodies.front(), target.mesh))];
+      sum = on_surfaces[as_size(SurfaceSet::placed_mesh(model, target.bodies.front(), target.mesh))];
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // on rank 0

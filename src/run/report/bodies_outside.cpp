@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "model/data/body_layout.hpp"
-#include "model/derived/space_box.hpp"
+#include "base/index.hpp"
+#include "model/body_layout.hpp"
+#include "model/space_box.hpp"
 
 namespace scree {
 
@@ -13,10 +14,10 @@ BodiesOutside bodies_outside(const Model& model, const MultibodyState& state) {
   const BodyLayout layout(model.bodies);
   if (state.position.empty()) return outside;
   for (int b = 0; b < layout.bodies(); ++b) {
-    const Real* q = &state.position[static_cast<std::size_t>(layout.position(b))];
-    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    const Real* q = &state.position[as_size(layout.position(b))];
+    const Body& body = model.bodies[as_size(b)];
     const Vec3 centre{q[0], q[1], body.kind == BodyKind::spatial ? q[2] : body.position.z};
-    if (!space.inside(centre) && ++outside.count == 1) outside.first = static_cast<std::size_t>(b);
+    if (!space.inside(centre) && ++outside.count == 1) outside.first = as_size(b);
   }
   return outside;
 }

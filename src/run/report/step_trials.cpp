@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/checks/explicit_step.hpp"
-#include "model/checks/memory.hpp"
+#include "base/index.hpp"
+#include "model/explicit_step.hpp"
+#include "model/memory.hpp"
 
 namespace scree {
 namespace {
@@ -72,10 +73,9 @@ std::string step_warning(const Model& model) {
   return fmt::format(
       "time.step: with steps of {:.4g} s the rebound of \"{}\" on \"{}\"{} has an error of {}: {} instead of "
       "{}{}{}",
-      worst.step, names[static_cast<std::size_t>(worst.limit.material[0])],
-      names[static_cast<std::size_t>(worst.limit.material[1])], others, percent(r.error()), rebound(r.mean),
-      rebound(r.exact), worst.rubs ? fmt::format(", at {:.0f} degrees", degrees(worst.incidence)) : "",
-      remedy);
+      worst.step, names[as_size(worst.limit.material[0])], names[as_size(worst.limit.material[1])], others,
+      percent(r.error()), rebound(r.mean), rebound(r.exact),
+      worst.rubs ? fmt::format(", at {:.0f} degrees", degrees(worst.incidence)) : "", remedy);
 }
 
 }  // namespace scree

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "coupling/wall_motion.hpp"
 #include "model/derived/space_box.hpp"
 #include "model/derived/start_meshes.hpp"
@@ -41,15 +42,13 @@ template <class Visit>
 void for_each_extreme(const Model& model, const Body& body, const Visit& visit) {
   for (const Shape& shape : body.shapes) visit(shape.offset, shape.radius);
   for (const MeshShape& shape : body.meshes)
-    for (const Vec3 v : model.meshes[static_cast<std::size_t>(shape.mesh)].surface->vertices)
-      visit(shape.offset + v, Real(0));
+    for (const Vec3 v : model.meshes[as_size(shape.mesh)].surface->vertices) visit(shape.offset + v, Real(0));
 }
 
 template <class Visit>
 void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) {
   if (wall.mesh < 0) return;
-  for (const Vec3 v : model.meshes[static_cast<std::size_t>(wall.mesh)].surface->vertices)
-    visit(wall.point + v, Real(0));
+  for (const Vec3 v : model.meshes[as_size(wall.mesh)].surface->vertices) visit(wall.point + v, Real(0));
 }
 
 // Whether a surface is beyond an open side. 2D lines extend along z, where their domain has no sides.
@@ -71,7 +70,7 @@ class BoxAround {
     box_.max = {std::max(box_.max.x, high.x), std::max(box_.max.y, high.y), std::max(box_.max.z, high.z)};
   }
   void add(const Model& model, int mesh, Vec3 offset) {
-    const MeshBox& of_mesh = model.meshes[static_cast<std::size_t>(mesh)].surface->box;
+    const MeshBox& of_mesh = model.meshes[as_size(mesh)].surface->box;
     add(offset + of_mesh.min, offset + of_mesh.max);
   }
   std::optional<Box> box() const { return box_.min.x <= box_.max.x ? std::optional(box_) : std::nullopt; }

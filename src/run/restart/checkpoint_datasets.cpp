@@ -8,12 +8,13 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "dem/reports/triangle_works.hpp"
-#include "dem/surfaces/surfaces.hpp"
-#include "model/data/body_layout.hpp"
-#include "model/derived/connections.hpp"
-#include "model/derived/joint_coordinates.hpp"
-#include "run/state/contact_rows.hpp"
+#include "base/index.hpp"
+#include "dem/surfaces.hpp"
+#include "dem/triangle_works.hpp"
+#include "model/body_layout.hpp"
+#include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
+#include "run/contact_rows.hpp"
 
 namespace scree {
 
@@ -59,13 +60,13 @@ void check_row_group(const std::string& path, const std::string& group,
 State sized_state(const Model& model) {
   State sizes;
   const BodyLayout layout(model.bodies);
-  sizes.bodies.counted_angles = static_cast<std::size_t>(counted_angles(model));
-  sizes.bodies.position.resize(static_cast<std::size_t>(layout.positions()) + sizes.bodies.counted_angles);
+  sizes.bodies.counted_angles = as_size(counted_angles(model));
+  sizes.bodies.position.resize(as_size(layout.positions()) + sizes.bodies.counted_angles);
   for (std::vector<Real>* values :
        {&sizes.bodies.velocity, &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
-    values->resize(static_cast<std::size_t>(layout.columns()));
-  sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
-  sizes.bodies.memory.resize(static_cast<std::size_t>(memory_count(model)));
+    values->resize(as_size(layout.columns()));
+  sizes.bodies.multipliers.resize(as_size(constraint_count(model)));
+  sizes.bodies.memory.resize(as_size(memory_count(model)));
   const SurfaceSet surfaces(model);
   const bool driven =
       std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.moves() || wall.runs(); });

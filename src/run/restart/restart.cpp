@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
 #include "dem/host/body_contacts.hpp"
@@ -273,7 +274,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   if (!model.output.adds_up_works()) restart.state.works = {};
   // A checkpoint of a version without counted angles: they are counted from here on.
   MultibodyState& bodies = restart.state.bodies;
-  const auto angles = static_cast<std::size_t>(counted_angles(model));
+  const auto angles = as_size(counted_angles(model));
   bodies.position.resize(bodies.position.size() - bodies.counted_angles + angles, 0);
   bodies.counted_angles = angles;
   restart.changes = checkpoint.text("changes");

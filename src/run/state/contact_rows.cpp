@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "dem/history/history_slots.hpp"
+#include "base/index.hpp"
+#include "dem/history_slots.hpp"
 
 namespace scree {
 namespace {
@@ -37,7 +38,7 @@ void add_integers(const char* name, const char* description, std::int64_t rows, 
 
 template <class T>
 std::vector<T> read_rows(const CheckpointRows<T>& rows, std::int64_t first, std::int64_t count) {
-  std::vector<T> values(static_cast<std::size_t>(count * rows.width));
+  std::vector<T> values(as_size(count * rows.width));
   if (count > 0) rows.copy(first, count, values.data());
   return values;
 }
@@ -64,7 +65,7 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
   if (contacts.numbers == 0) return;
   const RowNames& names = names_of(contacts);
   const std::int64_t count = std::ssize(contacts.keys);
-  const auto key = [&contacts](std::int64_t k) { return contacts.keys[static_cast<std::size_t>(k)]; };
+  const auto key = [&contacts](std::int64_t k) { return contacts.keys[as_size(k)]; };
   add_integers(
       names.counts, "contacts of each particle, in the order of the particles", contacts.particles(),
       [&contacts](std::int64_t i) { return contacts.contacts(i); }, out);
@@ -117,8 +118,8 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
 void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash) {
   for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
     // Without a history the side follows from the centre, unless the centre has penetrated the surface.
-    if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[static_cast<std::size_t>(k)])) continue;
-    hash.add(contacts.keys[static_cast<std::size_t>(k)]);
+    if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[as_size(k)])) continue;
+    hash.add(contacts.keys[as_size(k)]);
     for (const Real value : contacts.values_of(k)) hash.add(value);
   }
 }
@@ -130,8 +131,8 @@ std::string contacts_trouble(const KeptContacts& contacts, const std::vector<Par
   for (std::size_t i = 0; i < particles.size(); ++i)
     for (std::int64_t k = contacts.offsets[i]; k < contacts.offsets[i + 1]; ++k) {
       const GlobalId id = particles[i].global_id;
-      const std::int64_t key = contacts.keys[static_cast<std::size_t>(k)];
-      if (k > contacts.offsets[i] && contacts.keys[static_cast<std::size_t>(k) - 1] >= key)
+      const std::int64_t key = contacts.keys[as_size(k)];
+      if (k > contacts.offsets[i] && contacts.keys[as_size(k) - 1] >= key)
         return fmt::format("the contacts of particle {} are out of order", id);
       if (id_of(key) >= of_deck && id_of(key) < kFirstSurfaceId)
         return fmt::format("a contact of particle {} is with particle {}; the deck has {}", id, id_of(key),

@@ -13,8 +13,9 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
-#include "run/state/contact_rows.hpp"
-#include "run/state/state_visitors.hpp"
+#include "base/index.hpp"
+#include "run/contact_rows.hpp"
+#include "run/state_visitors.hpp"
 
 namespace scree {
 namespace {
@@ -137,7 +138,7 @@ void add_rows(const std::vector<Particle>& particles, const ParticleField& field
   using Number = typename NumbersOf<T>::value_type;
   const auto copy = [member, &particles](std::int64_t first, std::int64_t count, Number* to) {
     for (std::int64_t i = first; i < first + count; ++i)
-      for (const Number number : numbers_of(particles[static_cast<std::size_t>(i)].*member)) *to++ = number;
+      for (const Number number : numbers_of(particles[as_size(i)].*member)) *to++ = number;
   };
   out.rows<Number>()[dataset_name(field)] = {std::tuple_size_v<NumbersOf<T>>, std::ssize(particles), copy,
                                              field.unit, field.description};
@@ -152,13 +153,13 @@ void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*me
   const CheckpointRows<Number>& rows = in.row_array<Number>(name);
   if (rows.width != kWidth || rows.count != std::ssize(particles))
     throw IoError(in.path + ": the particles' arrays do not fit together");
-  std::vector<Number> piece(static_cast<std::size_t>(std::min(kPiece, rows.count) * kWidth));
+  std::vector<Number> piece(as_size(std::min(kPiece, rows.count) * kWidth));
   for (std::int64_t first = 0; first < rows.count; first += kPiece) {
     const std::int64_t count = std::min(kPiece, rows.count - first);
     rows.copy(first, count, piece.data());
     for (std::int64_t i = 0; i < count; ++i) {
-      const Number* const numbers = &piece[static_cast<std::size_t>(i * kWidth)];
-      T& value = particles[static_cast<std::size_t>(first + i)].*member;
+      const Number* const numbers = &piece[as_size(i * kWidth)];
+      T& value = particles[as_size(first + i)].*member;
       set_value(value, numbers);
       if (std::is_integral_v<Number> && !std::ranges::equal(numbers_of(value), std::span(numbers, kWidth)))
         throw IoError(in.path + ": a value of " + name + " is too large");
@@ -168,7 +169,7 @@ void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*me
 
 std::vector<Particle> unpack_particles(const Checkpoint& in) {
   const CheckpointRows<std::int64_t>& ids = in.row_array<std::int64_t>("particles/global_id");
-  std::vector<Particle> particles(static_cast<std::size_t>(ids.count));
+  std::vector<Particle> particles(as_size(ids.count));
   for_each_dataset(fields_there(in), [&](const ParticleField& field, auto member) {
     unpack_field(in, dataset_name(field), member, particles);
   });
