@@ -161,7 +161,8 @@ class AnotherProcessor(CommandLineTest):
     def test_the_version_names_the_instructions(self):
         text = self.expect(DONE, "--version").stdout
         native = "-march=native" in text
-        self.assertRegex(text, r"\nfor processors with [A-Z]" if native else r"\nfor every processor of this architecture\n")
+        every = r"\nfor every processor of this architecture\n"
+        self.assertRegex(text, r"\nfor processors with [A-Z]" if native else every)
 
 
 if __name__ == "__main__":

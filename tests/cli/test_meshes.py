@@ -346,7 +346,8 @@ class LostLoadTest(CommandLineTest):
                 first, lost = self.warnings("out")
                 self.assertIn(early, first)
                 self.assertIn("particle 0 leaves the domain at t = ", lost)
-                self.assertIn("at the surfaces of wall \"tray\": particles that leave are excluded from contact detection", lost)
+                self.assertIn("at the surfaces of wall \"tray\": particles that leave are excluded from contact "
+                              "detection", lost)
                 self.assertEqual(text.count(lost), 1)
         result = self.expect(DONE, "run", deck, "--output", self.folder / "in", "--set", "space.max=[1,1,2]")
         self.assertEqual((result.stderr, self.warnings("in")), ("", []))

@@ -64,7 +64,8 @@ class PictureTest(CommandLineTest):
                 (IO_FAILED, ["kill -9 $$"], "drawer was ended by a signal (Killed)\n")):
             self.assertIn(message, self.check(code, "start.png", self.drawer(*lines)).stderr)
         self.assertIn("cannot create a folder beside it", self.check(IO_FAILED, "none/a.png", self.drawer("")).stderr)
-        self.assertIn("SCREE_POST = none: is not an executable program", self.check(BAD_INPUT, "start.png", "none").stderr)
+        self.assertIn("SCREE_POST = none: is not an executable program",
+                      self.check(BAD_INPUT, "start.png", "none").stderr)
 
     def test_a_signal_leaves_nothing(self):
         drawer = self.drawer("touch words", f"exec sleep {2 * LIMIT}")

@@ -121,7 +121,8 @@ class Checks(unittest.TestCase):
             self.assertEqual(checks.long_python_lines(root), ["a.py:2: 121 columns, at most 120"])
 
     def test_tolerances(self):
-        right = "CHECK(f(1) == Approx(g(2) * (1 - h())).epsilon(1e-12));\nCHECK(a == Catch::Approx(0)\n    .margin(kUlp));\n"
+        right = ("CHECK(f(1) == Approx(g(2) * (1 - h())).epsilon(1e-12));\n"
+                 "CHECK(a == Catch::Approx(0)\n    .margin(kUlp));\n")
         with tree(tests__a_DOT_cpp=right, src__a_DOT_cpp="Approx(1)") as root:
             self.assertEqual(checks.default_tolerances(root), [])
         for wrong in ("CHECK(a == Approx(g(2)));", "CHECK(a == Catch::Approx(1).scale(2));", "Approx(1", "Approx{1}"):
