@@ -64,16 +64,4 @@ void reproducible_sums(Index n, const Item& item, Real (&sums)[N], const Over& o
   for (int k = 0; k < N; ++k) sums[k] = scale[k].value(quanta[k]);
 }
 
-// Sum of a single term, which is a function of i.
-template <class Term>
-Real reproducible_sum(Index n, const Term& term) {
-  struct One {
-    Real value[1];
-  };
-  Real sum[1];
-  reproducible_sums(
-      n, [&](Index i) { return One{{term(i)}}; }, sum);
-  return sum[0];
-}
-
 }  // namespace scree

@@ -286,17 +286,6 @@ std::string Hdf5File::read_text(const std::string& name) const {
                    [&](char* to) { return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
 }
 
-std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
-  std::vector<char*> values(as_size(value_count(name)));
-  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  Hdf5Id type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
-  if (H5Tis_variable_str(type) <= 0) throw IoError(fmt::format("{}: {} is no list of texts", path_, name));
-  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) fail("read dataset " + name);
-  std::vector<std::string> texts(values.begin(), values.end());
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, values.data());
-  return texts;
-}
-
 void Hdf5File::write_text_attribute(const std::string& object, const std::string& name,
                                     const std::string& text) {
   Hdf5Id type = text_type(text);

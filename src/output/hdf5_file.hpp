@@ -111,7 +111,6 @@ class Hdf5File {
     return values;
   }
   std::string read_text(const std::string& name) const;
-  std::vector<std::string> read_texts(const std::string& name) const;
 
   // ---- attributes and links ----
   void write_text_attribute(const std::string& object, const std::string& name, const std::string& text);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/hd.hpp"
-#include "base/index.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 
@@ -75,7 +74,7 @@ inline CellGrid make_cell_grid(Vec3 min, Vec3 max, int dimension, Real min_cell,
     const Real edge = std::max(length / n, size);
     origin = start - edge;
     inverse = 1 / edge;
-    cells = as_index(n) + 2;
+    cells = static_cast<Index>(n) + 2;
   };
   axis(min.x, extent.x, grid.origin.x, grid.inverse_size.x, grid.cells[0]);
   axis(min.y, extent.y, grid.origin.y, grid.inverse_size.y, grid.cells[1]);

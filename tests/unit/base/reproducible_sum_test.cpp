@@ -16,8 +16,13 @@ namespace {
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 
 Real sum_of(const std::vector<Real>& terms) {
-  return reproducible_sum(static_cast<Index>(terms.size()),
-                          [&](Index i) { return terms[static_cast<std::size_t>(i)]; });
+  struct Term {
+    Real value[1];
+  };
+  Real sum[1];
+  const auto term = [&](Index i) { return Term{{terms[static_cast<std::size_t>(i)]}}; };
+  reproducible_sums(static_cast<Index>(terms.size()), term, sum);
+  return sum[0];
 }
 
 // Terms of both signs whose magnitudes spread over 2^-spread to 1.

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scratch.hpp"
 #include "support/catch.hpp"
+#include "support/hdf5_texts.hpp"
 
 using namespace scree;
 
@@ -270,7 +271,7 @@ TEST_CASE("names are in the files whose fields count them, and with every snapsh
   CHECK(bodies.dataset_names("/Scree") == std::vector<std::string>{"materials", "names"});
   CHECK(particles.dataset_names("/Scree") == std::vector<std::string>{"materials"});
   CHECK(bodies.read_text("/Scree/names") == "a\nbü\n");
-  CHECK(bodies.read_texts("/VTKHDF/FieldData/names") == std::vector<std::string>{"a", "bü"});
+  CHECK(read_texts(bodies, "/VTKHDF/FieldData/names") == std::vector<std::string>{"a", "bü"});
   CHECK(bodies.read_array<std::int64_t>("/VTKHDF/Steps/FieldDataSizes/names") ==
         std::vector<std::int64_t>{1, 2, 1, 2});
   CHECK(bodies.read_array<std::int64_t>("/VTKHDF/Steps/FieldDataOffsets/names") ==
