@@ -42,13 +42,13 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
 
 // Without a launcher, MPI passes the command line on in one environment variable, which the system limits to
 // 128 KiB. Returns the error message for a longer command line, else an empty text.
-std::string length_trouble(int count, char** values) {
+std::string command_line_error(int count, char** values) {
   constexpr std::size_t kLongest = 110000, kShown = 80;  // [B]
   std::size_t length = 0;
   std::string_view longest;
-  for (const std::string_view word : std::span(values, static_cast<std::size_t>(count))) {
-    length += word.size() + 1;
-    if (word.size() > longest.size()) longest = word;
+  for (const std::string_view argument : std::span(values, static_cast<std::size_t>(count))) {
+    length += argument.size() + 1;
+    if (argument.size() > longest.size()) longest = argument;
   }
   if (length <= kLongest) return "";
   return fmt::format(
@@ -61,12 +61,12 @@ std::string length_trouble(int count, char** values) {
 }  // namespace scree
 
 int main(int count, char** values) {
-  if (const std::string trouble = scree::length_trouble(count, values); !trouble.empty()) {
+  if (const std::string trouble = scree::command_line_error(count, values); !trouble.empty()) {
     std::cerr << scree::message_line("error", trouble);
     return static_cast<int>(scree::ExitCode::bad_input);
   }
-  const bool runs = count > 1 && std::string_view(values[1]) == "run";
-  if (runs) scree::catch_signals();  // already before MPI starts, which takes a while
+  const bool is_run = count > 1 && std::string_view(values[1]) == "run";
+  if (is_run) scree::catch_signals();  // already before MPI starts, which takes a while
   if (scree::launched_with_others()) scree::start_mpi();
   const scree::ExitCode code =
       scree::guarded([&] { return scree::carry_out(scree::read_words(count, values, scree::version_text)); });

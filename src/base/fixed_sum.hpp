@@ -28,11 +28,11 @@ class FixedSum {
     std::memcpy(&bits, &term, sizeof bits);
     const auto exponent = static_cast<int>(bits >> kMantissaBits & kExponentMask);
     if (exponent >= kTooLarge) return put(kBad, std::int64_t{1});
-    int place = exponent - kLowestPlace;  // of the mantissa's last bit, counted from the lowest digit
-    if (exponent == 0 || place <= -kMantissaBits - 1) return;
+    int digit = exponent - kLowestDigit;  // of the mantissa's last bit, counted from the lowest digit
+    if (exponent == 0 || digit <= -kMantissaBits - 1) return;
     std::uint64_t mantissa = (static_cast<std::uint64_t>(bits) & kMantissaMask) | kHiddenBit;
-    if (place < 0) mantissa >>= -place, place = 0;
-    const int first = place / kLimbBits, shift = place % kLimbBits;
+    if (digit < 0) mantissa >>= -digit, digit = 0;
+    const int first = digit / kLimbBits, shift = digit % kLimbBits;
     const std::int64_t sign = bits < 0 ? -1 : 1;
     // The mantissa's at most 84 digits, from the first limb on.
     const std::uint64_t pieces[] = {mantissa << shift & kLimbMask,
@@ -74,7 +74,7 @@ class FixedSum {
  private:
   static constexpr int kMantissaBits = 52, kLimbBits = 32, kExponentBias = 1023, kExponentMask = 0x7ff;
   static constexpr int kTooLarge = kExponentBias + 32;  // exponent of 2^32
-  static constexpr int kLowestPlace = kExponentBias + kMantissaBits - 3 * kLimbBits;
+  static constexpr int kLowestDigit = kExponentBias + kMantissaBits - 3 * kLimbBits;
   static constexpr std::uint64_t kLimbMask = (std::uint64_t(1) << kLimbBits) - 1,
                                  kHiddenBit = std::uint64_t(1) << kMantissaBits,
                                  kMantissaMask = kHiddenBit - 1;

@@ -23,11 +23,11 @@ std::size_t terminal_width() {
 
 constexpr std::size_t kLongest = 1200;  // of a warning or an error [B]
 constexpr std::size_t kMostOfAKind = 10, kShownOfFirst = 120;
-constexpr std::size_t kTelling = 60;  // length of the common beginning that identifies a kind [B]
+constexpr std::size_t kIdentifyingBytes = 60;  // length of the common beginning that identifies a kind [B]
 
 // The common beginning of warnings of one kind: the first words without quoted texts, words with digits, and
 // positions in the deck after the name of the table ("deck.toml:3:1: bodies.arm.mass").
-std::string common_words(const std::string& message) {
+std::string common_beginning(const std::string& message) {
   std::string words, word;
   char quote = 0;
   const auto close = [&] {
@@ -36,7 +36,7 @@ std::string common_words(const std::string& message) {
     word.clear();
   };
   for (const char c : message) {
-    if (words.size() >= kTelling) break;
+    if (words.size() >= kIdentifyingBytes) break;
     if (quote != 0) {
       if (c == quote) quote = 0;
     } else if (c == '"' || (c == '\'' && word.empty())) {
@@ -77,7 +77,7 @@ std::string message_line(const std::string& kind, const std::string& message) {
 }
 
 void Log::warning(const std::string& message) {
-  Kind& kind = kinds_[common_words(message)];
+  Kind& kind = kinds_[common_beginning(message)];
   if (kind.shown == kMostOfAKind) {
     ++kind.left_out;
     return;

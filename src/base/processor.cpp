@@ -16,7 +16,7 @@ namespace {
 constexpr int kBadInput = 2;  // ExitCode::bad_input
 
 // Register states that the operating system saves when it switches processes: bits of XCR0.
-unsigned kept_state() {
+unsigned saved_state() {
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
   constexpr unsigned kOsxsave = 1u << 27;
   if (__get_cpuid(1, &eax, &ebx, &ecx, &edx) == 0 || (ecx & kOsxsave) == 0) return 0;
@@ -25,9 +25,9 @@ unsigned kept_state() {
 }
 
 bool has(const ProcessorFeature& feature) {
-  constexpr unsigned kKept[] = {0, 0x6, 0xe6};
-  const unsigned wanted = kKept[feature.state];
-  if (wanted != 0 && (kept_state() & wanted) != wanted) return false;
+  constexpr unsigned kSaved[] = {0, 0x6, 0xe6};
+  const unsigned wanted = kSaved[feature.state];
+  if (wanted != 0 && (saved_state() & wanted) != wanted) return false;
   unsigned found[4] = {};
   if (__get_cpuid_count(feature.leaf, feature.subleaf, &found[kEax], &found[kEbx], &found[kEcx],
                         &found[kEdx]) == 0)
@@ -35,32 +35,33 @@ bool has(const ProcessorFeature& feature) {
   return (found[feature.in] >> feature.bit & 1u) != 0;
 }
 
-void say(const char* text) {
+void print(const char* text) {
   unsigned long length = 0;
   while (text[length] != 0) ++length;
   [[maybe_unused]] const auto written = write(2, text, length);
 }
 
-void say_number(unsigned number) {
-  if (number >= 10) say_number(number / 10);
+void print_number(unsigned number) {
+  if (number >= 10) print_number(number / 10);
   const char digit[] = {static_cast<char>('0' + number % 10), 0};
-  say(digit);
+  print(digit);
 }
 
 // Ends the program with a message that names the first missing instruction sets and counts the others.
 [[noreturn]] void refuse(unsigned missing) {
   constexpr unsigned kNamed = 3;
-  say("error: this program was built for a processor with ");
+  print("error: this program was built for a processor with ");
   unsigned named = 0;
   for (const ProcessorFeature* feature = kWantedFeatures; feature->name != nullptr; ++feature) {
     if (has(*feature)) continue;
-    if (named > 0) say(named + 1 == missing ? " and " : ", ");
-    say(feature->name);
+    if (named > 0) print(named + 1 == missing ? " and " : ", ");
+    print(feature->name);
     if (++named == kNamed) break;
   }
-  if (missing > named) say(" and "), say_number(missing - named), say(" more");
-  say(missing == 1 ? ", which this processor lacks" : ", all of which this processor lacks");
-  say(": it was configured with -march=native on another machine; configure it on this machine, or for every "
+  if (missing > named) print(" and "), print_number(missing - named), print(" more");
+  print(missing == 1 ? ", which this processor lacks" : ", all of which this processor lacks");
+  print(
+      ": it was configured with -march=native on another machine; configure it on this machine, or for every "
       "processor with -D SCREE_NATIVE=OFF\n");
   for (;;) syscall(SYS_exit_group, kBadInput);
 }

@@ -24,35 +24,36 @@ constexpr const char* kExitCodes =
 // Splits the arguments into those of the program, which it returns, and those for PETSc, which go into the
 // order.
 std::vector<std::string> split(int count, char** values, Order& order) {
-  std::vector<std::string> words;
+  std::vector<std::string> arguments;
   bool petsc = false;
   for (int i = 0; i < count; ++i) {
-    const std::string word = values[i];
-    order.text += (i > 0 ? " " : "") + word;
+    const std::string argument = values[i];
+    order.text += (i > 0 ? " " : "") + argument;
     if (i == 0) continue;
-    if (!petsc && word == "--")
+    if (!petsc && argument == "--")
       petsc = true;
     else
-      (petsc ? order.petsc_words : words).push_back(word);
+      (petsc ? order.petsc_words : arguments).push_back(argument);
   }
-  return words;
+  return arguments;
 }
 
 constexpr const char* kEmpty = "is empty; is a variable of a script not set?";
 
-bool is_blank(const std::string& word) { return word.find_first_not_of(" \t") == word.npos; }
+bool is_blank(const std::string& argument) { return argument.find_first_not_of(" \t") == argument.npos; }
 
 // Validator for options that take a name or a path.
 CLI::Validator named() {
-  return {[](const std::string& word) { return is_blank(word) ? std::string(kEmpty) : std::string(); }, "",
-          "named"};
+  return {
+      [](const std::string& argument) { return is_blank(argument) ? std::string(kEmpty) : std::string(); },
+      "", "named"};
 }
 
 // Without this check an option that ends in "=" would take the next argument as its value.
-void refuse_empty_values(const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    if (word.starts_with("--") && word.find('=') == word.size() - 1)
-      throw InputError(fmt::format("{}: {}", word.substr(0, word.size() - 1), kEmpty));
+void refuse_empty_values(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments)
+    if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+      throw InputError(fmt::format("{}: {}", argument.substr(0, argument.size() - 1), kEmpty));
 }
 
 void declare_deck(CLI::App& command, Order& order) {
@@ -152,9 +153,9 @@ std::string usage_message(const CLI::App& app, const std::string& first, const s
     return fmt::format("{0}: not a command; did you mean \"scree run {0}\"?", first);
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  const bool is_word = !first.empty() && !first.starts_with('-');
+  const bool is_name = !first.empty() && !first.starts_with('-');
   const bool known = std::ranges::find(commands, first) != commands.end();
-  return (is_word && !known ? first + ": not a command" + suggestion(first, commands) : problem) +
+  return (is_name && !known ? first + ": not a command" + suggestion(first, commands) : problem) +
          "; scree --help and scree run --help list commands and options";
 }
 
@@ -162,8 +163,8 @@ std::string usage_message(const CLI::App& app, const std::string& first, const s
 
 Order read_words(int count, char** values, const std::function<std::string()>& version) {
   Order order;
-  const std::vector<std::string> words = split(count, values, order);
-  refuse_empty_values(words);
+  const std::vector<std::string> arguments = split(count, values, order);
+  refuse_empty_values(arguments);
   CLI::App app("Scree: collisions between a constrained multibody system and very many particles", "scree");
   app.footer(kExitCodes);
   app.set_version_flag("--version", version);
@@ -171,10 +172,10 @@ Order read_words(int count, char** values, const std::function<std::string()>& v
   for (const auto declare : {declare_run, declare_check, declare_keys, declare_new, declare_status})
     declare(app, order);
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0)
-      throw InputError(usage_message(app, words.empty() ? "" : words.front(), error.what()));
+      throw InputError(usage_message(app, arguments.empty() ? "" : arguments.front(), error.what()));
     std::ostringstream text;
     app.exit(error, text, text);
     order.command = Command::help, order.help = text.str();

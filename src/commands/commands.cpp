@@ -69,11 +69,11 @@ std::int64_t length_of(const Deck& deck) {
 }
 
 // Enters the chosen values into the deck as if it had named them.
-void take_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
+void enter_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
   for (const ChosenValue& value : chosen) deck.root.take(value);
 }
 
-void say_chosen(const std::vector<ChosenValue>& chosen, Log& log) {
+void log_chosen(const std::vector<ChosenValue>& chosen, Log& log) {
   for (const ChosenValue& value : chosen)
     if (!value.reason.empty()) log.info(fmt::format("chosen: {} ({})", value.text(), value.reason));
 }
@@ -100,8 +100,8 @@ ExitCode run(const Order& order) {
   ranks.on_root([&] { ResultsFolder({directory, order.restart, order.overwrite}).check(); });
   std::vector<ChosenValue> chosen;
   const Model model = build_model(deck, log, RanksShare(ranks), chosen);
-  take_chosen(chosen, deck);
-  say_chosen(chosen, log);
+  enter_chosen(chosen, deck);
+  log_chosen(chosen, log);
   if (is_stopped(ranks, "before the first step, without a new checkpoint", log))
     return ExitCode::stopped_by_signal;
   warn_of_run(model, log);
@@ -151,7 +151,7 @@ ExitCode check(const Order& order) {
   Deck deck = checked_deck(order);
   std::vector<ChosenValue> chosen;
   Model model = build_model(deck, log, RanksShare(ranks), chosen);
-  take_chosen(chosen, deck);
+  enter_chosen(chosen, deck);
   warn_of_run(model, log);
   const std::string directory = output_directory(order, deck);
   const DiskUse disk = disk_use(model, length_of(deck));

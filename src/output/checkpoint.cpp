@@ -125,10 +125,10 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
 
 // The format of a file without a seal, searched for in its bytes, because HDF5 may crash on damaged files.
 std::string format_in_bytes(const std::string& path) {
-  constexpr std::size_t kLooked = std::size_t{1} << 26, kNear = 64;
-  std::string bytes(kLooked, '\0');
+  constexpr std::size_t kSearchedBytes = std::size_t{1} << 26, kNear = 64;
+  std::string bytes(kSearchedBytes, '\0');
   std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), static_cast<std::streamsize>(kLooked));
+  file.read(bytes.data(), static_cast<std::streamsize>(kSearchedBytes));
   bytes.resize(as_size(file.gcount()));
   const std::string attribute("format\0", 7);
   for (std::size_t at = bytes.find(attribute); at != std::string::npos; at = bytes.find(attribute, at + 1)) {
@@ -204,14 +204,14 @@ const std::string& Checkpoint::text(const std::string& name) const { return find
 
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks,
                       int compression) {
-  const std::string beside = path + ".tmp";
+  const std::string temporary_path = path + ".tmp";
   try {
-    write_file(beside, checkpoint, ranks, compression);
-    ranks.together([&] { sync_file(beside); });
-    seal_file(beside, ranks);
-    ranks.on_root([&] { replace_file(beside, path); });
+    write_file(temporary_path, checkpoint, ranks, compression);
+    ranks.together([&] { sync_file(temporary_path); });
+    seal_file(temporary_path, ranks);
+    ranks.on_root([&] { replace_file(temporary_path, path); });
   } catch (...) {
-    if (ranks.is_root()) std::remove(beside.c_str());
+    if (ranks.is_root()) std::remove(temporary_path.c_str());
     throw;
   }
 }

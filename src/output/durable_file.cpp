@@ -129,18 +129,18 @@ bool exchange_files(const std::string& hidden, const std::string& path, const st
   // For file systems that cannot exchange names: a second name keeps the visible file alive during the
   // rename. Without hard links or without a visible file, the previous content is lost.
   unlink(aside.c_str());
-  const bool kept = link(path.c_str(), aside.c_str()) == 0;
+  const bool has_second_name = link(path.c_str(), aside.c_str()) == 0;
   if (std::rename(hidden.c_str(), path.c_str()) != 0) fail(path, "replace", errno);
-  return kept && std::rename(aside.c_str(), hidden.c_str()) == 0;
+  return has_second_name && std::rename(aside.c_str(), hidden.c_str()) == 0;
 }
 
 void write_text_file(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".tmp";
-  if (const int error = write_and_sync(create(beside), text)) {
-    std::remove(beside.c_str());
-    fail(beside, "write", error);
+  const std::string temporary_path = path + ".tmp";
+  if (const int error = write_and_sync(create(temporary_path), text)) {
+    std::remove(temporary_path.c_str());
+    fail(temporary_path, "write", error);
   }
-  replace_file(beside, path);
+  replace_file(temporary_path, path);
 }
 
 void append_text_file(const std::string& path, const std::string& text) {

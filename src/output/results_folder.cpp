@@ -22,7 +22,7 @@ constexpr const char* kNames[] = {
     "run_record.json", kStatusName};
 constexpr const char* kCheckpoints[] = {"checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5"};
 // Suffixes of files that a killed run leaves beside them.
-constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};
+constexpr const char* kCopySuffixes[] = {".tmp", ".spare", ".old"};
 // Suffix of checkpoints later than the one from which the run was continued.
 constexpr const char* kEarlier = ".earlier";
 
@@ -126,7 +126,7 @@ void ResultsFolder::clear() const {
     for (const char* name : kCheckpoints) remove_file(options_.folder + "/" + name + kEarlier);
   }
   for (const char* name : kNames)
-    for (const char* suffix : kBeside) remove_file(options_.folder + "/" + name + suffix);
+    for (const char* suffix : kCopySuffixes) remove_file(options_.folder + "/" + name + suffix);
 }
 
 }  // namespace scree

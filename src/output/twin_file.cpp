@@ -92,10 +92,10 @@ void TwinFile::prepare(const Change& change) {
 }
 
 void TwinFile::show() {
-  bool kept = false;
-  ranks_.on_root([&] { kept = exchange_files(spare_, path_, old_); });
-  ranks_.broadcast(kept);
-  has_spare_ = kept;
+  bool exchanged = false;
+  ranks_.on_root([&] { exchanged = exchange_files(spare_, path_, old_); });
+  ranks_.broadcast(exchanged);
+  has_spare_ = exchanged;
 }
 
 void TwinFile::follow(const Change& change) {

@@ -32,7 +32,7 @@ bool runs() {
 }
 
 // The system's reason why no file can be created in the folder for temporary files; empty if one can.
-std::string temporary_trouble(const std::string& folder) {
+std::string temporary_folder_error(const std::string& folder) {
   std::string path = folder + "/scree_XXXXXX";
   if (mkdtemp(path.data()) == nullptr) return std::strerror(errno);
   rmdir(path.c_str());
@@ -40,10 +40,10 @@ std::string temporary_trouble(const std::string& folder) {
 }
 
 // Prints a remedy before the library ends the process because it cannot start.
-void say_what_helps() {
+void print_remedy() {
   if (!std::exchange(starting, false)) return;
   const std::string named = environment("TMPDIR"), folder = named.empty() ? "/tmp" : named,
-                    trouble = temporary_trouble(folder);
+                    trouble = temporary_folder_error(folder);
   const std::string advice = !trouble.empty()
                                  ? fmt::format(
                                        "MPI needs a folder for temporary files, but cannot write into {}{}: "
@@ -65,7 +65,7 @@ void say_what_helps() {
 // When MPI_Init() fails, Open MPI ends the process through this function of the C library, which calls no
 // handlers of exit(). There is no other way to print a last message.
 extern "C" void _exit(int code) {
-  scree::say_what_helps();
+  scree::print_remedy();
   for (;;) syscall(SYS_exit_group, code);
 }
 
@@ -89,7 +89,7 @@ void start_mpi() {
   // To a process started without a launcher Open MPI adds a daemon, which could start other processes, and
   // which requires ssh.
   if (!launched_with_others()) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  static const int registered = std::atexit(say_what_helps);
+  static const int registered = std::atexit(print_remedy);
   starting = registered == 0;
   MPI_Init(nullptr, nullptr);
   starting = false;

@@ -38,7 +38,7 @@ std::string range(Real smallest, Real largest, const char* unit) {
 
 std::string sides_line(const Space& space) {
   constexpr std::array<const char*, 3> kKinds = {"open", "wall", "periodic"},
-                                       kLeaving = {"error", "remove", "drift"};
+                                       kPolicies = {"error", "remove", "drift"};
   const auto kind = [&](int side) { return kKinds[static_cast<std::size_t>(space.boundary[side])]; };
   std::string sides;
   bool open = false;
@@ -48,7 +48,7 @@ std::string sides_line(const Space& space) {
   }
   return fmt::format(
       "sides          {}{}\n", sides,
-      open ? fmt::format("; particles that leave: \"{}\"", kLeaving[static_cast<std::size_t>(space.leaving)])
+      open ? fmt::format("; particles that leave: \"{}\"", kPolicies[static_cast<std::size_t>(space.leaving)])
            : "");
 }
 

@@ -37,9 +37,10 @@ const Example& find_example(const std::string& name) {
 
 // Replaces the example's path in the source tree, which its comments mention, by the new file's name.
 std::string with_own_name(std::string text, const Example& example, const std::string& file) {
-  const std::string place = fmt::format("input/{}.toml", path_of(example));
-  for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + file.size()))
-    text.replace(at, place.size(), file);
+  const std::string path_in_tree = fmt::format("input/{}.toml", path_of(example));
+  for (std::size_t at = text.find(path_in_tree); at != std::string::npos;
+       at = text.find(path_in_tree, at + file.size()))
+    text.replace(at, path_in_tree.size(), file);
   return text;
 }
 

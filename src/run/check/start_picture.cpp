@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // A new folder beside a file, visible to all ranks and removed by the destructor. Every rank knows its path.
-class FolderBeside {
+class TemporaryFolder {
  public:
-  FolderBeside(const std::string& file, const Ranks& ranks) : ranks_(ranks) {
+  TemporaryFolder(const std::string& file, const Ranks& ranks) : ranks_(ranks) {
     const fs::path parent = fs::path(file).parent_path();
     path_ = ((parent.empty() ? "." : parent) / ".scree_picture_XXXXXX").string();
     ranks.on_root([&] {
@@ -34,12 +34,12 @@ class FolderBeside {
     });
     ranks.broadcast(std::span(path_));
   }
-  ~FolderBeside() {
+  ~TemporaryFolder() {
     std::error_code ignored;
     if (ranks_.is_root()) fs::remove_all(path_, ignored);
   }
-  FolderBeside(const FolderBeside&) = delete;
-  FolderBeside& operator=(const FolderBeside&) = delete;
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   const std::string& path() const { return path_; }
 
  private:
@@ -80,7 +80,7 @@ void draw_start(Model model, const std::string& resolved_deck, const std::string
                 const std::string& file, const Ranks& ranks) {
   catch_signals();  // so that a signal does not keep the folder from being removed
   model.output = output_of_start();
-  const FolderBeside folder(file, ranks);
+  const TemporaryFolder folder(file, ranks);
   write_start(model, folder.path(), ranks);
   if (ranks.max(signal_received()) != 0) return;
   ranks.on_root([&] {

@@ -72,9 +72,9 @@ class Simulation {
   void progress(const State& state, Real h);
   void show_status(const std::string& status);
   void watch_bodies(const State& state);
-  void watch_leavers(const std::vector<Leaver>& leavers);
+  void watch_escaped_particles(const std::vector<Leaver>& leavers);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
-  void keep_last_good_state(StepLoop& loop);
+  void save_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
   void write_record(const std::string& status, ExitCode code);
   void record_failure(const std::string& why, ExitCode code);
@@ -191,7 +191,7 @@ void Simulation::watch_bodies(const State& state) {
 }
 
 // Warns once, on every rank.
-void Simulation::watch_leavers(const std::vector<Leaver>& leavers) {
+void Simulation::watch_escaped_particles(const std::vector<Leaver>& leavers) {
   if (load_lost_) return;
   const std::string warning = surfaces_outside_.warning(leavers, link_.motion(), state_.clock.time);
   load_lost_ = !warning.empty();
@@ -233,7 +233,7 @@ ExitCode Simulation::run_to_the_end() {
       model_,         *backend_,
       link_,          step_,
       *recorder_,     timers_,
-      steady_seconds, [this](const std::vector<Leaver>& leavers) { watch_leavers(leavers); }};
+      steady_seconds, [this](const std::vector<Leaver>& leavers) { watch_escaped_particles(leavers); }};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {
@@ -275,12 +275,12 @@ ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
   book_.end_loop();
   ranks_.meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
   log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
-  keep_last_good_state(loop);
+  save_last_good_state(loop);
   return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
 }
 
 // A failed GPU may hold a snapshot, and in implicit runs the state: both are then lost.
-void Simulation::keep_last_good_state(StepLoop& loop) {
+void Simulation::save_last_good_state(StepLoop& loop) {
   try {
     recorder_->write_pending();
   } catch (const DeviceError&) {
@@ -375,8 +375,9 @@ void Simulation::summarize() const {
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
   log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
   const Multibody* const bodies = link_.multibody();
-  const BodiesBook book = bodies == nullptr ? BodiesBook{} : bodies_book(model_, *bodies, state_);
-  if (const std::string warning = balance_warning(b, book, model_); !warning.empty()) log_.warning(warning);
+  const BodiesBook of_bodies = bodies == nullptr ? BodiesBook{} : bodies_book(model_, *bodies, state_);
+  if (const std::string warning = balance_warning(b, of_bodies, model_); !warning.empty())
+    log_.warning(warning);
 }
 
 }  // namespace

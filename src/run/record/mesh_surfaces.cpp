@@ -19,9 +19,9 @@ Real area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
 // Length of a 2D segment, from one of its triangles, without the extrusion along z.
 Real length(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
   const auto along = [&](int i, int j) {
-    Vec3 way = mesh.vertices[triangle.vertex[j]] - mesh.vertices[triangle.vertex[i]];
-    way.z = 0;
-    return norm(way);
+    Vec3 edge = mesh.vertices[triangle.vertex[j]] - mesh.vertices[triangle.vertex[i]];
+    edge.z = 0;
+    return norm(edge);
   };
   return std::max(along(0, 1), along(1, 2));
 }

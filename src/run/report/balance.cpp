@@ -43,10 +43,11 @@ Real round_off(const Ledger& ledger, const Model& model) {
 // tangential rebound velocity.
 Real energy_error(const StepTrial& trial) {
   const TrialResult& r = trial.result;
-  const Real along = r.exact.restitution, across = std::abs(r.exact.across);
+  const Real normal = r.exact.restitution, tangential = std::abs(r.exact.across);
   const Real slope = trial.rubs ? std::tan(trial.incidence) : 0;  // tangential over normal approach velocity
-  const Real wrong = along * along * r.normal_error + across * std::max(across, Real(0.1)) * r.across_error;
-  return 2 * wrong / (1 + slope * slope);
+  const Real relative_error =
+      normal * normal * r.normal_error + tangential * std::max(tangential, Real(0.1)) * r.across_error;
+  return 2 * relative_error / (1 + slope * slope);
 }
 
 // The largest energy error of the deck's impacts in its explicit steps. Empty for bodies with shapes and for
@@ -97,8 +98,8 @@ std::int64_t next_energy_sample(std::int64_t steps, bool implicit) {
   const std::int64_t least = implicit ? 4 : 128, most = implicit ? 8 : 1024;
   const std::int64_t doubling =
       static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(std::max(steps, std::int64_t{1}))));
-  const std::int64_t apart = std::clamp(doubling / kSamplesPerDoubling, least, most);
-  return (steps / apart + 1) * apart;
+  const std::int64_t interval = std::clamp(doubling / kSamplesPerDoubling, least, most);
+  return (steps / interval + 1) * interval;
 }
 
 EnergyExtremes extremes_at(Real kinetic, Real elastic, const MultibodyState& bodies) {

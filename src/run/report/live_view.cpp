@@ -8,7 +8,7 @@
 namespace scree {
 namespace {
 
-constexpr double kLookSeconds = 0.25;  // between progress lines on a terminal
+constexpr double kUpdateSeconds = 0.25;  // between progress lines on a terminal
 constexpr double kLogSeconds =
     600;  // between progress lines in a log, in addition to one per tenth of the run
 constexpr double kFlushSeconds =
@@ -55,7 +55,7 @@ bool LiveView::look(const State& state, Real h, std::int64_t contacts) {
   const Clock::time_point now = Clock::now();
   const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
   const int tenths = static_cast<int>(10 * share);
-  if (seconds_between(last_look_, now) < kLookSeconds && tenths == tenths_reported_) return false;
+  if (seconds_between(last_look_, now) < kUpdateSeconds && tenths == tenths_reported_) return false;
   last_look_ = now;
   status_.progress.step = h;
   add_to_rate(state);

@@ -29,7 +29,7 @@ bool can_run(const fs::path& path) {
 }
 
 // Path of the program on the PATH; empty if it is not there.
-std::string on_the_path() {
+std::string first_on_path() {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');)
@@ -37,7 +37,7 @@ std::string on_the_path() {
   return "";
 }
 
-std::string above_this_program() {
+std::string in_source_tree() {
   std::error_code error;
   fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (; folder.has_relative_path(); folder = folder.parent_path())
@@ -47,11 +47,11 @@ std::string above_this_program() {
 
 // The status of waitpid(), which a signal to this process does not interrupt.
 int status_at_end(pid_t process) {
-  constexpr useconds_t kLook = 20000;  // [us]
+  constexpr useconds_t kPollInterval = 20000;  // [us]
   int status = 0;
   while (waitpid(process, &status, WNOHANG) == 0) {
     if (signal_received() != 0) kill(process, SIGTERM);
-    usleep(kLook);
+    usleep(kPollInterval);
   }
   return status;
 }
@@ -67,13 +67,13 @@ std::string last_message(const std::string& path) {
 }
 
 // Throws if the program failed. Its exit code 2 means a request that it cannot fulfil.
-void judge(int status, const std::string& program, const std::string& said) {
+void check_status(int status, const std::string& program, const std::string& output) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   const std::string end = WIFSIGNALED(status)
                               ? fmt::format("was ended by a signal ({})", strsignal(WTERMSIG(status)))
                               : fmt::format("ended with exit code {}", WEXITSTATUS(status));
-  const std::string message = fmt::format("{} {}{}", program, end, said.empty() ? "" : ": " + said);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 2) throw InputError(said.empty() ? message : said);
+  const std::string message = fmt::format("{} {}{}", program, end, output.empty() ? "" : ": " + output);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 2) throw InputError(output.empty() ? message : output);
   throw IoError(message);
 }
 
@@ -85,17 +85,17 @@ std::string find_scree_post() {
     throw InputError(
         fmt::format("environment variable SCREE_POST = {}: is not an executable program", named));
   }
-  for (const std::string& found : {on_the_path(), above_this_program()})
+  for (const std::string& found : {first_on_path(), in_source_tree()})
     if (!found.empty()) return found;
   throw InputError(
       "--picture needs the program scree-post for drawing: it is not on the PATH, and the environment "
       "variable SCREE_POST does not name it; pip install ./postprocess installs it");
 }
 
-void run_scree_post(const std::string& program, const std::vector<std::string>& words,
+void run_scree_post(const std::string& program, const std::vector<std::string>& options,
                     const std::string& log) {
   std::vector<std::string> texts{program};
-  texts.insert(texts.end(), words.begin(), words.end());
+  texts.insert(texts.end(), options.begin(), options.end());
   std::vector<char*> arguments;
   for (std::string& text : texts) arguments.push_back(text.data());
   arguments.push_back(nullptr);
@@ -108,7 +108,7 @@ void run_scree_post(const std::string& program, const std::vector<std::string>& 
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw IoError(fmt::format("{}: cannot be started: {}", program, std::strerror(error)));
   const int status = status_at_end(process);
-  if (signal_received() == 0) judge(status, program, last_message(log));
+  if (signal_received() == 0) check_status(status, program, last_message(log));
 }
 
 }  // namespace scree

@@ -20,40 +20,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Seen {
-  RunStatus told;                  // status that the run has written
+struct Observed {
+  RunStatus status;                // status that the run has written
   std::optional<LockOwner> owner;  // current owner of the folder
-  std::string word;                // running, done, stopped, failed, killed, starting
+  std::string state;               // running, done, stopped, failed, killed, starting
 };
 
 // A run locks the folder before it writes a status: until then the file is that of the previous run.
-bool is_of_earlier_run(const RunStatus& told, const LockOwner& owner) {
-  return !owner.since.empty() && told.written < owner.since;
+bool is_of_earlier_run(const RunStatus& status, const LockOwner& owner) {
+  return !owner.since.empty() && status.written < owner.since;
 }
 
-std::string word_of(const RunStatus& told, const std::optional<LockOwner>& owner) {
-  if (owner && is_of_earlier_run(told, *owner)) return "starting";
-  if (told.state != "running") return told.state.substr(0, told.state.find_first_of(" :"));
+std::string state_of(const RunStatus& status, const std::optional<LockOwner>& owner) {
+  if (owner && is_of_earlier_run(status, *owner)) return "starting";
+  if (status.state != "running") return status.state.substr(0, status.state.find_first_of(" :"));
   return owner ? "running" : "killed";
 }
 
-Seen look_into(const std::string& folder) {
+Observed observe(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError(folder + ": no such folder");
-  Seen seen;
-  seen.owner = FolderLock(folder).owner();
-  const bool told = fs::is_regular_file(folder + "/" + kStatusName, error);
-  if (!told && seen.owner) {
-    seen.word = "starting";
-    return seen;
+  Observed observed;
+  observed.owner = FolderLock(folder).owner();
+  const bool has_status = fs::is_regular_file(folder + "/" + kStatusName, error);
+  if (!has_status && observed.owner) {
+    observed.state = "starting";
+    return observed;
   }
-  if (!told) throw InputError(fmt::format("{}: contains no {} of a run", folder, kStatusName));
-  seen.told = read_status(folder);
-  seen.word = word_of(seen.told, seen.owner);
-  if (seen.word != "killed") return seen;
-  seen.owner = FolderLock(folder).owner();  // a new run may have started meanwhile
-  seen.word = word_of(seen.told, seen.owner);
-  return seen;
+  if (!has_status) throw InputError(fmt::format("{}: contains no {} of a run", folder, kStatusName));
+  observed.status = read_status(folder);
+  observed.state = state_of(observed.status, observed.owner);
+  if (observed.state != "killed") return observed;
+  observed.owner = FolderLock(folder).owner();  // a new run may have started meanwhile
+  observed.state = state_of(observed.status, observed.owner);
+  return observed;
 }
 
 // Age of a UTC time of any machine's clock.
@@ -65,18 +65,19 @@ std::string owner_text(const LockOwner& owner) {
          (here ? ", alive" : ", another host: it counts as alive while it holds the folder's lock");
 }
 
-std::string state_text(const Seen& seen) {
-  const RunStatus& told = seen.told;
-  if (seen.word == "starting")
-    return "starting: " + owner_text(*seen.owner) + "; it has not written a status yet";
-  const std::string age = age_text(told.written);
-  if (seen.word == "running") return fmt::format("running: {}; last status {}", owner_text(*seen.owner), age);
-  const std::string process = fmt::format("process {} on host {}", told.process, told.host);
-  if (seen.word == "killed")
+std::string state_text(const Observed& observed) {
+  const RunStatus& status = observed.status;
+  if (observed.state == "starting")
+    return "starting: " + owner_text(*observed.owner) + "; it has not written a status yet";
+  const std::string age = age_text(status.written);
+  if (observed.state == "running")
+    return fmt::format("running: {}; last status {}", owner_text(*observed.owner), age);
+  const std::string process = fmt::format("process {} on host {}", status.process, status.host);
+  if (observed.state == "killed")
     return fmt::format(
         "killed: {} wrote its last status {} as running, and does not hold the folder's lock any more",
         process, age);
-  return fmt::format("{}; {}, {}", told.state, process, age);
+  return fmt::format("{}; {}, {}", status.state, process, age);
 }
 
 double size_on_disk(const std::string& folder) {
@@ -98,37 +99,38 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.3g} {}", bytes, unit);
 }
 
-std::string checkpoint_text(const RunStatus& told) {
-  if (told.checkpoint.empty()) return "none in this run";
-  return fmt::format("{}, t = {:.6g} s, written {}", told.checkpoint, told.checkpoint_time,
-                     age_text(told.checkpoint_written));
+std::string checkpoint_text(const RunStatus& status) {
+  if (status.checkpoint.empty()) return "none in this run";
+  return fmt::format("{}, t = {:.6g} s, written {}", status.checkpoint, status.checkpoint_time,
+                     age_text(status.checkpoint_written));
 }
 
 // The lines on the run's own status.
-std::string told_lines(const Seen& seen) {
-  const RunStatus& told = seen.told;
-  const Progress& p = told.progress;
-  const bool goes_on = seen.word == "running";
-  const char* const at_last_row = told.state.starts_with("failed") ? ", at the last row of the history" : "";
-  std::string text = fmt::format("deck           {}, backend {}\n", printable(told.deck), told.backend);
+std::string status_lines(const Observed& observed) {
+  const RunStatus& status = observed.status;
+  const Progress& p = status.progress;
+  const bool is_running = observed.state == "running";
+  const char* const at_last_row =
+      status.state.starts_with("failed") ? ", at the last row of the history" : "";
+  std::string text = fmt::format("deck           {}, backend {}\n", printable(status.deck), status.backend);
   text += fmt::format("simulated      {:.6g} of {:g} s ({})\n", p.time, p.end, percent_text(p));
-  if (goes_on) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
-  text += fmt::format("wall time      {}, since {}\n", duration_text(told.wall_seconds), told.started);
+  if (is_running) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
+  text += fmt::format("wall time      {}, since {}\n", duration_text(status.wall_seconds), status.started);
   text += fmt::format("steps          {}, the last one of {:.2e} s\n", p.steps, p.step);
-  text += fmt::format("rate           {}{}\n", rate_text(p), goes_on ? "" : " at the end");
+  text += fmt::format("rate           {}{}\n", rate_text(p), is_running ? "" : " at the end");
   text +=
       fmt::format("contacts       {}{}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts), at_last_row);
   text += fmt::format("energy         balance error {:.2e} J of {:.4g} J exchanged ({}){}\n", p.balance_error,
                       p.exchanged, balance_text(p), at_last_row);
-  text += fmt::format("checkpoint     {}\n", checkpoint_text(told));
-  text +=
-      fmt::format("written        {} snapshots, {} rows of the history\n", told.snapshots, told.history_rows);
+  text += fmt::format("checkpoint     {}\n", checkpoint_text(status));
+  text += fmt::format("written        {} snapshots, {} rows of the history\n", status.snapshots,
+                      status.history_rows);
   return text;
 }
 
-std::string warning_lines(const RunStatus& told) {
-  std::string text = fmt::format("warnings       {}\n", told.warnings.size());
-  for (const std::string& warning : told.warnings) text += "               " + printable(warning) + "\n";
+std::string warning_lines(const RunStatus& status) {
+  std::string text = fmt::format("warnings       {}\n", status.warnings.size());
+  for (const std::string& warning : status.warnings) text += "               " + printable(warning) + "\n";
   return text;
 }
 
@@ -136,17 +138,17 @@ constexpr std::size_t kColumns = 8;
 using Row = std::array<std::string, kColumns>;
 
 Row row_of(const std::string& folder) {
-  const Seen seen = look_into(folder);
-  const Progress& p = seen.told.progress;
-  if (seen.word == "starting") return {folder, seen.word, "", "", "", "", "", ""};
+  const Observed observed = observe(folder);
+  const Progress& p = observed.status.progress;
+  if (observed.state == "starting") return {folder, observed.state, "", "", "", "", "", ""};
   return {folder,
-          seen.word,
+          observed.state,
           fmt::format("{:.6g} of {:g} s", p.time, p.end),
           percent_text(p),
           std::to_string(p.steps),
           rate_text(p),
           balance_text(p),
-          seen.word == "running" ? duration_text(p.seconds_left) : ""};
+          observed.state == "running" ? duration_text(p.seconds_left) : ""};
 }
 
 // Aligns the columns. Rows with a folder and a message alone do not widen the other columns.
@@ -167,17 +169,17 @@ std::string aligned(const std::vector<Row>& rows) {
 }  // namespace
 
 std::string status_report(const std::string& folder) {
-  const Seen seen = look_into(folder);
-  std::string text = "state          " + printable(state_text(seen)) + "\n";
-  if (seen.word != "starting") text += told_lines(seen);
+  const Observed observed = observe(folder);
+  std::string text = "state          " + printable(state_text(observed)) + "\n";
+  if (observed.state != "starting") text += status_lines(observed);
   text += fmt::format("on disk        {}\n", bytes_text(size_on_disk(folder)));
-  return seen.word == "starting" ? text : text + warning_lines(seen.told);
+  return observed.state == "starting" ? text : text + warning_lines(observed.status);
 }
 
 StatusTable status_table(const std::vector<std::string>& folders) {
   StatusTable table;
   std::vector<Row> rows{{"folder", "state", "simulated", "", "steps", "rate", "balance", "left"}};
-  const auto tell_trouble = [&](const std::string& folder, const std::exception& error, ExitCode code) {
+  const auto add_error_row = [&](const std::string& folder, const std::exception& error, ExitCode code) {
     const std::string message = error.what(), start = folder + ": ";
     rows.push_back({folder, message.starts_with(start) ? message.substr(start.size()) : message});
     table.code = code;
@@ -186,9 +188,9 @@ StatusTable status_table(const std::vector<std::string>& folders) {
     try {
       rows.push_back(row_of(folder));
     } catch (const InputError& error) {
-      tell_trouble(folder, error, ExitCode::bad_input);
+      add_error_row(folder, error, ExitCode::bad_input);
     } catch (const IoError& error) {
-      tell_trouble(folder, error, ExitCode::io_failed);
+      add_error_row(folder, error, ExitCode::io_failed);
     }
   }
   table.text = aligned(rows);

@@ -32,7 +32,7 @@ Box open_sides(const Space& space) {
   return open;
 }
 
-bool something_leaves(const Model& model) {
+bool particles_may_leave(const Model& model) {
   return model.particles.totals.count > 0 && model.space.leaving != Leaving::error;
 }
 
@@ -53,7 +53,7 @@ void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) 
 
 // Whether a surface is beyond an open side. 2D lines extend along z, where their domain has no sides.
 template <class Carrier>
-bool reaches_beyond(const Model& model, const Carrier& carrier, const BodyMotion& motion, const Box& open) {
+bool extends_beyond(const Model& model, const Carrier& carrier, const BodyMotion& motion, const Box& open) {
   const Mat3 axes = rotation_matrix(orientation(motion));
   bool beyond = false;
   for_each_extreme(model, carrier, [&](Vec3 offset, Real radius) {
@@ -111,7 +111,7 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
     motions.at(share * model.time.end, motion);
     for (std::size_t w = 0; w < placed.size(); ++w)
       if (!beyond[w] && (k == 0 || placed[w]->moves()))
-        beyond[w] = reaches_beyond(model, *placed[w], motion[w], open);
+        beyond[w] = extends_beyond(model, *placed[w], motion[w], open);
   }
   std::vector<std::string> texts;
   for (std::size_t w = 0; w < placed.size(); ++w)
@@ -119,7 +119,7 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
   return texts;
 }
 
-std::string what_is_lost(const Model& model) {
+std::string consequence(const Model& model) {
   return model.space.leaving == Leaving::remove
              ? "are removed"
              : "are excluded from contact detection, so that no surface holds them";
@@ -136,11 +136,11 @@ Vec3 image_beside(Vec3 middle, Vec3 p, Vec3 periods) {
 }  // namespace
 
 std::string outside_at_start(const Model& model) {
-  if (!something_leaves(model)) return "";
+  if (!particles_may_leave(model)) return "";
   const Box open = open_sides(model.space);
   std::vector<std::string> beyond;
   for (const Body& body : model.bodies)
-    if (reaches_beyond(model, body, start_motion(body), open)) beyond.push_back(body_text(body));
+    if (extends_beyond(model, body, start_motion(body), open)) beyond.push_back(body_text(body));
   for (std::string& text : walls_beyond(model, open)) beyond.push_back(std::move(text));
   if (beyond.empty()) return "";
   std::string names;
@@ -148,11 +148,11 @@ std::string outside_at_start(const Model& model) {
   if (beyond.size() > kNamed) names += fmt::format(" and {} more", beyond.size() - kNamed);
   return fmt::format(
       "{} {} beyond an open side of the domain: particles that leave there {}; a larger domain keeps them",
-      names, beyond.size() > 1 ? "reach" : "reaches", what_is_lost(model));
+      names, beyond.size() > 1 ? "reach" : "reaches", consequence(model));
 }
 
 SurfacesOutside::SurfacesOutside(const Model& model) : model_(model) {
-  if (!something_leaves(model)) return;
+  if (!particles_may_leave(model)) return;
   for (const Body& body : model.bodies)
     boxes_.push_back(box_of(model, body)), names_.push_back(body_text(body));
   for (const Wall& wall : model.walls)
@@ -174,7 +174,7 @@ std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<
       return fmt::format(
           "particle {} leaves the domain at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
           "larger domain keeps them",
-          leaver.global_id, t, names_[c], what_is_lost(model_));
+          leaver.global_id, t, names_[c], consequence(model_));
     }
   }
   return "";

@@ -40,7 +40,7 @@ bool starts_with_any(const std::string& text, std::initializer_list<const char*>
 // Whether a key must be the same in both decks. Numbers in a checkpoint follow the order of the deck's
 // bodies, joints, drivers and particles, and positions along periodic axes lie on a grid that depends on the
 // domain.
-bool must_stay(const DeckDifference& difference, bool periodic) {
+bool must_be_equal(const DeckDifference& difference, bool periodic) {
   static const std::set<std::string> kLists = {"",
                                                "bodies",
                                                "joints",
@@ -147,7 +147,7 @@ void check_allowed(const Differences& differences, const Model& model, const Run
   if (!differences.empty() && !options.allow_changes) refuse(differences, options);
   Differences refused;
   for (const DeckDifference& difference : differences)
-    if (must_stay(difference, is_periodic(model.space))) refused.push_back(difference);
+    if (must_be_equal(difference, is_periodic(model.space))) refused.push_back(difference);
   if (refused.empty()) return;
   throw InputError(
       fmt::format("--restart {}: the checkpoint's values have no meaning if these keys differ, not even with "
@@ -155,15 +155,15 @@ void check_allowed(const Differences& differences, const Model& model, const Run
                   options.restart, listed(refused)));
 }
 
-bool names(const DeckDifference& difference, const char* word) {
-  return difference.pattern.find(word) != std::string::npos;
+bool concerns(const DeckDifference& difference, const char* key) {
+  return difference.pattern.find(key) != std::string::npos;
 }
 
 void check_works(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
                  const RunOptions& options) {
   if (!model.output.adds_up_works()) return;
   for (const DeckDifference& difference : differences)
-    if (names(difference, "mesh"))
+    if (concerns(difference, "mesh"))
       throw InputError(fmt::format(
           "--restart {}: output.surface_fields selects work or wear, which belong to the triangles of the "
           "checkpoint; the meshes must not change: {}",
@@ -192,12 +192,12 @@ void check_fits(const Checkpoint& checkpoint, const Differences& differences, co
 // Whether the difference may change the numbers of surfaces or mesh features, which are parts of contact
 // keys.
 bool renumbers_surfaces(const DeckDifference& difference) {
-  return starts_with_any(difference.pattern, {"walls", "space."}) || names(difference, "mesh") ||
-         names(difference, "shapes");
+  return starts_with_any(difference.pattern, {"walls", "space."}) || concerns(difference, "mesh") ||
+         concerns(difference, "shapes");
 }
 
 // Reduces the contact history to the sides of open surfaces if the new law has another history.
-void keep_sides_alone(const Model& model, State& state) {
+void reduce_to_sides(const Model& model, State& state) {
   const auto differs = [](const auto& contacts, int numbers) {
     return contacts.numbers != 0 && contacts.numbers != numbers;
   };
@@ -226,7 +226,7 @@ void apply(const Differences& differences, const Model& model, Restart& restart)
     ShapeContacts& of_shapes = restart.state.shape_contacts;
     of_shapes.shapes.clear(), of_shapes.keys.clear(), of_shapes.values.clear();
   }
-  keep_sides_alone(model, restart.state);
+  reduce_to_sides(model, restart.state);
   if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
 }
 

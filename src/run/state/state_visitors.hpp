@@ -118,11 +118,11 @@ class Hasher {
   // Hashes poses, and of counted angles the full revolutions if any angle has made one: the rest of an angle
   // follows from the bodies' poses.
   void poses(const std::vector<Real>& position, std::size_t angles) {
-    const auto turns = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
+    const auto revolutions = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
     const std::span<const Real> all(position), counted = all.last(angles);
     for (const Real value : all.first(all.size() - angles)) hash_.add(value);
-    if (std::ranges::all_of(counted, [&](Real angle) { return turns(angle) == 0; })) return;
-    for (const Real angle : counted) hash_.add(turns(angle));
+    if (std::ranges::all_of(counted, [&](Real angle) { return revolutions(angle) == 0; })) return;
+    for (const Real angle : counted) hash_.add(revolutions(angle));
   }
   void operator()(const char*, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches) hash_.add(w.force), hash_.add(w.torque);
