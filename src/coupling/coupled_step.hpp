@@ -80,7 +80,7 @@ class CoupledStep {
   struct BodyStep {
     Real t, h, end;  // [s]
     int first, last;
-    Real end_of_last = t;  // start of the last substep
+    Real end_of_last = t;  // end of the previous substep [s]
   };
   bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);

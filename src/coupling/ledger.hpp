@@ -14,7 +14,7 @@ struct Ledger {
   Real kinetic = 0, gravitational = 0;
   Real elastic_force_elements = 0, elastic_contacts = 0;
   Real dissipated_force_elements = 0, dissipated_contacts = 0, dissipated_integrator = 0;
-  Real driver_work = 0;  // of drivers, actuators, applied forces and moving walls
+  Real driver_work = 0;  // of drivers, actuators, applied forces and walls
   // Kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended when a
   // particle escaped.
   Real carried_out = 0;
@@ -39,12 +39,12 @@ struct Ledger {
 
 // Energy of escaped particles, added up when they leave; part of the state.
 struct CarriedOut {
-  std::int64_t left = 0;  // number of escaped particles, drifting or removed
+  std::int64_t left = 0;  // number of escaped particles, ballistic or removed
   std::int64_t removed = 0;
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed particles [J]
   RubbingLosses losses{};                      // parts of contact_loss
-  // Kinetic and gravitational energy of the drifting particles when they escaped, and the energy that the
+  // Kinetic and gravitational energy of the ballistic particles when they escaped, and the energy that the
   // integrator had taken out of them by then [J].
   Real drifting_energy = 0, drifting_integrator_loss = 0;
 };
@@ -56,8 +56,8 @@ void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
                    const MultibodyState& state, Real t);
 
-// The ledger without particles outside the domain, as if drifting particles had been removed when they
-// escaped. Without drifting particles its bits are those of `all`.
+// The ledger without particles outside the domain, as if ballistic particles had been removed when they
+// escaped. Without ballistic particles its bits are those of `all`.
 Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const CarriedOut& carried_out);
 
 }  // namespace scree

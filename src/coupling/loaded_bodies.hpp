@@ -46,7 +46,7 @@ class LoadedBodies {
 
   // Whether particles can touch a body at all; on every rank.
   bool can_be() const { return can_be_; }
-  // Whether bodies are loaded in a step of length h [s]. contacts: number of particle contacts per carrier.
+  // Whether bodies are loaded in a step of length h [s]. contacts: number of particle contacts per parent.
   bool are_loaded(const std::vector<std::int64_t>& contacts, Real h) const;
 
   // Opens a step of loaded bodies. mean: wrenches for the solution if the bodies stay at their predicted

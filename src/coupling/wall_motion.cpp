@@ -38,7 +38,7 @@ void WallMotions::add(const Part& part, Real t, BodyMotion& motion) {
   motion.position = part.of.point + arm;
   motion.velocity = turned(turn, motion.velocity) + cross(now.rate * axis, arm);
   motion.orientation = normalized(turn * motion.orientation);
-  motion.spin += turned(conjugate(motion.orientation), now.rate * axis);  // in the carrier's frame
+  motion.spin += turned(conjugate(motion.orientation), now.rate * axis);  // in the parent's frame
 }
 
 // Trapezoidal rule, as for the particles' own work.

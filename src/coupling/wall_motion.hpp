@@ -18,7 +18,7 @@ class WallMotions {
   std::size_t size() const { return walls_.size(); }  // number of placed walls, in the model's order
   bool move() const { return move_; }                 // at least one of them moves
   bool run() const { return run_; }                   // at least one surface is a conveyor
-  // Motions of the walls' carriers at time t [s]: spatial motions about their origins; the frames coincide
+  // Motions of the walls' parents at time t [s]: spatial motions about their origins; the frames coincide
   // with the global one at t = 0. out: has size() entries.
   void at(Real t, std::span<BodyMotion> out) const;
 
@@ -33,7 +33,7 @@ class WallMotions {
   bool move_ = false, run_ = false;
 };
 
-// Work of contact wrenches on a moving carrier, and on the conveyor motion of its surface, over a step of
+// Work of contact wrenches on a moving parent, and on the conveyor motion of its surface, over a step of
 // length h [s], by the trapezoidal rule [J]. wrench: at the end, as the step was solved with.
 Real work_between(const BodyMotion& start, const BodyWrench& start_wrench, const BodyMotion& end,
                   const BodyWrench& wrench, Real h);

@@ -259,7 +259,8 @@ bool can_estimate_device(const Model& model, const Ranks& ranks) {
   return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
 }
 
-// Device memory, for the GPU with the least free share where ranks share GPUs or hosts differ.
+// Device memory. If ranks share GPUs or hosts differ, free memory is that of the GPU with the largest needed
+// share.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
   if (!can_estimate_device(model, ranks))
     return "device memory  not estimated: this host has too little free memory for the estimate\n";

@@ -25,7 +25,7 @@ struct BodyPoints {
   BodySnapshot view() const;
 };
 
-// shapes: those with contact detection; motion and contacts: one entry per carrier, bodies first.
+// shapes: those with contact detection; motion and contacts: one entry per parent, bodies first.
 BodyPoints body_points(const Model& model, const ShapePack& shapes, std::span<const BodyMotion> motion,
                        std::span<const ContactSum> contacts);
 

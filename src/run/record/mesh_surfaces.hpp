@@ -30,16 +30,16 @@ class MeshSurfaces {
   // Keeps a reference to the model.
   explicit MeshSurfaces(const Model& model);
   SeriesTriangles triangles() const;
-  // motion: of the carriers (bodies, then placed walls); works: of all ranks, empty if no field needs them.
+  // motion: of the parents (bodies, then placed walls); works: of all ranks, empty if no field needs them.
   Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
             const std::vector<std::int64_t>& works) const;
 
  private:
   struct Part {
     Index surface;      // index among the placed surfaces; -1: no contact detection
-    int carrier, wall;  // wall: index into Model::walls, or -1 where the carrier is a body
+    int carrier, wall;  // wall: index into Model::walls, or -1 where the parent is a body
     int material;
-    Vec3 point;                               // origin of the mesh in the carrier's frame [m]
+    Vec3 point;                               // origin of the mesh in the parent's frame [m]
     std::size_t first_point, first_triangle;  // rows
     const SurfaceMesh* mesh;
   };

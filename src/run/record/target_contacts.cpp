@@ -8,14 +8,14 @@
 namespace scree {
 namespace {
 
-// Index of a placed wall's carrier: placed walls follow the bodies, in their order.
+// Index of a placed wall's parent: placed walls follow the bodies, in their order.
 std::size_t carrier_of_wall(const Model& model, int wall) {
   std::size_t carrier = model.bodies.size();
   for (int w = 0; w < wall; ++w) carrier += model.walls[as_size(w)].is_placed();
   return carrier;
 }
 
-// Moves the torque from the carrier's origin to the wall's point, which moves with the wall.
+// Moves the torque from the parent's origin to the wall's point, which moves with the wall.
 ContactSum on_wall(const Wall& wall, ContactSum sum, const BodyMotion& motion) {
   sum.torque -= cross(body_arm(motion, wall.point), sum.force);
   return sum;

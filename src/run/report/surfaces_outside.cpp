@@ -18,7 +18,7 @@ constexpr int kInstants = 100;  // number of samples of a wall's motion
 // Position of a sample within its interval, by the golden ratio, so that the samples do not match a period of
 // the motion.
 constexpr Real kGolden = 0.6180339887498949;
-constexpr std::size_t kNamed = 3;  // carriers in one warning
+constexpr std::size_t kNamed = 3;  // parents in one warning
 
 // Box of the open sides of the domain; its other sides are at infinity.
 Box open_sides(const Space& space) {
@@ -36,8 +36,8 @@ bool particles_may_leave(const Model& model) {
   return model.particles.totals.count > 0 && model.space.leaving != Leaving::error;
 }
 
-// Calls visit(point, radius) for spheres and vertices, in the carrier's frame, whose hull contains the
-// carrier's surfaces.
+// Calls visit(point, radius) for spheres and vertices, in the parent's frame, whose hull contains the
+// parent's surfaces.
 template <class Visit>
 void for_each_extreme(const Model& model, const Body& body, const Visit& visit) {
   for (const Shape& shape : body.shapes) visit(shape.offset, shape.radius);

@@ -29,7 +29,7 @@ class SurfacesOutside {
 
  private:
   const Model& model_;
-  std::vector<std::optional<Box>> boxes_;  // per carrier, in its own frame; none for planes
+  std::vector<std::optional<Box>> boxes_;  // per parent, in its own frame; none for planes
   std::vector<std::string> names_;
 };
 

@@ -69,8 +69,8 @@ FieldsThere fields_there(const Checkpoint& in);
 Checkpoint pack(const State& state);
 Checkpoint pack(const State&& state) = delete;
 // Hash of all bits of the state except the amounts of output. The hashes of ranks, each of its own particles,
-// add up (modulo 2^64) to the hash of the whole. with_rest: includes everything but the particles, for one
-// rank only.
+// add up (modulo 2^64) to the hash of the whole. with_rest: also hashes everything except the particles, on
+// one rank.
 std::uint64_t state_hash(const State& state, bool with_rest);
 // The state of a checkpoint, with the particles of this rank's rows. Throws IoError naming what is missing,
 // on every rank. Collective.
@@ -79,8 +79,7 @@ State unpack(const Checkpoint& checkpoint, const Ranks& ranks = {});
 // on every rank, if ids do not increase from particle to particle and from rank to rank, are outside [0,
 // particles), or are missing without a removal, or if a value is not finite. Collective.
 void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks);
-// Throws IoError likewise if the radius, mass or material of a particle does not occur in the deck of the
-// state.
+// Throws IoError likewise if the radius, mass or material of a particle is outside the range of the deck.
 void check_constants(const State& state, const std::string& path, const ParticleTotals& deck);
 
 }  // namespace scree
