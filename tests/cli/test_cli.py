@@ -267,7 +267,7 @@ class RunTest(CommandLineTest):
         explicit = ["time.step=5e-4", "contact.pairs.0.damping=100.0", "integrator.particles=velocity-verlet"]
         for name, settings, advice in (("fine", [], None),
                                        ("coarse", ["time.step=4e-3"], "time.control = \"adaptive\""),
-                                       ("explicit", explicit, ": shorten time.step: in these steps the energy of impacts")):
+                                       ("explicit", explicit, ": shorten time.step: in these steps the energy of")):
             with self.subTest(name):
                 words = [word for setting in settings for word in ("--set", setting)]
                 result = self.expect(DONE, "run", deck, "--output", self.folder / name, *words)

@@ -199,8 +199,8 @@ class WarningTest(CommandLineTest):
         adaptive = ("time.control='adaptive'", "time.tolerance=1e-2")
         for steps, settings, expected in (
                 ({"particles": "velocity-verlet", "step": 7e-4, "damping": 20}, (),
-                 r"has changed the energy by .*: shorten time.step: in these steps the energy of impacts is off by up to "
-                 r"[0-9.]+ %"),
+                 r"has changed the energy by .*: shorten time.step: in these steps the energy of impacts is off by "
+                 r"up to [0-9.]+ %"),
                 ({"particles": "velocity-verlet", "step": 1.4e-4, "damping": 40}, rough,
                  r"J exchanged, are not accounted for: explicit steps integrate the dissipation of contacts, .* first"),
                 ({"particles": "hht", "step": 4e-3, "damping": 10}, (), 'shorten time.step, or set time.control = "a'),

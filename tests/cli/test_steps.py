@@ -50,9 +50,9 @@ class StepsTest(CommandLineTest):
                          r"steps up to 0\.000\d+ s: error at most 2 %\n")
         self.assertNotIn("has an error of", fine.stderr)
         coarse = (*damped, "--set", "time.step=1e-2")
-        warning = (r"warning: time\.step: with steps of 0\.01 s the rebound of \"default\" on \"default\" has an error of "
-                   r"\d+ %: restitution 0\.\d+ instead of restitution 0\.5\d+; the error is at most 2 % with steps up to "
-                   r"0\.000\d+ s, and 0\.01 % with time\.control = \"adaptive\"\n")
+        warning = (r"warning: time\.step: with steps of 0\.01 s the rebound of \"default\" on \"default\" has an error "
+                   r"of \d+ %: restitution 0\.\d+ instead of restitution 0\.5\d+; the error is at most 2 % with steps "
+                   r"up to 0\.000\d+ s, and 0\.01 % with time\.control = \"adaptive\"\n")
         self.assertRegex(self.expect(DONE, "check", self.deck, *coarse).stderr, warning)
         log = self.run_deck(DONE, "out", *coarse)
         self.assertEqual(len(re.findall(warning, log.stdout + log.stderr)), 1)
