@@ -21,7 +21,7 @@ Block transposed(const Block& block) {
   return out;
 }
 
-// block (1, turn): the columns of rotations by those of `turn`.
+// block (1, rotation): the columns of rotations, multiplied by `turn` from the right.
 Block with_turned_columns(Block block, const Mat3& turn) {
   for (int i = 0; i < 6; ++i) {
     const Vec3 row = transposed_times(turn, {at(block, i, 3), at(block, i, 4), at(block, i, 5)});
@@ -30,7 +30,7 @@ Block with_turned_columns(Block block, const Mat3& turn) {
   return block;
 }
 
-// A body's columns, and of the global coordinates those that they stand for.
+// The coordinates of a body, and the global directions that they stand for: one for each of its columns.
 struct Columns {
   int first;
   std::span<const int> of;
@@ -42,7 +42,7 @@ class Pair {
        SystemDerivatives& derivatives)
       : bodies_(bodies), layout_(layout), poses_(poses), out_(derivatives.coupling) {}
 
-  // Of the wrench on body a by the motion of body b.
+  // Adds the derivative of the wrench on body a by the motion of body b.
   void add(int a, int b, Block stiffness, Block damping) const {
     if (is_spatial(b)) {
       const SpatialPose& pose = poses_.spatial[b];

@@ -1,4 +1,4 @@
-// The part of Newton's matrix between two bodies that touch each other.
+// The blocks of Newton's matrix that couple two bodies in contact.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace scree {
 
-// Adds to the coupling what each has of the other one's motion, in their coordinates. The poses have the
-// tangents of the open step.
+// Adds the derivatives of each body's wrench by the motion of the other body, in their coordinates. The
+// poses have the tangents of the open step.
 void add_coupling(const PairStiffness& pair, const std::vector<Body>& bodies, const BodyLayout& layout,
                   const BodyPoses& poses, SystemDerivatives& derivatives);
 

@@ -1,4 +1,4 @@
-// Where all bodies are and how they move at one instant, in the form that joints and force elements read.
+// Poses and velocities of all bodies at one instant, in the form that joints and force elements read.
 #pragma once
 
 #include "mbs/planar_motion.hpp"

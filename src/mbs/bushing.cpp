@@ -53,8 +53,8 @@ BushingElement::Deflection BushingElement::deflection(const BodyPoses& poses) co
   return x;
 }
 
-// The torques of both bodies about the second point are opposite: along the first frame's axes -T^-1 s on the
-// second one.
+// The torques on the two bodies about the second point are opposite. Along the axes of the first frame the
+// torque on the second body is -T^-1 s.
 BushingLoad BushingElement::load(const BodyPoses& poses) const {
   const Deflection x = deflection(poses);
   BushingLoad load{three(x.value, 0), {}, -three(x.tension, 0), {}};
@@ -68,10 +68,10 @@ Real BushingElement::add_force(const BodyPoses& poses, Real, Real length, std::v
   const Deflection x = deflection(poses);
   const Real turned = norm(three(x.value, 3));
   if (!(turned < kMostBushingTurn))
-    throw SimulationError(
-        fmt::format("mbs_correct, rank 0: bushing '{}' has turned by {:.4g} rad; its angles hold up to {} "
-                    "rad, as the rotation vector jumps at half a turn",
-                    bushing_.name, turned, kMostBushingTurn));
+    throw SimulationError(fmt::format(
+        "mbs_correct, rank 0: bushing '{}' is rotated by {:.4g} rad; its rotation vector is valid "
+        "up to {} rad, as it jumps at half a revolution",
+        bushing_.name, turned, kMostBushingTurn));
   Real largest = 0;
   for (std::size_t a = 0; a < measures_.size(); ++a) {
     Real size = std::abs(bushing_.preload[a]);
@@ -94,30 +94,31 @@ void BushingElement::add_derivatives(const BodyPoses& poses, Real, SparseTerm& s
   const SpatialPair& pair = measures_.front()->pair();
   const Deflection x = deflection(poses);
   const std::size_t n = measures_.size();
-  PairHessian bend{};                       // s_a H_a
-  std::array<PairGradient, 6> turning{};    // H_b^T v
-  std::array<PairGradient, 6> displaced{};  // T^-T g_b
+  PairHessian weighted_hessian{};                       // s_a H_a
+  std::array<PairGradient, 6> hessian_rate{};           // H_b^T v
+  std::array<PairGradient, 6> displacement_gradient{};  // T^-T g_b
   for (std::size_t b = 0; b < n; ++b) {
     PairHessian own{};
     measures_[b]->add_hessian(motion, 1, own);
     for (std::size_t j = 0; j < 4; ++j) {
       for (std::size_t m = 0; m < 4; ++m) {
-        turning[b][j] += transposed_times(own[m][j], velocity(motion, pair, m));
-        bend[m][j] = bend[m][j] + x.tension[b] * own[m][j];
+        hessian_rate[b][j] += transposed_times(own[m][j], velocity(motion, pair, m));
+        weighted_hessian[m][j] = weighted_hessian[m][j] + x.tension[b] * own[m][j];
       }
-      displaced[b][j] = j % 2 == 0
-                            ? x.gradient[b][j]
-                            : transposed_times(pose(motion, pair, j).inverse_tangent, x.gradient[b][j]);
+      displacement_gradient[b][j] =
+          j % 2 == 0 ? x.gradient[b][j]
+                     : transposed_times(pose(motion, pair, j).inverse_tangent, x.gradient[b][j]);
     }
   }
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
-      Mat3 by_pose = bend[i][j], by_rate{};
+      Mat3 by_pose = weighted_hessian[i][j], by_rate{};
       for (std::size_t a = 0; a < n; ++a) {
         Vec3 elastic, viscous;
         for (std::size_t b = 0; b < n; ++b) {
-          elastic += bushing_.stiffness[a][b] * x.gradient[b][j] + bushing_.damping[a][b] * turning[b][j];
-          viscous += bushing_.damping[a][b] * displaced[b][j];
+          elastic +=
+              bushing_.stiffness[a][b] * x.gradient[b][j] + bushing_.damping[a][b] * hessian_rate[b][j];
+          viscous += bushing_.damping[a][b] * displacement_gradient[b][j];
         }
         by_pose = by_pose + outer(1, x.gradient[a][i], elastic);
         by_rate = by_rate + outer(1, x.gradient[a][i], viscous);

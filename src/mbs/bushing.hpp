@@ -12,16 +12,17 @@
 
 namespace scree {
 
-// At one instant, along the axes of the first body's frame.
+// Deflection and load of a bushing at one instant, along the axes of the first body's frame.
 struct BushingLoad {
   Vec3 shift, turn;    // the deflection x [m, rad]
   Vec3 force, torque;  // on the second body, about its point [N, N m]
 };
 
-// s = K x + C x' + preload with x of six measures x_a, of gradients g_a and Hessians H_a:
+// s = K x + C x' + preload with x of six primitive functions x_a, of gradients g_a and Hessians H_a:
 //   Q = -s_a g_a,  -Q_q = g_a (K_ab g_b + C_ab H_b^T v)^T + s_a H_a,  -Q_v T^-1 = C_ab g_a (T^-T g_b)^T
-// The three of the rotation are left out where nothing depends on them. Evaluating throws SimulationError
-// naming the bushing where it has turned by more than 2.6 rad: at half a turn the rotation vector jumps.
+// The three rotational functions are left out where no stiffness or damping depends on them. Evaluation
+// throws SimulationError with the name of the bushing where its rotation exceeds 2.6 rad: the rotation
+// vector jumps at half a revolution.
 class BushingElement final : public ForceElement {
  public:
   BushingElement(const Bushing& bushing, const BodyLayout& layout);
@@ -45,7 +46,7 @@ class BushingElement final : public ForceElement {
   int column(std::size_t block) const { return measures_.front()->column(static_cast<int>(block)); }
 
   Bushing bushing_;
-  std::vector<std::unique_ptr<Measure>> measures_;  // three or six
+  std::vector<std::unique_ptr<Measure>> measures_;  // three, or six where the bushing resists rotation
 };
 
 }  // namespace scree

@@ -55,7 +55,7 @@ class CoincidenceConstraint final : public Constraint {
   PairCoordinates index_;
 };
 
-// What the constraints with a prescribed motion f(t) share: they have one row.
+// Constraints with a prescribed motion f(t). They have one row.
 // velocity_rhs = f',  acceleration_rhs = f'' - (second time derivative of g without accelerations)
 class PrescribedConstraint : public Constraint {
  public:
@@ -107,7 +107,7 @@ class AngleConstraint final : public PrescribedConstraint {
   PairCoordinates index_;
 };
 
-// u turns with body 1: u' = w_1 p, p = perp(u), and p' = -w_1 u.
+// u rotates with body 1: u' = w_1 p, p = perp(u), and p' = -w_1 u.
 // C   = u.d - f
 // C'  = u.d' + w_1 p.d - f'
 // C_q = [-u, -u.perp(a_1) + p.d, u, u.perp(a_2)]

@@ -1,5 +1,5 @@
-// Scalar constraints C(q, t) = g(q) - f(t) = 0 between two planar bodies. Joints and drivers are made of
-// them: a joint's f is constant, a driver's is its prescribed motion.
+// Scalar constraints C(q, t) = g(q) - f(t) = 0 between two planar bodies. Joints and drivers consist of
+// them: f is constant in a joint and the prescribed motion in a driver.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace scree {
 
-// One or two rows of Phi that belong to one joint or driver. Notation: r_i, theta_i, w_i position, angle and
-// spin of body i; a_i, d as in PairGeometry; e = d/|d|; lambda the rows' multipliers.
+// One or two rows of Phi of one joint or driver. Notation: r_i, theta_i, w_i position, angle and spin of
+// body i; a_i, d as in PairGeometry; e = d/|d|; lambda the multipliers of the rows.
 class Constraint {
  public:
   virtual ~Constraint() = default;
@@ -21,9 +21,9 @@ class Constraint {
   // C is an angle [rad]; otherwise it is a length [m].
   virtual bool is_angle() const { return false; }
 
-  // C; c: [rows].
+  // The value C; c: [rows].
   virtual void value(const BodyPoses& poses, Real t, Real* c) const = 0;
-  // C_q, its first row being `row` of Phi_q.
+  // The Jacobian C_q; its first row is `row` of Phi_q.
   virtual void jacobian(const BodyPoses& poses, int row, SparseTerm& out) const = 0;
   // (C_q^T lambda)_q.
   virtual void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const = 0;

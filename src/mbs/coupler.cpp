@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// A joint's coordinate as a constraint with f = 0, and its coefficient.
+// One term of a coupler: the coordinate of a joint, as a constraint with f = 0, and its coefficient.
 struct Term {
   std::unique_ptr<Constraint> coordinate;
   Real coefficient = 1;
@@ -28,7 +28,8 @@ class CouplerConstraint final : public Constraint {
     offset_ = sum(start);
   }
 
-  // Rates of translations among them are lengths: their coefficients make one of angles, too.
+  // A sum with a displacement is a length, and the coefficients of its angles are lengths; a sum of angles
+  // alone is an angle.
   bool is_angle() const override {
     return std::all_of(terms_.begin(), terms_.end(),
                        [](const Term& term) { return term.coordinate->is_angle(); });

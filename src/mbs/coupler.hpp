@@ -8,8 +8,8 @@
 
 namespace scree {
 
-// C = sum of k_i c_i - (its value at t = 0, where the bodies are as in `start`). The reaction is that on the
-// first joint. Throws InputError for a joint without a coordinate.
+// C = sum of k_i c_i - (its value at t = 0, with the bodies at `start`). The reported reaction is that on
+// the first joint. Throws InputError for a joint without a coordinate.
 std::unique_ptr<Constraint> make_coupler(const Coupler& coupler, const Model& model, const BodyLayout& layout,
                                          const BodyPoses& start);
 

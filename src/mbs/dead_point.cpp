@@ -13,18 +13,19 @@ namespace scree {
 
 namespace {
 
-// Distance of a driver's row of length 1 from the combinations of all other rows: so small that nothing else
-// explains a failure; that it does where velocities have grown; and that it may where the next steps lead
-// there.
+// Distances of a driver's row, of length 1, from the combinations of all other rows. kAtIt: so small that a
+// dead point alone explains the failure. kNear: a dead point explains it where velocities have grown.
+// kInReach: a dead point may explain it where the next steps lead to it.
 constexpr Real kAtIt = 1e-3, kNear = 0.03, kInReach = 0.3;
-// Rates of coordinates over those that drivers ask for, both over their scales, that have grown.
+// Ratio of the rates of coordinates to the rates that drivers prescribe, both over their scales, from which
+// velocities count as grown.
 constexpr Real kGrown = 10;
-// A step that fails before a dead point is not much longer than what is left of the way to it.
+// A step that fails before a dead point is at most so many times as long as the remaining time to it.
 constexpr Real kStepsLeft = 4;
-// Share of a step along which the distance is followed.
+// Fraction of a step over which the change of the distance is measured.
 constexpr Real kProbe = 0.01;
-// A driver takes part in a combination from this share of the largest weight on, for rows of length 1. Where
-// joints repeat each other by themselves, as in a linkage that lies flat, a driver's weight is nothing.
+// Fraction of the largest weight, for rows of length 1, from which a driver takes part in a combination.
+// Where joints are redundant without the driver, as in a flat linkage, the driver's weight is round-off.
 constexpr Real kTakesPart = 0.1;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -35,7 +36,7 @@ Real largest(const std::vector<Real>& values, const std::vector<Real>& scale) {
   return most;
 }
 
-// Lengths of the rows of Phi_q, its columns times the scales of their coordinates.
+// Lengths of the rows of Phi_q after its columns are multiplied by the scales of their coordinates.
 std::vector<Real> row_lengths(const RigidBodySystem& system, const SparseTerm& jacobian) {
   std::vector<Real> square(at(system.constraints()), 0);
   for (std::size_t i = 0; i < jacobian.size(); ++i) {
@@ -46,9 +47,9 @@ std::vector<Real> row_lengths(const RigidBodySystem& system, const SparseTerm& j
   return square;
 }
 
-// Whether a driver's row may lead to a dead point. One that repeats others from the start on does where it is
-// the only driver among them and moves: of several it is they that must agree, and one that rests moves
-// nothing.
+// Whether a driver's row may lead to a dead point. A row that is redundant from the start does so where it
+// belongs to the only driver of its dependency and this driver moves: several drivers contradict each other
+// instead, and a driver that rests moves nothing.
 bool may_lead(const RigidBodySystem& system, int row, const std::vector<Dependency>& repeated, Real rate) {
   const auto drives = [&](int one) { return system.groups()[at(system.group_of(one))].drives; };
   for (const Dependency& one : repeated)
@@ -66,14 +67,14 @@ std::vector<int> driven_rows(const RigidBodySystem& system, const std::vector<De
   return rows;
 }
 
-// A driver's row, how far it is from the others, and the combination that it is next to.
+// A driver's row, its distance from the other rows, and the nearest combination of these.
 struct Nearest {
   int row = -1;
   Real distance = 1;
   Dependency combination;
 };
 
-// Of these rows the one that is the nearest to a combination.
+// The row among `rows` that is nearest to a combination.
 Nearest nearest(const RigidBodySystem& system, const SparseTerm& jacobian, const std::vector<int>& rows) {
   Nearest found;
   std::vector<NearDependency> all = near_combinations(system, jacobian, rows);
@@ -83,9 +84,10 @@ Nearest nearest(const RigidBodySystem& system, const SparseTerm& jacobian, const
   return found;
 }
 
-// Of the drivers that take part in a combination the one that asks for most, or, where all rest, weighs most.
-int asking_row(const RigidBodySystem& system, const SparseTerm& jacobian, const Nearest& near,
-               const std::vector<int>& rows, const std::vector<Real>& rate) {
+// The driver of a combination with the largest prescribed rate or, where all drivers rest, with the largest
+// weight.
+int prescribing_row(const RigidBodySystem& system, const SparseTerm& jacobian, const Nearest& near,
+                    const std::vector<int>& rows, const std::vector<Real>& rate) {
   const std::vector<Real> length = row_lengths(system, jacobian);
   Real heaviest = 0;
   for (const auto& [row, weight] : near.combination.weight)
@@ -107,8 +109,9 @@ const SparseTerm& jacobian_at(RigidBodySystem& system, const SystemInstant& at_i
   return terms.constraint_jacobian;
 }
 
-// How long the velocities take to the dead point [s]: the square of the distance falls in proportion to time,
-// as a driver moves evenly while the joints turn ever faster. Infinite where they lead away from it.
+// Time until the velocities reach the dead point [s]. The square of the distance falls in proportion to
+// time, as a driver of constant rate accelerates the joints without bound. Infinite where the velocities
+// lead away from the dead point.
 Real time_left(RigidBodySystem& system, const SystemInstant& now, const Nearest& near, Real step) {
   const Real tau = kProbe * step;
   std::vector<Real> displacement = now.velocity, position(now.position.size());
@@ -141,12 +144,12 @@ std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real s
   return fmt::format(
       "{} asks for a motion that the mechanism cannot follow: it leads to a dead point, where {} become "
       "dependent and velocities and reactions grow without bound{}. Change its motion so that it stays clear "
-      "of this position, or drive another joint: neither shorter steps nor integrator.redundant = \"share\" "
-      "pass it",
-      system.constraint_name(asking_row(system, jacobian, near, rows, rate)),
+      "of this position, or drive another joint: neither shorter steps nor "
+      "integrator.redundant = \"minimum-norm\" pass it",
+      system.constraint_name(prescribing_row(system, jacobian, near, rows, rate)),
       names_of(system, {near.combination}),
       reached > asked && asked > 0
-          ? fmt::format(" (velocities here are {:.3g} times what drivers ask for)", reached / asked)
+          ? fmt::format(" (velocities here are {:.3g} times those that drivers prescribe)", reached / asked)
           : "");
 }
 

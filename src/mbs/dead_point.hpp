@@ -1,4 +1,4 @@
-// Drivers that ask for a motion which the mechanism cannot follow.
+// Drivers whose prescribed motion the mechanism cannot follow.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace scree {
 
-// A text for a run whose step of this length [s] fails at this instant: it names the driver whose motion
-// leads to a position in which its row of Phi is a combination of others, a dead point, where velocities and
-// reactions grow without bound; with the constraints that become dependent. repeated: those that were at the
-// start, whose drivers contradict others where they do. Empty where no driver's row is next to a combination,
-// or gets there within a few such steps.
+// A text for a run whose step of this length [s] fails at this instant. It names the driver whose motion
+// leads to a dead point, a position in which its row of Phi is a combination of other rows, so that
+// velocities and reactions grow without bound, and the constraints that become dependent there. repeated:
+// the dependencies at the start; their drivers contradict others where several take part. The text is empty
+// where no driver's row is near a combination or becomes one within a few such steps.
 std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real step,
                        const std::vector<Dependency>& repeated);
 

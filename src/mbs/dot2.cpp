@@ -20,7 +20,7 @@ class Dot2 final : public Measure {
   }
   PairGradient gradient(const SpatialMotion& motion) const override {
     const Vec3 al = one(motion).turn(a_);
-    return {-al, cross(a_, reach(motion)), al, cross(pair().point[1], two(motion).turn_back(al))};
+    return {-al, cross(a_, to_second_point(motion)), al, cross(pair().point[1], two(motion).turn_back(al))};
   }
   Real second(const SpatialMotion& motion) const override {
     const SpatialPose& p = one(motion);
@@ -29,13 +29,13 @@ class Dot2 final : public Measure {
   }
   void add_hessian(const SpatialMotion& motion, Real scale, PairHessian& k) const override {
     const SpatialPose &p = one(motion), &q = two(motion);
-    const Mat3 a = scale * tilde(a_), s = tilde(pair().point[1]), turned = p.rotation * a;
+    const Mat3 a = scale * tilde(a_), s = tilde(pair().point[1]), rotated = p.rotation * a;
     const Mat3 mixed = a * (transposed(p.rotation) * q.rotation * s);
-    k[0][1] = k[0][1] + turned;
-    k[1][0] = k[1][0] + transposed(turned);
-    k[2][1] = k[2][1] - turned;
-    k[1][2] = k[1][2] - transposed(turned);
-    k[1][1] = k[1][1] + a * tilde(reach(motion));
+    k[0][1] = k[0][1] + rotated;
+    k[1][0] = k[1][0] + transposed(rotated);
+    k[2][1] = k[2][1] - rotated;
+    k[1][2] = k[1][2] - transposed(rotated);
+    k[1][1] = k[1][1] + a * tilde(to_second_point(motion));
     k[1][3] = k[1][3] - mixed;
     k[3][1] = k[3][1] - transposed(mixed);
     k[3][3] = k[3][3] + scale * (s * tilde(q.turn_back(p.turn(a_))));
@@ -49,8 +49,8 @@ class Dot2 final : public Measure {
  private:
   const SpatialPose& one(const SpatialMotion& motion) const { return motion[pair().body[0]]; }
   const SpatialPose& two(const SpatialMotion& motion) const { return motion[pair().body[1]]; }
-  // From the first body's centre to the second point, in the first body's frame [m].
-  Vec3 reach(const SpatialMotion& motion) const {
+  // The vector g from the first body's centre to the second point, in the first body's frame [m].
+  Vec3 to_second_point(const SpatialMotion& motion) const {
     return one(motion).turn_back(gap(pair(), motion)) + pair().point[0];
   }
 

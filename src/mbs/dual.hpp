@@ -1,4 +1,4 @@
-// A number with its derivatives by what a law of a joint sees of the end of a step.
+// A number with its derivatives by the inputs of a joint law at the end of a step.
 #pragma once
 
 #include "base/types.hpp"
@@ -29,7 +29,7 @@ inline Dual operator/(const Dual& a, const Dual& b) {
   const Real quotient = a.value / b.value;
   return chained(quotient, 1 / b.value, a, -quotient / b.value, b);
 }
-// The smaller or larger one, with its derivatives.
+// The smaller or larger argument, with its derivatives.
 inline Dual smaller(const Dual& a, const Dual& b) { return b.value < a.value ? b : a; }
 inline Dual larger(const Dual& a, const Dual& b) { return b.value > a.value ? b : a; }
 inline Dual within(const Dual& a, const Dual& limit) { return larger(smaller(a, limit), -limit); }

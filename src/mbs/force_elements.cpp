@@ -62,14 +62,14 @@ class SpringDamperElement final : public ForceElement {
     }
     tension_gradient[2] += damping_ * bend1 * poses.planar[pair_.body[0]].spin;
     tension_gradient[5] += damping_ * bend2 * poses.planar[pair_.body[1]].spin;
-    std::array<Real, 6> sideways, damped;
+    std::array<Real, 6> transverse, damped;
     for (std::size_t k = 0; k < 6; ++k) {
-      sideways[k] = line.tension / line.length * across[k];
+      transverse[k] = line.tension / line.length * across[k];
       damped[k] = damping_ * along[k];
     }
     const auto& active = active_;
     stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
-      return along[active[i]] * tension_gradient[active[j]] + sideways[active[i]] * across[active[j]];
+      return along[active[i]] * tension_gradient[active[j]] + transverse[active[i]] * across[active[j]];
     });
     damping.add_block(coordinates_,
                       [&](std::size_t i, std::size_t j) { return damped[active[i]] * along[active[j]]; });
@@ -114,8 +114,8 @@ class SpringDamperElement final : public ForceElement {
   std::string name_;
   PointPair pair_;
   PairCoordinates index_;
-  std::vector<std::size_t> active_;  // places in index_ that are coordinates
-  std::vector<int> coordinates_;     // index_ at these places
+  std::vector<std::size_t> active_;  // entries of index_ that are coordinates
+  std::vector<int> coordinates_;     // the values of index_ there
   Real stiffness_, damping_, free_length_;
   ScalarFunction actuator_;
   Line line_;  // of the last add_force()
@@ -149,15 +149,15 @@ class TorsionalElement final : public ForceElement {
     powers.dissipated += element_.damping * rate(poses) * rate(poses);
   }
   Real effort(const BodyPoses& poses, Real) const override {
-    return -(element_.stiffness * twist(poses) + element_.damping * rate(poses));
+    return -(element_.stiffness * angle(poses) + element_.damping * rate(poses));
   }
   Real elastic_energy(const BodyPoses& poses) const override {
-    return element_.stiffness / 2 * twist(poses) * twist(poses);
+    return element_.stiffness / 2 * angle(poses) * angle(poses);
   }
   Real elastic_scale(Real) const override { return element_.stiffness; }
 
  private:
-  Real twist(const BodyPoses& poses) const {
+  Real angle(const BodyPoses& poses) const {
     return poses.planar[element_.body[1]].angle - poses.planar[element_.body[0]].angle - element_.free_angle;
   }
   Real rate(const BodyPoses& poses) const {

@@ -28,14 +28,15 @@ class ForceElement {
                                SparseTerm& damping) const = 0;
   virtual void add_powers(const BodyPoses& poses, Real t, Powers& powers) const = 0;
   virtual Real elastic_energy(const BodyPoses&) const { return 0; }  // [J]
-  // Of an element between two bodies: tension [N], or torque on the second one [N m].
+  // Effort of an element between two bodies: tension [N], or torque on the second body [N m].
   virtual Real effort(const BodyPoses&, Real) const { return 0; }
-  // Elastic energy of a displacement by `length`, or by 1 rad, times two [J].
+  // Twice the elastic energy of a displacement by `length`, or of a rotation by 1 rad [J].
   virtual Real elastic_scale(Real) const { return 0; }
 };
 
-// Throw InputError naming the element: a table of its time functions is refused (see ScalarFunction; end: of
-// the simulated time [s]). Evaluating a spring-damper whose points coincide throws SimulationError naming it.
+// Throw InputError with the name of the element where a table of one of its time functions is refused (see
+// ScalarFunction; end: of the simulated time [s]). Evaluation of a spring-damper with coincident points
+// throws SimulationError with its name.
 std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, const BodyLayout& layout,
                                                  Real end);
 std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element,
@@ -43,7 +44,8 @@ std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& el
 std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, const BodyLayout& layout,
                                                  Real end);
 
-// The same between spatial bodies, or such a body and the ground.
+// Force elements between spatial bodies, or between a spatial body and the ground; they throw as the planar
+// ones do.
 std::unique_ptr<ForceElement> make_spatial_element(const SpringDamper& element, const BodyLayout& layout,
                                                    Real end);
 std::unique_ptr<ForceElement> make_spatial_element(const AppliedForce& element, const BodyLayout& layout,

@@ -9,16 +9,16 @@ namespace {
 
 std::size_t count(int n) { return static_cast<std::size_t>(n); }
 
-// Evaluates everything once so that the terms know their patterns; the values do not matter.
+// Evaluates all terms once, so that their patterns are known; the values do not matter.
 KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, SystemTerms& terms,
                          SystemDerivatives& derivatives) {
-  const std::vector<Real> still(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
+  const std::vector<Real> zero(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
   terms.applied_force.assign(count(system.coordinates()), 0);
   terms.constraint.assign(count(system.constraints()), 0);
   system.evaluate({at.time, at.position, at.velocity, &multipliers}, terms);
-  system.differentiate(at, {still, still, multipliers}, derivatives);
-  // Systems without rotations in space keep the order of elimination that they have always had, and their
-  // bits.
+  system.differentiate(at, {zero, zero, multipliers}, derivatives);
+  // Systems without spatial rotations keep their original order of elimination, so that their results keep
+  // their bits.
   const bool turns_in_space = system.positions() != system.coordinates();
   return KktMatrix(terms, derivatives, system.coordinates(), system.constraints(), turns_in_space);
 }
@@ -40,7 +40,7 @@ HhtMethod::HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector
 
 std::vector<Real> HhtMethod::units() const {
   constexpr Real kPivot = 1e-4;   // a tenth of KLU's threshold
-  constexpr Real kHeavy = 1e-15;  // from where on multipliers lose digits beside masses: bodies of 1e6 kg
+  constexpr Real kHeavy = 1e-15;  // from where on multipliers lose digits to masses: bodies of 1e6 kg
   const SparseTerm &jacobian = terms_.constraint_jacobian, &mass = terms_.mass;
   std::vector<Real> largest(compliance().size(), 0), units(inertia_force_.size(), 0);
   for (std::size_t i = 0; i < jacobian.size(); ++i)
@@ -196,8 +196,8 @@ bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Rea
   system_.evaluate(at, terms_);
   if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
-  const std::vector<Real> still(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
-  if (is_loaded()) system_.differentiate(at, {still, state.acceleration, state.multipliers}, derivatives_);
+  const std::vector<Real> zero(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
+  if (is_loaded()) system_.differentiate(at, {zero, state.acceleration, state.multipliers}, derivatives_);
   kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];

@@ -1,4 +1,4 @@
-// Integrals of functions of time and curves.
+// Integrals of functions of time and of curves.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// Of a function between two arguments, by Gauss's rule with three points: exact up to degree 5, the degree of
-// the pieces of tables.
+// Integral of a function between two arguments, by Gauss's rule with three points: exact up to degree 5, the
+// degree of the pieces of tables.
 inline Real integral(const ScalarFunction& function, Real from, Real to) {
   static const Real kOuter = std::sqrt(Real(0.6));
   const Real middle = (from + to) / 2, half = (to - from) / 2;

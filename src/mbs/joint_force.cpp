@@ -10,7 +10,8 @@ namespace scree {
 
 namespace {
 
-// A coordinate carries round-off of 1e-16 of its size, and so does the effort; this stays far above.
+// A coordinate carries round-off of 1e-16 of its size, and so does the effort; this fraction of the elastic
+// scale stays far above it.
 constexpr Real kRoundingShare = 1e-6;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -53,7 +54,7 @@ Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real
   return std::max(effort_.size, rounded) * (is_angle() ? 1 : length);
 }
 
-// The first time: all coordinates of the gradient and of H.
+// At the first call: finds all coordinates of the gradient and of H.
 void JointForce::find_coordinates() {
   for (std::size_t i = 0; i < gradient_.size(); ++i) coordinates_.push_back(gradient_.column(i));
   for (std::size_t i = 0; i < hessian_.size(); ++i) coordinates_.push_back(hessian_.column(i));
@@ -66,7 +67,7 @@ std::size_t JointForce::place(int coordinate) const {
                                     coordinates_.begin()));
 }
 
-// What is of a rotation in space stands in all of its three columns, or in none.
+// A rotation in space has all three of its columns among the coordinates, or none.
 void JointForce::pull_back(const BodyPoses& poses) {
   displaced_ = along_;
   for (const RotationColumns& turn : rotations_) {
@@ -99,7 +100,7 @@ void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at
   damping.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
     return -effort_.by_rate * along_[i] * displaced_[j];
   });
-  // Where F is 0 it has no gradient: 0 is one of those between which it jumps.
+  // |lambda| has no gradient at F = 0; 0 is one of its subgradients there.
   const Real inverse = last_.load > 0 ? 1 / last_.load : 0;
   for (const int row : load_rows_) {
     const Real part = -effort_.by_load * inverse * (*at.multipliers)[scree::at(row)];

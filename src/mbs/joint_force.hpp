@@ -1,4 +1,4 @@
-// A law of effort on the coordinate of a joint, as a generalized force.
+// A joint law as a generalized force along the coordinate of a joint.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,8 @@
 
 namespace scree {
 
-// What one step did: to the stored energy of the law's own, and to the rest [J].
+// Work of a law over one step [J]: `applied` of laws that drive, otherwise `dissipated`, less the change of
+// the law's stored energy.
 struct JointWork {
   Real dissipated = 0, applied = 0;
 };
@@ -21,20 +22,21 @@ struct JointWork {
 // With c the coordinate, g = c_q and H = c_qq:
 //   Q     = T(c, c', t) g,  c' = g.v
 //   -Q_q  = -(T_c g g^T + T_c' g (H^T v)^T + T H)
-//   -Q_v T^-1 = -T_c' g (T^-T g)^T, T^-1 as of MechanicalSystem
+//   -Q_v T^-1 = -T_c' g (T^-T g)^T, T^-1 as in MechanicalSystem
 //   -Q_lambda = -T_F g (lambda / F)^T, F = |lambda| of the rows that load the law
 class JointForce {
  public:
   // coordinate: a constraint of one row with f = 0, whose C is c.
   JointForce(std::string name, std::unique_ptr<Constraint> coordinate, std::unique_ptr<JointLaw> law);
 
-  // A body of the joint whose rotation has three columns, from this one on.
+  // Adds a body of the joint with spatial rotation, whose three columns begin at `column`.
   void turns_in_space(int body, int column) { rotations_.push_back({body, column}); }
 
-  // The rows of Phi whose multipliers are, along perpendicular axes, the force that the joint transmits.
+  // Sets the rows of Phi whose multipliers are the components of the force that the joint transmits, along
+  // perpendicular axes.
   void is_loaded_by(std::vector<int> rows) { load_rows_ = std::move(rows); }
 
-  // Acts along the cylinder that is this joint of the model.
+  // Sets the joint of the model that is a cylinder, along which the force acts.
   void acts_along_cylinder(int joint) { cylinder_ = joint; }
   int cylinder() const { return cylinder_; }  // -1: along none
 
@@ -44,32 +46,33 @@ class JointForce {
   bool resolves_events() const { return law_->resolves_events(); }
   bool is_loaded() const { return law_->is_loaded(); }
 
-  // The instant from which a step of length h begins, with its multipliers, and what the law remembers there;
-  // h = 0: forces at instants alone, until the next step. Where an instant has no multipliers, the load is
-  // that of the last one that had some.
+  // Opens a step of length h at this instant, with its multipliers and the law's memory there. With h = 0
+  // forces are those of instants until the next step. Where an instant has no multipliers, the load is that
+  // of the last one that had some.
   void open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory);
-  // As they are at the instant of an evaluation, no longer for the step.
+  // From here on forces are those of the instant of an evaluation, not of the step.
   void end_step() { in_step_ = false; }
 
   // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
   Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
   // Adds -Q_q, -Q_v T^-1 and -Q_lambda, at the instant of the last add_force().
   void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SystemDerivatives& derivatives);
-  // From the opening of the step to the last add_force(), trapezoidal over the coordinate.
+  // Work from the opening of the step to the last add_force(), trapezoidal over the coordinate.
   JointWork work() const;
-  // To remember at the end of the step, which is the instant of the last add_force().
+  // The law's memory at the end of the step, which is the instant of the last add_force().
   Real memory() const { return law_->memory_after(step_, last_); }
 
   Real elastic_energy(const BodyPoses& poses, Real t, Real memory) const;
   Real elastic_scale(Real length) const { return law_->stiffness() * (is_angle() ? 1 : length * length); }
-  // At any instant, with its multipliers; memory: as the state's there. With c'' where it has accelerations.
+  // Coordinate and effort at any instant with multipliers; c'' where the instant has accelerations. memory:
+  // as in the state there.
   struct Sample {
     CoordinateInstant at;
     Real effort = 0;
   };
   Sample sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const;
-  // Adds the force [N] that this effort is on the joint's second body, at its joint point, and the torque
-  // about it [N m].
+  // Adds the force [N] of this effort on the joint's second body at its joint point, and the torque about
+  // that point [N m].
   void add_reaction(const BodyPoses& poses, Real effort, Vec3& force, Vec3& torque) const;
 
  private:
@@ -84,18 +87,18 @@ class JointForce {
   std::string name_;
   std::unique_ptr<Constraint> coordinate_;
   std::unique_ptr<JointLaw> law_;
-  std::vector<RotationColumns> rotations_;  // in space
+  std::vector<RotationColumns> rotations_;  // spatial ones
   std::vector<int> load_rows_;
   int cylinder_ = -1;
   LawStep step_;
   Real start_effort_ = 0;
   bool in_step_ = false;
   LimitBridge bridge_;
-  // Of the last add_force().
+  // Results of the last add_force().
   CoordinateInstant last_;
   JointEffort effort_;
   SparseTerm gradient_;
-  // Of add_derivatives(): the coordinates that c depends on, and g, H^T v and T^-T g there.
+  // Scratch of add_derivatives(): the coordinates that c depends on, and g, H^T v and T^-T g there.
   std::vector<int> coordinates_;
   std::vector<Real> along_, turning_, displaced_;
   SparseTerm hessian_;

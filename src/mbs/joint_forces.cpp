@@ -12,7 +12,7 @@ namespace scree {
 
 JointForces::JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start,
                          const std::vector<std::vector<int>>& load_rows) {
-  // make_law(c at t = 0)
+  // make_law(c at t = 0) makes the law of `element`.
   const auto add = [&](const char* kind, const auto& element, const auto& make_law) {
     const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
     const std::string title = fmt::format("{} '{}'", kind, element.name);

@@ -1,4 +1,4 @@
-// Springs and stops.
+// Laws of springs and limits on joints.
 #include "mbs/joint_laws.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace scree {
 
 namespace {
 
-// A curve with its integral from its first point on.
+// A curve with its integral from its first point.
 class IntegratedCurve {
  public:
   IntegratedCurve(const Curve& curve, const std::string& owner) : function_(curve, owner), at_(curve.at) {
@@ -64,8 +64,9 @@ class SpringLaw final : public JointLaw {
   ScalarFunction dissipative_;
 };
 
-// d = c_lower - c, T = F(d, d'), or d = c - c_upper, T = -F(d, d'), F a contact's force without tension. Over
-// a step that begins or ends beyond a limit it acts while it is beyond (physics/step_contact.hpp).
+// d = c_lower - c, T = F(d, d'), or d = c - c_upper, T = -F(d, d'), with F a contact force without tension.
+// Over a step that begins or ends beyond a limit it acts while c is beyond the limit
+// (physics/step_contact.hpp).
 class LimitLaw final : public JointLaw {
  public:
   LimitLaw(const JointLimit& limit, bool resolve_events)

@@ -1,4 +1,4 @@
-// Coordinates of joints as the history shows them.
+// Coordinates of joints for the history.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace scree {
 
-// Of the first Output::history_coordinates joints that have coordinates, each of these.
+// The coordinates of the first Output::history_coordinates joints that have any.
 class JointReadings {
  public:
   JointReadings(const Model& model, const BodyLayout& layout);

@@ -1,4 +1,4 @@
-// Every joint, once: which rows it is made of, and which coordinate it leaves that a driver can prescribe.
+// The one definition of every joint: its constraint rows, and the coordinate that a driver can prescribe.
 #pragma once
 
 #include "mbs/joint_parts.hpp"
@@ -7,9 +7,9 @@
 
 namespace scree {
 
-// rowless: as rowless_joints() says. Throws InputError naming a joint that is refused.
+// rowless: as in rowless_joints(). Throws InputError with the name of a joint that is refused.
 void add_joint(const Joint& joint, bool rowless, JointParts& parts);
-// One row: the coordinate is the motion.
+// Adds one row: the coordinate equals the motion.
 void add_driver(JointCoordinate coordinate, ScalarFunction motion, JointParts& parts);
 
 }  // namespace scree

@@ -51,7 +51,7 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
   for (std::size_t i = 0; i < derivatives.reaction.size(); ++i)
     columns[static_cast<std::size_t>(derivatives.reaction.column(i))].push_back(coordinates +
                                                                                 derivatives.reaction.row(i));
-  // PETSc's own LU wants every diagonal entry to be there, zeros too.
+  // PETSc's own LU requires every diagonal entry to be present, also zeros.
   for (int row = 0; row < coordinates + constraints; ++row) {
     columns[static_cast<std::size_t>(row)].push_back(row);
   }

@@ -13,22 +13,22 @@ namespace scree {
 struct SparsePattern {
   std::vector<int> row_start;  // [rows + 1]
   std::vector<int> column;     // [entries]
-  // From this row on diagonal entries are 0, or all but 0, until others are eliminated; -1: not known.
+  // From this row on diagonal entries are 0 or nearly so until others are eliminated; -1: not known.
   int first_weak_diagonal = -1;
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
 };
 
-// A = mass M T^-1 + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_v T^-1) + inertia_stiffness (M a)_q, T = 1
-// at the acceleration level. Beside Phi_q^T stands reaction (-Q_lambda).
+// A = mass M T^-1 + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_v T^-1) + inertia_stiffness (M a)_q, T =
+// 1 at the acceleration level. The upper right block is Phi_q^T + reaction (-Q_lambda).
 struct KktWeights {
   Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0, tangent = 0, reaction = 0;
 };
 
 class KktMatrix {
  public:
-  // The terms must have been evaluated once, so that their patterns are known.
-  // knows_diagonals: the pattern says which are weak.
+  // The terms must have been evaluated once, so that their patterns are known. knows_diagonals: whether the
+  // pattern marks weak diagonal entries.
   KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates, int constraints,
             bool knows_diagonals);
 

@@ -8,14 +8,14 @@ namespace scree {
 
 namespace {
 
-// Quotients are rounded: as near as this to a limit klu_factor decides.
+// Quotients are rounded: within this margin of a limit klu_factor decides.
 constexpr double kMargin = 1e-12;
 // KLU's numbers of orderings.
 constexpr int kAmd = 0, kColamd = 1;
-// However the factors of so few rows fill, it costs little.
+// With so few rows even full factors cost little.
 constexpr int kFewRows = 128;
-// Share of the weak diagonals; one here and there does no harm.
-constexpr double kBareShare = 1.0 / 16;
+// Fraction of weak diagonals that is tolerated.
+constexpr double kWeakFraction = 1.0 / 16;
 
 // Column k of L in one of KLU's blocks, without its diagonal of ones: row indices, then values from the next
 // multiple of eight bytes (klu_internal.h).
@@ -31,7 +31,7 @@ Column column_of_l(const klu_numeric& numeric, int block, int k) {
   return {{reinterpret_cast<const int*>(start), length}, start + units};
 }
 
-// visit(block, first column of the block, column) for the columns that have pivots to choose.
+// Calls visit(block, first column of the block, column) for the columns that have pivots to choose.
 template <class Visit>
 void for_each_column(const klu_symbolic& symbolic, const Visit& visit) {
   for (int block = 0; block < symbolic.nblocks; ++block) {
@@ -58,25 +58,25 @@ bool KluFactors::order() {
   return symbolic_ != nullptr;
 }
 
-// Whether the order has many a weak diagonal before all other entries of its row, when nothing has been added
-// to it.
+// Whether the order places many weak diagonals before all other entries of their rows, where elimination has
+// added nothing to them.
 bool KluFactors::needs_other_pivots() const {
   if (pattern_.first_weak_diagonal < 0) return false;
-  std::vector<int> place(static_cast<std::size_t>(pattern_.rows()));
-  for (int k = 0; k < pattern_.rows(); ++k) place[static_cast<std::size_t>(symbolic_->Q[k])] = k;
-  const auto place_of = [&](int row) { return place[static_cast<std::size_t>(row)]; };
+  std::vector<int> position(static_cast<std::size_t>(pattern_.rows()));
+  for (int k = 0; k < pattern_.rows(); ++k) position[static_cast<std::size_t>(symbolic_->Q[k])] = k;
+  const auto position_of = [&](int row) { return position[static_cast<std::size_t>(row)]; };
   int bare = 0;
   for (int row = pattern_.first_weak_diagonal; row < pattern_.rows(); ++row) {
     const auto begin = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row)],
                end = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row) + 1];
-    bare += std::none_of(begin, end, [&](int column) { return place_of(column) < place_of(row); });
+    bare += std::none_of(begin, end, [&](int column) { return position_of(column) < position_of(row); });
   }
-  return bare > kBareShare * (pattern_.rows() - pattern_.first_weak_diagonal);
+  return bare > kWeakFraction * (pattern_.rows() - pattern_.first_weak_diagonal);
 }
 
-// KLU wants columns and gets rows: what it factors is the transpose.
+// KLU expects columns and gets rows, so that it factors the transpose.
 KluFactors::Result KluFactors::factor(std::span<const Real> values) {
-  auto* array = const_cast<double*>(values.data());  // it is only read
+  auto* array = const_cast<double*>(values.data());  // KLU only reads it
   if (numeric_ != nullptr && refactor(array)) return Result::refactored;
   return factor_anew(array);
 }
@@ -111,18 +111,19 @@ void KluFactors::remember_pivots() {
   });
 }
 
-// The row that counts as a column's diagonal is at first its own; where another is the pivot, the diagonal
-// row takes that one's place (klu_kernel.c).
+// The row that counts as a column's diagonal is at first its own. Where another row becomes the pivot, the
+// diagonal row takes its place (klu_kernel.c).
 void KluFactors::find_diagonals() {
   const auto n = static_cast<std::size_t>(symbolic_->n);
-  std::vector<int> place(n), row(n), column(n);
-  for (std::size_t k = 0; k < n; ++k) place[static_cast<std::size_t>(symbolic_->P[k])] = static_cast<int>(k);
+  std::vector<int> position(n), row(n), column(n);
+  for (std::size_t k = 0; k < n; ++k)
+    position[static_cast<std::size_t>(symbolic_->P[k])] = static_cast<int>(k);
   std::iota(row.begin(), row.end(), 0);        // row[k]: the diagonal of column k
   std::iota(column.begin(), column.end(), 0);  // its inverse
   diagonal_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     const int diagonal = row[k];
-    const int pivot = place[static_cast<std::size_t>(numeric_->Pnum[k])];
+    const int pivot = position[static_cast<std::size_t>(numeric_->Pnum[k])];
     diagonal_[k] = diagonal;
     const int other = column[static_cast<std::size_t>(pivot)];
     row[static_cast<std::size_t>(other)] = diagonal;
@@ -130,13 +131,14 @@ void KluFactors::find_diagonals() {
     row[k] = pivot;
     column[static_cast<std::size_t>(pivot)] = static_cast<int>(k);
   }
-  // From rows to their places among the pivots; column is now the inverse of the pivots' order.
+  // From rows to their positions among the pivots; `column` is now the inverse of the pivots' order.
   for (int& diagonal : diagonal_) diagonal = column[static_cast<std::size_t>(diagonal)];
 }
 
-// klu_factor takes the diagonal if it is at least tol times the largest entry of its column, else the first
-// of the largest entries in an order that is the same for the same pivots before. Of entries that were as
-// large as the pivot when it was chosen, it is the first; of others that are so now, nothing is known.
+// klu_factor takes the diagonal if it is at least tol times the largest entry of its column. Otherwise it
+// takes the first of the largest entries, in an order that depends only on the earlier pivots. The pivot is
+// the first of the entries that were as large when it was chosen; for other entries that have become so the
+// order is unknown.
 bool KluFactors::pivots_stay() const {
   const double least = common_.tol * (1 - kMargin), most = (1 - kMargin) / common_.tol;
   bool stay = true;

@@ -1,4 +1,4 @@
-// LU factors of a sparse matrix by KLU that keep their pivots from matrix to matrix. KLU: Davis, Palamadai
+// LU factors of a sparse matrix by KLU that reuse their pivots from matrix to matrix. KLU: Davis, Palamadai
 // Natarajan, ACM Trans. Math. Softw. 37 (2010), Algorithm 907.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace scree {
 
-// The factors of every matrix are, bit for bit, those that klu_factor computes of it, whatever was factored
-// before: klu_refactor, four to six times as fast, does the same arithmetic with the pivots of an earlier
-// matrix, and its factors are taken where klu_factor would choose these pivots again. So a rerun and a
-// restart have the same bits.
+// The factors of every matrix are bitwise those that klu_factor computes, whatever was factored before.
+// klu_refactor is four to six times as fast and does the same arithmetic with the pivots of an earlier
+// matrix; its factors are used only where klu_factor would choose these pivots again. Reruns and restarts
+// are therefore bitwise identical.
 class KluFactors {
  public:
   KluFactors() { klu_defaults(&common_); }
@@ -28,15 +28,16 @@ class KluFactors {
   // KLU's ordering, scaling and pivot tolerance are set here, before analyze().
   klu_common& options() { return common_; }
 
-  // Orders the rows and columns of matrices with this pattern; false if they cannot be ordered. The order is
-  // KLU's by AMD where that is not given otherwise and its pivots can be on the diagonal, else that by
-  // COLAMD: AMD counts on the diagonal, and where its order has a weak one before all else in its row, pivots
-  // are taken from elsewhere and the factors fill with entries that nothing has counted. options() stay as
-  // they are from here on.
+  // Orders the rows and columns of matrices with this pattern; false if they cannot be ordered. Unless an
+  // ordering is given, it is KLU's AMD ordering where the pivots can be on the diagonal, else COLAMD. AMD
+  // assumes pivots on the diagonal: where a weak diagonal comes before all other entries of its row, the
+  // pivot is taken from elsewhere and the factors fill with entries that the ordering has not counted.
+  // options() must not change afterwards.
   bool analyze(const SparsePattern& pattern, bool ordering_given = false);
   // values: [entries of the pattern]. After `singular` or `out_of_memory` there are no factors.
   Result factor(std::span<const Real> values);
-  // Solves in place, with the matrix or its transpose; vector: [rows]. Needs factors. False where KLU fails.
+  // Solves in place, with the matrix or its transpose; vector: [rows]. Requires factors. False where KLU
+  // fails.
   bool solve(std::span<Real> vector);
   bool solve_transposed(std::span<Real> vector);
 
@@ -59,9 +60,9 @@ class KluFactors {
   SparsePattern pattern_;
   std::unique_ptr<klu_symbolic, Free> symbolic_{nullptr, Free{&common_}};
   std::unique_ptr<klu_numeric, Free> numeric_{nullptr, Free{&common_}};
-  std::vector<int> diagonal_;  // of every column, the place among the pivots of the row that KLU prefers
+  std::vector<int> diagonal_;  // for every column, the position among the pivots of the row that KLU prefers
   std::vector<std::size_t>
-      ties_;  // entries of L, counted through, as large as their pivot when it was chosen
+      ties_;  // entries of L, counted consecutively, as large as their pivot when it was chosen
 };
 
 }  // namespace scree

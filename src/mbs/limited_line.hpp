@@ -1,4 +1,4 @@
-// Means over a step of quantities that run along straight lines and stop at limits.
+// Means over a step of quantities that change linearly and are clipped at limits.
 #pragma once
 
 #include <cmath>
@@ -15,9 +15,9 @@ inline Dual positive_mean(const Dual& a, const Dual& b) {
   return {};
 }
 
-// Mean of a line from a to b that is held between -limit and limit, where the limit, never negative, runs
-// from `first` to `last`. It grows with a and b, and is exact: an event within the step counts over the part
-// of the step that comes after it.
+// Mean of a line from a to b clipped to [-limit, limit], where the limit, never negative, changes linearly
+// from `first` to `last`. The mean increases with a and b and is exact: an event within the step counts over
+// the part of the step after it.
 inline Dual limited_mean(const Dual& a, const Dual& b, const Dual& first, const Dual& last) {
   if (a.value >= first.value && b.value >= last.value) return 0.5 * (first + last);
   if (-a.value >= first.value && -b.value >= last.value) return -0.5 * (first + last);

@@ -1,5 +1,5 @@
-// Scalar functions of the poses of two spatial bodies: what joints, drivers and forces between them are made
-// of.
+// Primitive constraint functions (Haug): scalar functions of the poses of two spatial bodies, from which
+// joints, drivers and forces between them are built.
 #pragma once
 
 #include <memory>
@@ -13,14 +13,14 @@
 
 namespace scree {
 
-// By the changes of the poses, (r_1 | pi_1 | r_2 | pi_2): r global, pi a rotation in the body's own frame, dA
-// = A dpi~.
+// Derivatives by the changes of the poses, (r_1 | pi_1 | r_2 | pi_2): r global, pi a rotation in the body's
+// own frame, dA = A dpi~.
 using PairGradient = std::array<Vec3, 4>;
 using PairHessian = std::array<std::array<Mat3, 4>, 4>;
 
-// c, with c' = gradient . (v_1, w_1, v_2, w_2) and c'' = gradient . accelerations + second(). Notation in the
-// files: s_i, a, b fixed to bodies, P_i = r_i + A_i s_i, d = P_2 - P_1, al = A_1 a, be = A_2 b; d''_0 = A_2
-// w_2~^2 s_2 - A_1 w_1~^2 s_1, al''_0 = A_1 w_1~^2 a, be''_0 likewise.
+// c, with c' = gradient . (v_1, w_1, v_2, w_2) and c'' = gradient . accelerations + second(). Notation in
+// the files: s_i, a, b fixed to bodies, P_i = r_i + A_i s_i, d = P_2 - P_1, al = A_1 a, be = A_2 b; d''_0 =
+// A_2 w_2~^2 s_2 - A_1 w_1~^2 s_1, al''_0 = A_1 w_1~^2 a, be''_0 likewise.
 class Measure {
  public:
   explicit Measure(const SpatialPair& pair) : pair_(pair) {}
@@ -47,35 +47,39 @@ class Measure {
   SpatialPair pair_;
 };
 
-// Each in a file of its own.
+// Primitive functions, each in a file of its own.
 //   dot1: al.be
 std::unique_ptr<Measure> dot1_measure(const SpatialPair& pair, Vec3 a, Vec3 b);
 //   dot2: al.d [m]
 std::unique_ptr<Measure> dot2_measure(const SpatialPair& pair, Vec3 a);
 //   distance: |d| [m]; undefined where the points coincide
 std::unique_ptr<Measure> distance_measure(const SpatialPair& pair);
-//   twist: the angle that has this cosine and sine, either the dot1 of axes of the two bodies, with whole
-//   turns [rad]; number: by which SpatialMotion::counted_angle knows the turns; undefined where both are 0
+//   angle of a joint, in whole revolutions too [rad]: has this cosine and sine, each a dot1 of axes of the
+//   two bodies;
+//   number: of SpatialMotion::counted_angle, which keeps the revolutions; undefined where both are 0
 std::unique_ptr<Measure> twist_measure(std::unique_ptr<Measure> cosine, std::unique_ptr<Measure> sine,
                                        int number);
 
-//   turn: component k of the rotation vector from the first of two frames fixed to the bodies to the second
-//   one, along the axes of either, in which it has the same components [rad]; frame: its orientation in the
-//   frame of its body. It jumps at half a turn.
+//   component k of the rotation vector from the first of two frames fixed to the bodies to the second one.
+//   It has
+//   the same components along the axes of either frame [rad]. frame: its orientation in the frame of its
+//   body.
+//   The rotation vector jumps at half a revolution.
 std::unique_ptr<Measure> turn_measure(const SpatialPair& pair, const Quaternion (&frame)[2], int k);
 
-// Sum of weight times measure, all of one pair of bodies; an angle if the first one is.
+// One term of sum_of_measures(): weight times function. All terms are of one pair of bodies; the sum is an
+// angle if the first term is one.
 struct WeightedMeasure {
   Real weight;
   std::unique_ptr<Measure> measure;
 };
 std::unique_ptr<Measure> sum_of_measures(std::vector<WeightedMeasure> terms);
 
-// gradient . velocities
+// The rate of a primitive function, gradient . velocities.
 Real measure_rate(const Measure& measure, const SpatialMotion& motion);
 // Writes a 3x3 block at the first row and column given (nothing where one is negative).
 void add_block(SparseTerm& term, int row, int column, const Mat3& block);
-// The blocks that the measure has.
+// Add the blocks that the primitive function has.
 void add_gradient(const Measure& measure, const PairGradient& gradient, int row, SparseTerm& out);
 void add_hessian(const Measure& measure, const PairHessian& hessian, SparseTerm& out);
 

@@ -1,4 +1,4 @@
-// Motors.
+// Laws of motors on joints.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace scree {
 
 namespace {
 
-// A motor that follows its limit is at it but for round-off.
+// A motor at its limit is there but for round-off.
 constexpr Real kAtLimit = 1 - 1e-12;
-// Halvings of an interval of length 1 that leave round-off.
+// Halvings of an interval of length 1, down to round-off.
 constexpr int kHalvings = 52;
 
 // The first s in [0, 1] at which a + b s + c s^2, with a >= 0, falls below 0; 1 if there is none.
@@ -24,7 +24,7 @@ Real first_root(Real a, Real b, Real c) {
   const Real square = b * b - 4 * a * c;
   const bool falls = b < 0 || (c < 0 && a == 0);
   if (square < 0 || (!falls && c >= 0)) return 1;
-  // The root without cancellation gives the other one.
+  // The other root, which has no cancellation, gives this one.
   const Real q = -(b + std::copysign(std::sqrt(square), b)) / 2;
   Real least = 1;
   for (const Real root : {q != 0 ? a / q : Real(0), c != 0 ? q / c : Real(1)})
@@ -32,10 +32,10 @@ Real first_root(Real a, Real b, Real c) {
   return least;
 }
 
-// The mean effort of a step is that of the line between the efforts without limit at its ends, held within
-// it: the trapezoidal rule finds it where the end of the step holds twice the mean less what acted at its
-// start. So a limit that is reached or left within a step counts from there on, and a step without one is as
-// it was.
+// The mean effort of a step is that of the straight line between the unlimited efforts at its ends, clipped
+// to the limit. The trapezoidal rule gives it where the end of the step has twice the mean less the effort
+// at the start. A limit that is reached or left within a step thus counts from that instant on, and a step
+// without such an event is unchanged.
 class MotorLaw : public JointLaw {
  public:
   explicit MotorLaw(Real limit) : limit_(limit) {}
@@ -47,7 +47,7 @@ class MotorLaw : public JointLaw {
     if (std::abs(wanted.effort) <= limit_) return wanted;
     return {std::copysign(limit_, wanted.effort), 0, 0, limit_};
   }
-  // first, last: efforts without the limit at the ends of the step.
+  // first, last: unlimited efforts at the ends of the step.
   JointEffort limited_step(Real first, const Dual& last, Real size) const {
     if (std::abs(first) <= limit_ && std::abs(last.value) <= limit_)
       return {last.value, last.by_value, last.by_rate, size};
@@ -78,7 +78,7 @@ class EffortMotor final : public MotorLaw {
   ScalarFunction effort_;
 };
 
-// Without its limit the effort is a line in c and c', with slopes that are constant.
+// Without its limit the effort is linear in c and c', with constant slopes.
 class LinearMotor : public MotorLaw {
  public:
   LinearMotor(Real limit, Real by_value, Real by_rate)
@@ -98,8 +98,8 @@ class LinearMotor : public MotorLaw {
   }
 
  protected:
-  virtual Real wanted(const CoordinateInstant& at) const = 0;  // the effort without the limit
-  virtual Real size(const CoordinateInstant& at) const = 0;    // its largest part
+  virtual Real wanted(const CoordinateInstant& at) const = 0;  // the unlimited effort
+  virtual Real size(const CoordinateInstant& at) const = 0;    // its largest contribution
 
  private:
   Real by_value_, by_rate_;
@@ -148,9 +148,10 @@ class PositionMotor final : public LinearMotor {
   ScalarFunction position_;
 };
 
-// T = P e + I z, e = w(t) - c', z the integral of e: over a step that of w less the change of c. While the
-// limit holds T back, z stands where e would drive it further; where e falls so fast that T would leave the
-// limit by that, z grows as fast as keeps T there. Both over the part of a step that they last.
+// T = P e + I z, e = w(t) - c', z the integral of e: over a step the integral of w less the change of c.
+// While T is at the limit, z is held where e would drive it further (anti-windup); where e falls so fast
+// that T would leave the limit, z grows just fast enough to keep T there. Both count over the part of a step
+// in which they hold.
 class SpeedMotor final : public MotorLaw {
  public:
   SpeedMotor(const Motor& motor, const std::string& owner, Real end)
@@ -175,18 +176,18 @@ class SpeedMotor final : public MotorLaw {
   }
 
  private:
-  // Errors of the step, in units of e that push towards the limit: at its ends, and at its share s on the way
-  // e_0 + h e_0' s + h^2 w''/2 s^2 while c'' is that of the start.
+  // Errors of the step in units of e, positive towards the limit: at its ends, and at the fraction s of the
+  // step, e_0 + h e_0' s + h^2 w''/2 s^2 with c'' as at the start.
   struct Errors {
-    Real first, slope, bend;  // e_0, h e_0', h^2 w''/2 of the parabola through the wanted rates
+    Real first, slope, curvature;  // e_0, h e_0', h^2 w''/2 of the parabola through the wanted rates
     Dual last;
     Real h;
-    Real at(Real s) const { return first + s * (slope + s * bend); }
+    Real at(Real s) const { return first + s * (slope + s * curvature); }
   };
   Errors errors(const LawStep& step, const CoordinateInstant& end, Real side) const {
     const TimeValue wanted = rate_(step.start.time);
-    const Real rise = step.h * wanted.rate, bend = rate_(end.time).value - wanted.value - rise;
-    return {side * error(step.start), side * (rise - step.h * step.start.second), side * bend,
+    const Real rise = step.h * wanted.rate, curvature = rate_(end.time).value - wanted.value - rise;
+    return {side * error(step.start), side * (rise - step.h * step.start.second), side * curvature,
             side * end_error(end), step.h};
   }
   Real error(const CoordinateInstant& at) const { return rate_(at.time).value - at.rate; }
@@ -200,23 +201,23 @@ class SpeedMotor final : public MotorLaw {
   Dual wanted(const CoordinateInstant& end, const Dual& z) const {
     return gain_ * end_error(end) + integral_gain_ * z;
   }
-  // z at the end of the step; and where the limit has a part in it the mean of T.
+  // z at the end of the step, and the mean of T where the limit takes part.
   struct Over {
     Dual integral;
     bool held = false;
     Dual mean{};
   };
   Over over(const LawStep& step, const CoordinateInstant& end) const;
-  // The share of a step after which the limit lets go, and whether z follows it before.
+  // The fraction of a step at which T leaves the limit, and whether z follows it until then.
   struct Release {
-    Real share;
+    Real fraction;
     bool follows;
   };
   Release release_of(Real memory, const Errors& e) const;
   Dual released(const Release& release, Real memory, const Errors& e) const;
-  // z with which the end of the step is just at the limit.
+  // The z with which T is just at the limit at the end of the step.
   Dual at_limit(const Errors& e) const { return (limit_ - gain_ * e.last) / integral_gain_; }
-  Dual error_at(const Dual& share, const Errors& e) const;
+  Dual error_at(const Dual& fraction, const Errors& e) const;
   Dual held_after(const Dual& last, const Errors& e) const;
 
   Real gain_, integral_gain_;
@@ -236,36 +237,38 @@ SpeedMotor::Over SpeedMotor::over(const LawStep& step, const CoordinateInstant& 
     if (!(e.first > 0)) return plain;
     const Release release = release_of(side * step.memory, e);
     const Dual z = step.memory + side * released(release, side * step.memory, e), then = wanted(end, z);
-    if (release.share == 1) return {z, true, limited_mean(first, then, limit_, limit_)};
-    return {
-        z, true,
-        side * (release.share * limit_) + 0.5 * (1 - release.share) * (side * limit_ + within(then, limit_))};
+    if (release.fraction == 1) return {z, true, limited_mean(first, then, limit_, limit_)};
+    return {z, true,
+            side * (release.fraction * limit_) +
+                0.5 * (1 - release.fraction) * (side * limit_ + within(then, limit_))};
   }
   if (std::abs(last.value) <= limit_) return plain;
   const Real side = std::copysign(Real(1), last.value);
   const Errors e = errors(step, end, side);
-  const Dual share = held_after(side * last - limit_, e);
-  const Dual stood = side * all - step.h * (1 - share) * positive_mean(error_at(share, e), e.last);
-  return {side * (integral_gain_ > 0 ? larger(stood, at_limit(e)) : stood), true,
-          side * limit_ + 0.5 * share * (first - side * limit_)};
+  const Dual fraction = held_after(side * last - limit_, e);
+  const Dual held_integral =
+      side * all - step.h * (1 - fraction) * positive_mean(error_at(fraction, e), e.last);
+  return {side * (integral_gain_ > 0 ? larger(held_integral, at_limit(e)) : held_integral), true,
+          side * limit_ + 0.5 * fraction * (first - side * limit_)};
 }
 
-// When the limit lets go of a step that begins at it. Until then T is constant, and c' keeps its tangent: the
-// instant is exact to O(h^3), where other forces are smooth. First e falls to where T without its limit is
-// below it; there T stays as long as I e would drive it up faster than P e' lets it fall.
+// When T leaves the limit in a step that begins there. Until then T is constant, and c' keeps its tangent:
+// the instant is exact to O(h^3), where other forces are smooth. First e falls until the unlimited T is
+// below the limit; T then stays at the limit as long as I e would raise it faster than P e' lowers it.
 SpeedMotor::Release SpeedMotor::release_of(Real memory, const Errors& e) const {
   const Real beyond = std::max(gain_ * e.first + integral_gain_ * memory - limit_, Real(0));
-  Release release{first_root(beyond, gain_ * e.slope, gain_ * e.bend), false};
-  const Real s = release.share, growth = integral_gain_ * e.h;
-  const Real rise = gain_ * (e.slope + 2 * e.bend * s) + growth * e.at(s);
+  Release release{first_root(beyond, gain_ * e.slope, gain_ * e.curvature), false};
+  const Real s = release.fraction, growth = integral_gain_ * e.h;
+  const Real rise = gain_ * (e.slope + 2 * e.curvature * s) + growth * e.at(s);
   if (s == 1 || !(rise > 0)) return release;
-  const Real turn = 2 * gain_ * e.bend + growth * (e.slope + 2 * e.bend * s);
-  return {std::min(s + first_root(rise, turn, growth * e.bend), Real(1)), true};
+  const Real rise_rate = 2 * gain_ * e.curvature + growth * (e.slope + 2 * e.curvature * s);
+  return {std::min(s + first_root(rise, rise_rate, growth * e.curvature), Real(1)), true};
 }
 
-// How much z changes over such a step. One that ends at the limit all the same has not left it.
+// The change of z over a step that leaves the limit. A step that ends at the limit all the same has not left
+// it.
 Dual SpeedMotor::released(const Release& release, Real memory, const Errors& e) const {
-  const Real s = release.share, then = e.at(s);
+  const Real s = release.fraction, then = e.at(s);
   if (integral_gain_ == 0) return -e.h * positive_mean(-e.first, -e.last);
   const Dual most = larger(at_limit(e) - memory, 0);
   if (release.follows && s == 1) return most;
@@ -275,29 +278,30 @@ Dual SpeedMotor::released(const Release& release, Real memory, const Errors& e) 
                  most);
 }
 
-// e where the limit is reached, after the share s of a step: up to there c' has its tangent at the start,
-// from there on T is constant, and c' a straight line:
+// e at the instant where the limit is reached, after the fraction s of a step. Until then c' has its tangent
+// at the start; from there on T is constant and c' a straight line:
 //   c'(s) = c'_0 + s h c''_0 + (c'_1 - c'_0 - h c''_0) s / (2 - s).
-Dual SpeedMotor::error_at(const Dual& share, const Errors& e) const {
-  const Dual unlike = e.last - (e.first + e.slope + e.bend);
-  return e.first + share * (e.slope + share * e.bend) + unlike * (share / (2 - share));
+Dual SpeedMotor::error_at(const Dual& fraction, const Errors& e) const {
+  const Dual unlike = e.last - (e.first + e.slope + e.curvature);
+  return e.first + fraction * (e.slope + fraction * e.curvature) + unlike * (fraction / (2 - fraction));
 }
 
-// The share after which the limit is reached, where the step begins within the limit and ends `last` beyond
-// it: the change of P e + I z from there on, P (e_1 - e(s)) + I h (1 - s) (e(s) + e_1) / 2, is `last`.
+// The fraction after which the limit is reached, where the step begins within the limit and ends `last`
+// beyond it: the change of P e + I z from there on, P (e_1 - e(s)) + I h (1 - s) (e(s) + e_1) / 2, is
+// `last`.
 Dual SpeedMotor::held_after(const Dual& last, const Errors& e) const {
-  const auto left = [&](const Dual& s) {
+  const auto remainder = [&](const Dual& s) {
     const Dual then = error_at(s, e);
     return gain_ * (e.last - then) + 0.5 * integral_gain_ * e.h * (1 - s) * (then + e.last) - last;
   };
-  if (!(left(0).value > 0)) return 0;
+  if (!(remainder(0).value > 0)) return 0;
   Real low = 0, high = 1;
   for (int i = 0; i < kHalvings; ++i) {
     const Real middle = (low + high) / 2;
-    (left(middle).value > 0 ? low : high) = middle;
+    (remainder(middle).value > 0 ? low : high) = middle;
   }
-  const Dual rest = left(low);
-  const Real slope = left(Dual{low, 1, 0, 0}).by_value - rest.by_value;
+  const Dual rest = remainder(low);
+  const Real slope = remainder(Dual{low, 1, 0, 0}).by_value - rest.by_value;
   if (!(slope < 0)) return low;
   return {low, -rest.by_value / slope, -rest.by_rate / slope, 0};
 }

@@ -24,11 +24,11 @@ namespace scree {
 
 namespace {
 
-// Alternating part of the reactions over the largest mean part: from here on shorter steps do not help.
+// Ratio of the reactions' alternating part to the largest mean part from which shorter steps do not help.
 constexpr Real kOscillation = 10;
-// Where the velocities suffer too, in thousandths, the run ends in any case.
+// Ratios, of reactions and of velocities, at which the run ends in any case where both are exceeded.
 constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
-constexpr Real kGoverns = 0.3;  // the bodies' error, over the tolerance, from which they decide on the step
+constexpr Real kGoverns = 0.3;  // of the tolerance: bodies' error that governs the step size
 
 MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartFindings& findings) {
   MultibodyState state;
@@ -79,7 +79,7 @@ struct Multibody::Impl {
   void watch_reactions(const MultibodyState& state, Real error);
   [[noreturn]] void fail_for_oscillation() const;
 
-  // Of the carriers' wrenches.
+  // The wrenches of the bodies alone, without those of walls.
   std::vector<BodyWrench> wrench_of_bodies(const MultibodyState& state) const {
     return {state.wrench.begin(), state.wrench.begin() + static_cast<std::ptrdiff_t>(motion.size())};
   }
@@ -89,7 +89,7 @@ struct Multibody::Impl {
 
   RigidBodySystem system;
   StartFindings findings;
-  MultibodyState start;  // q of the model, and its v or those nearest to them that are consistent
+  MultibodyState start;  // q of the model, and its v or the nearest consistent velocities
   std::string start_change;
   HhtMethod method;
   NewtonSolver newton;
@@ -100,12 +100,12 @@ struct Multibody::Impl {
   StartElements start_elements;
   Real weight = 0;  // of all bodies [N]
   std::vector<BodyMotion> motion;
-  MultibodyState end;    // of the step that accept() closes; its arrays change places with the caller's
+  MultibodyState end;    // of the step that accept() closes; swapped with the caller's state
   Real time = 0;         // of the open step's start [s]
-  IterationNorms norms;  // of the last correct()
+  IterationNorms norms;  // from the last correct()
 };
 
-// Efforts that the reactions load: by those found without them.
+// Efforts that depend on the reactions are set by the reactions found without them.
 void Multibody::Impl::solve_acceleration(MultibodyState& state, Real t) {
   open_step(state, t, 0);
   newton.solve_acceleration(state, t);
@@ -135,14 +135,15 @@ void Multibody::Impl::settle_velocities(const Model& model) {
                                keys, keys.empty() ? "" : ", or "));
 }
 
-// With alpha < 0 the accelerations stand for t + alpha h, and the position's local error h^3 c, which the
-// constraints take back in their directions at each step, holds the velocities off them by h^2 c. A start
-// from the true ones is a jump that the reactions see as a disturbance of first order; removed by
+// With alpha < 0 the accelerations are those at t + alpha h. The constraints remove the local position error
+// h^3 c in their directions at each step, and so hold the velocities off the exact ones by h^2 c. A start
+// from exact velocities and accelerations is therefore a jump, which the reactions show as a disturbance of
+// first order. It is removed by
 //   a_0 = a(0) + alpha h a'(0),   v_0 = v(0) - h^2 d,   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q c)
 //   c = (1/12 + alpha^2/4) a'(0) - (0; w x w'/12 per spatial body)
 MultibodyState Multibody::Impl::corrected_start(const MultibodyState& state, Real h) {
   const HhtCoefficients& coefficients = method.coefficients();
-  const Real tau = h / 100;  // of the difference that stands for a'
+  const Real tau = h / 100;  // step of the finite difference for a'
   MultibodyState before = state_after(state, -tau), after = state_after(state, tau);
   newton.solve_acceleration(before, -tau);
   newton.solve_acceleration(after, tau);
@@ -160,7 +161,7 @@ MultibodyState Multibody::Impl::corrected_start(const MultibodyState& state, Rea
   return corrected;
 }
 
-// Along the velocities and accelerations, tau [s] later.
+// Extrapolates the state by tau [s] along its velocities and accelerations.
 MultibodyState Multibody::Impl::state_after(const MultibodyState& state, Real tau) const {
   MultibodyState moved = state;
   std::vector<Real> displacement(state.velocity.size());
@@ -202,9 +203,9 @@ void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vec
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->time = t;
   if (t == 0 && impl_->corrects_start) {
-    // Those of the start, whatever was solved since or before a restart.
+    // The forces of the start, whatever was solved since, or before a restart.
     impl_->system.set_forces(impl_->wrench_of_bodies(state));
-    impl_->open_step(state, t, 0);  // the correction is of accelerations at instants
+    impl_->open_step(state, t, 0);  // the correction is for accelerations of instants
     impl_->predict(impl_->corrected_start(state, h), t, h);
   } else {
     impl_->predict(state, t, h);
@@ -231,8 +232,7 @@ std::string Multibody::trouble() {
   const std::string dead = dead_point();
   if (!dead.empty()) return text + "; " + dead;
   if (impl.method.shares())
-    return text.empty() ? ""
-                        : text + ": constraints that share their reactions must not contradict each other";
+    return text.empty() ? "" : text + ": redundant constraints must not contradict each other";
   const std::string near = near_singular(impl.system, impl.method.start_position(), impl.time);
   return near.empty() ? text : text + "; " + near + kSingularPosition;
 }
@@ -261,8 +261,8 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.end.wrench = end_wrench;
   const bool efforts_differ = impl.system.joint_forces().end_step(),
              contacts_differ = !impl.system.has_forces_of(end_wrench);
-  // All of the change of joints' efforts counts: with alpha < 0 the impulse of a step with an event is then
-  // right wherever in the step the event is (mbs/README.md, "Events").
+  // The whole change of the joints' efforts counts: with alpha < 0 the impulse of a step with an event is
+  // then right wherever in the step the event is (mbs/README.md, "Events").
   if (efforts_differ) impl.newton.change_forces(impl.end, impl.method.end_time(), 1);
   if (contacts_differ) {
     impl.system.set_forces(end_wrench);
@@ -276,8 +276,8 @@ void Multibody::average_accelerations(MultibodyState& state, Real share) const {
   impl_->method.average_accelerations(state, share);
 }
 
-// The spring of friction that slides holds the limit under the reactions that the step ends with. What it
-// gives or takes by that is friction's.
+// A sliding friction spring is at the limit under the reactions that end the step. The energy that this adds
+// or removes counts as friction's.
 void Multibody::Impl::follow_load() {
   const JointForces& forces = system.joint_forces();
   if (!forces.are_loaded()) return;
@@ -290,7 +290,7 @@ void Multibody::check_reactions() const {
   if (impl_->watch.oscillates() && impl_->watch.share() >= kOscillation) impl_->fail_for_oscillation();
 }
 
-// Adaptive steps that the oscillation governs become shorter and shorter: nothing is gained by them.
+// Adaptive steps that the oscillation governs would become shorter and shorter without gain.
 void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
   if (system.constraints() == 0) return;
   watch.observe(state, end, method.constraint_rate(end, method.end_time()));

@@ -11,31 +11,32 @@
 
 namespace scree {
 
-// All that changes in time on the multibody side; a checkpoint stores exactly this.
+// All state of the multibody side; a checkpoint stores exactly this.
 struct MultibodyState {
-  // q: x, y [m], angle [rad] of a planar body; x, y, z, quaternion of a spatial one; then angles of joints in
-  // space [rad], which say how often they went round
+  // q: x, y [m], angle [rad] of a planar body; x, y, z, quaternion of a spatial one; then angles of spatial
+  // joints [rad], which count their revolutions
   std::vector<Real> position;
-  std::size_t counted_angles = 0;  // of the positions, the last ones
-  std::vector<Real> velocity;      // v: q'; of a spatial body the angular velocity in its frame last [rad/s]
+  std::size_t counted_angles = 0;  // number of these angles, the last of the positions
+  std::vector<Real>
+      velocity;  // v: q'; the last three of a spatial body are the angular velocity in its frame [rad/s]
   std::vector<Real> acceleration;  // a: v', with hht_alpha < 0 at t + hht_alpha h
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
-  std::vector<BodyWrench>
-      wrench;  // of the contacts at t_n, per body; where walls move or run, then per placed wall (BodyLink)
-  std::vector<Real> slide_power;  // of the latter, where the surface of one runs along itself [W]
-  std::vector<Real> memory;       // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
-  Real dissipated = 0;            // in force elements since t = 0 [J]
-  Real integrator_loss = 0;       // taken out by HHT since t = 0 [J]
-  Real driver_work = 0;           // done by drivers, actuators, applied forces and walls since t = 0 [J]
-  // Kinetic energy of all bodies, at the ends of steps where it was least and most since t = 0 [J].
+  std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body; where walls move or have a surface
+                                   // velocity, then per such wall (BodyLink)
+  std::vector<Real> slide_power;   // per such wall, the power of the contacts at its surface velocity [W]
+  std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
+  Real dissipated = 0;             // in force elements since t = 0 [J]
+  Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
+  Real driver_work = 0;            // done by drivers, actuators, applied forces and walls since t = 0 [J]
+  // Smallest and largest kinetic energy of all bodies at the ends of steps since t = 0 [J].
   Real least_kinetic = 0, most_kinetic = 0;
 };
 
 // Size of one Newton iteration, scaled and dimensionless.
 struct IterationNorms {
-  Real residual = 0;    // at the iterate the iteration started from
+  Real residual = 0;    // at the iterate from which the iteration started
   Real correction = 0;  // of the position, over the length scale
 };
 
@@ -43,14 +44,14 @@ struct MultibodyEnergies {
   Real kinetic = 0, gravitational = 0, elastic = 0;  // [J]
 };
 
-// Reaction of a joint or driver, or the force of a cylinder, on body[1], at body[1]'s joint point, global
+// Reaction of a joint or driver, or the force of a cylinder, on body[1] at its joint point, in the global
 // frame.
 struct Reaction {
   std::string joint;
   Vec3 force;   // [N]
   Vec3 torque;  // about that point [N m]
   BodyKind kind = BodyKind::planar;
-  Quaternion frame{};  // between spatial bodies: of the joint's marker on body[0], global
+  Quaternion frame{};  // between spatial bodies: the joint's marker on body[0], global
 };
 
 // A coordinate of a joint at one instant.
@@ -68,7 +69,7 @@ struct JointEffortSample {
   Real effort = 0, power = 0;     // [N m] or [N]; [W], above 0 where it is fed in
 };
 
-// At one instant, along the axes of the bushing's frame on the first body.
+// Deflection and load of a bushing at one instant, along the axes of its frame on the first body.
 struct BushingSample {
   std::string name;
   Vec3 shift, turn;    // of the second frame from the first: displacement [m], rotation vector [rad]
@@ -77,22 +78,22 @@ struct BushingSample {
 
 class Multibody {
  public:
-  // Throws InputError where joints do not meet, start velocities contradict the joints, or constraints are
-  // redundant and may not be (all by joint name).
+  // Throws InputError, with the names of the joints, where joints are not closed at the start, start
+  // velocities contradict them, or constraints are redundant without permission.
   explicit Multibody(const Model& model);
   ~Multibody();
 
-  // Consistent start: q of the model and its v, changed where the model says so; a and lambda from the
-  // acceleration-level system with these wrenches.
+  // Consistent start: q of the model and its v, which is projected onto the constraints where the model says
+  // so; a and lambda from the acceleration-level system with these wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
-  // For a state of another model, to go on from with this one: a and lambda as in initial_state, at its
-  // time t [s]. Throws InputError where a joint or driver does not hold there.
+  // Prepares a state of another model for this one: a and lambda as in initial_state, at its time t [s].
+  // Throws InputError where the state violates a joint or driver.
   void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
 
-  // Warnings of joint limits that the start position has passed, with their efforts and the energy that they
-  // hold, and of servos that start where the step does not suit them, one text for each. Throws InputError
-  // where it can hardly be meant (mbs/passed_stops.hpp, mbs/thrown_servos.hpp).
+  // Warnings, one text each, of joint limits that the start position violates, with their efforts and stored
+  // energies, and of servos that start off their position where the step is too long for them. Throws
+  // InputError where the start is hardly intended (mbs/passed_stops.hpp, mbs/thrown_servos.hpp).
   std::vector<std::string> start_warnings();
 
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.
@@ -100,62 +101,65 @@ class Multibody {
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
   // naming the joint or body on a singular matrix or a non-finite residual.
   IterationNorms correct(const ContactWrenches& contacts);
-  // What is to be said of a step that does not converge: which joints and drivers are not kept, and whether
-  // the position is near a singular one; empty where neither tells why. Of the last correct().
+  // Explains a step that does not converge, by the last correct(): which joints and drivers are violated,
+  // and whether the position is nearly singular; empty where neither explains it.
   std::string trouble();
-  // A text for a run that ends as the step opened last fails: it names the driver that asks for a motion
-  // which the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
+  // A text for a run that ends because the step opened last fails: it names the driver whose prescribed
+  // motion the mechanism cannot follow (mbs/dead_point.hpp); empty where there is none.
   std::string dead_point();
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
-  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:
-  // contact wrenches at the end of the step, where they differ from those that the step was corrected with
-  // because contacts opened or closed within it; the next step starts from them. Throws SimulationError, with
-  // `state` as it was, where the reactions oscillate beyond repair (see ReactionWatch).
+  // Closes the step into `state`. Without this call the step is rejected and `state` is unchanged.
+  // end_wrench: contact wrenches at the end of the step, where they differ from those that the step was
+  // corrected with because contacts opened or closed within it; the next step starts from them. Throws
+  // SimulationError, with `state` unchanged, where the reactions oscillate beyond repair (see
+  // ReactionWatch).
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
 
-  // Replaces this share of the accelerations at the end of the step that accept() has just closed by their
-  // mean over the step.
+  // Replaces the fraction `share` of the accelerations at the end of the step that accept() has just closed
+  // by their mean over the step.
   void average_accelerations(MultibodyState& state, Real share) const;
 
-  // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
-  // help then.
+  // Called after a failed step: throws SimulationError where the reactions oscillate, as shorter steps do
+  // not help then.
   void check_reactions() const;
-  // What is to be said of a run whose reactions oscillated, though it went on; else empty.
+  // The warning of a run that went on although its reactions oscillated; else empty.
   std::string reaction_warning() const;
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;
-  // The same for a state; for an instant tau [s] after it under its accelerations.
+  // One entry per body, of a state; tau: extrapolated by so much under its accelerations [s].
   std::vector<BodyMotion> motion(const MultibodyState& state, Real tau = 0) const;
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
-  // An energy for round-off of forces and reactions [J]: the sum of their magnitudes, each times the scale of
-  // its coordinate. Forces may cancel, their round-off does not.
+  // Energy scale of the round-off of forces and reactions [J]: the sum of their magnitudes, each times the
+  // scale of its coordinate. Forces may cancel, their round-off does not.
   Real energy_of_forces(const MultibodyState& state) const;
   // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those
-  // of the acceleration-level system with its positions, velocities and forces; and with what friction under
-  // the new reactions remembers. A step's own stand for no instant, and alternate for tens of steps where its
-  // length has jumped; they stay where the position is singular.
+  // of the acceleration-level system with its positions, velocities and forces, and with the memory of
+  // friction under the new reactions. The accelerations and multipliers of a step belong to no instant and
+  // alternate for tens of steps after a jump of the step length; they are kept where the position is
+  // singular.
   MultibodyState at_instant(const MultibodyState& state, Real t) const;
-  // Of the instant.
+  // Reactions of joints, drivers and cylinders at the instant of the state.
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
   // Coordinates of the joints that Output::history_coordinates counts.
   std::vector<JointReading> joint_readings(const MultibodyState& state, Real t) const;
-  // Of motors, springs, limits and friction on joints, in this order, loaded by the reactions of the instant.
+  // Efforts of motors, springs, limits and friction on joints, in this order, under the reactions of the
+  // instant.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 
   // Tension of the spring-dampers [N], then the torque of the torsional ones on their second bodies [N m].
   std::vector<Real> spring_efforts(const MultibodyState& state, Real t) const;
   std::vector<BushingSample> bushings(const MultibodyState& state, Real t) const;
 
-  // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
-  // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
+  // Where the model asks for consistent velocities: their largest change at t = 0, e.g. "angular velocity of
+  // body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
   const std::string& start_change() const;
 
-  // Where constraints that repeat each other share the load: rows, rank and names, e.g. "20 rows of rank 17:
-  // joint 'a', joint 'b'"; empty where none do.
+  // Of redundant constraints with minimum-norm reactions: rows, rank and names, e.g. "20 rows of rank 17:
+  // joint 'a', joint 'b'"; empty where there are none.
   const std::string& redundancy() const;
 
   int coordinates() const;

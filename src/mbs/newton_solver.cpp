@@ -15,16 +15,16 @@ namespace scree {
 namespace {
 
 constexpr Real kReuseContraction = 1e-2;
-// Each leaves of a misfit its round-off, over the rows' share.
+// Each pass leaves the round-off of a misfit, over the rows' share.
 constexpr int kMisfitPasses = 2;
-// Each leaves of what rows yield, or of what is no misfit, its part that eps S is of the rows' mobility in
-// that direction: little, but where one of the bodies is far lighter than others.
+// Each pass leaves a part of the rows' yielding, or of a false misfit, in the ratio of eps S to the rows'
+// mobility in that direction: little, unless one of the bodies is far lighter than others.
 constexpr int kSharePasses = 2;
-// Forces that the reactions load are found at a step's end in two or three passes.
+// Forces that depend on the reactions converge at a step's end in two or three passes.
 constexpr int kLoadPasses = 10;
 constexpr Real kLoadRoundOff = 1e-14;
-// What of the forces between bodies that touch may be left of a Newton correction, and how often the factors
-// are used for it.
+// Relative residual that the forces between bodies in contact may leave in a Newton correction, and the
+// largest number of solutions with the factors for it.
 constexpr Real kCoupledShare = 1e-3;
 constexpr int kCoupledPasses = 30;
 
@@ -43,9 +43,9 @@ NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
 
 void NewtonSolver::begin_step() { first_ = true; }
 
-// e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the scale
-// of its constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as h
-// shrinks.
+// e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the
+// scale of its constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as
+// h shrinks.
 Real NewtonSolver::scaled_residual() const {
   const std::vector<Real>&residual = method_.residual(), &scale = system_.coordinate_scale();
   const std::vector<Real>&inertia = method_.inertia_force(), &reaction = method_.constraint_force();
@@ -91,7 +91,7 @@ void NewtonSolver::solve_acceleration_level() {
   const std::span<Real> factored = acceleration_solver_.values();
   bool refactor = !has_acceleration_factors_ ||
                   std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) != 0;
-  has_acceleration_factors_ = false;  // should this fail
+  has_acceleration_factors_ = false;  // until the factorization succeeds
   if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
   refactor = drop_misfit(acceleration_solver_, refactor);
   solve_sharing(acceleration_solver_, refactor, {});
@@ -151,12 +151,12 @@ void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
   for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] += change[i];
 }
 
-// The velocities of steps are off the constraints by their local error, and that counts beside a singular
-// position: there it asks for accelerations that none but large reactions give.
+// The velocities of steps violate the constraints by their local error. Beside a singular position this
+// error matters: only large reactions give the accelerations that it asks for.
 void NewtonSolver::solve_instant(MultibodyState& state, Real t) {
-  MultibodyState kept = state;
-  solve_velocity(kept, t);
-  method_.acceleration_system(kept, t, acceleration_matrix_, acceleration_solver_.rhs());
+  MultibodyState projected = state;
+  solve_velocity(projected, t);
+  method_.acceleration_system(projected, t, acceleration_matrix_, acceleration_solver_.rhs());
   std::copy(state.applied.begin(), state.applied.end(), acceleration_solver_.rhs().begin());
   solve_acceleration_level();
   method_.set_acceleration(acceleration_solver_.solution(), state.applied, state);
@@ -171,8 +171,8 @@ std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
   return {solution, solution + static_cast<std::ptrdiff_t>(motion.size())};
 }
 
-// Forces that the reactions load must end the step as the next one begins with them, or the difference's work
-// is nowhere in the books.
+// Forces that depend on the reactions must end the step as the next one begins with them; otherwise the work
+// of the difference is missing in the energy ledger.
 void NewtonSolver::change_forces(MultibodyState& state, Real t, Real share) {
   for (int pass = 0; pass < kLoadPasses; ++pass) {
     if (!method_.change_system(state, t, acceleration_matrix_, acceleration_solver_.rhs())) return;
@@ -183,7 +183,7 @@ void NewtonSolver::change_forces(MultibodyState& state, Real t, Real share) {
   }
 }
 
-// Of the forces on the right-hand side, over the largest one that takes part.
+// The change of the forces on the right-hand side, over the largest force that takes part.
 Real NewtonSolver::scaled_change() {
   const std::vector<Real>& scale = system_.coordinate_scale();
   Real largest = 0;
@@ -199,7 +199,7 @@ Real NewtonSolver::product(const std::vector<Real>& a, const std::vector<Real>& 
   return sum;
 }
 
-// With the factors of A: x = A^-1 b leaves -O x of b; z = A^-1 r has the image (A + O) z = r + O z.
+// With the factors of A: x = A^-1 b leaves the residual -O x; z = A^-1 r has the image (A + O) z = r + O z.
 std::span<const Real> NewtonSolver::solve_coupled() {
   const std::size_t n = system_.coordinate_scale().size();
   const auto add = [](std::vector<Real>& to, Real scale, const std::vector<Real>& what) {
@@ -209,7 +209,7 @@ std::span<const Real> NewtonSolver::solve_coupled() {
   left_.assign(n, 0);
   method_.add_coupled(-1, coupled_, left_);
   Real whole = product(left_, left_);
-  // Beside a large O it is the residual that has to be solved for, not what O has made of it.
+  // With a large O the residual itself has to be solved for, as x = A^-1 b is no approximation.
   if (method_.is_loaded_by_contacts())
     whole = std::min(whole, product(method_.residual(), method_.residual()));
   const Real enough = kCoupledShare * kCoupledShare * whole;

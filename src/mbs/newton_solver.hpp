@@ -9,11 +9,10 @@
 
 namespace scree {
 
-// Full Newton. Within a step the factored matrix of the last iteration is used once more if that iteration
-// already cut the residual to 1e-2 or less: the matrix then describes the step well. What is kept from step
-// to step are factors of a matrix that is the same bit for bit, so that a restarted run repeats the bits of
-// an uninterrupted one. Bodies that touch each other come and go: what the matrix has between them is not in
-// what is factored.
+// Full Newton. Within a step the factors of the last iteration are used once more if that iteration has cut
+// the residual to 1e-2 or less, as the matrix then describes the step well. From step to step factors are
+// reused only of a matrix that is bitwise the same, so that a restarted run repeats the bits of an
+// uninterrupted one. Contacts between bodies come and go: their entries are not part of what is factored.
 class NewtonSolver {
  public:
   // `system` and `method` must outlive the solver.
@@ -23,33 +22,32 @@ class NewtonSolver {
   // does.
   void solve_acceleration(MultibodyState& state, Real t);
 
-  // Changes q' by as little as the constraints at time t demand, in the norm of M. Throws SimulationError as
-  // iterate() does.
+  // Changes q' by the least amount that satisfies the constraints at time t, in the norm of M. Throws
+  // SimulationError as iterate() does.
   void solve_velocity(MultibodyState& state, Real t);
 
   // Gives an accepted state the accelerations and multipliers of its instant t: those of the
-  // acceleration-level system, with the forces that the state ends its step with, and velocities as by
-  // solve_velocity(). Forces that the multipliers load follow them, where the system has the state's forces
-  // as they are at instants. Throws SimulationError as iterate() does.
+  // acceleration-level system with the forces at the end of the state's step, and velocities as by
+  // solve_velocity(). Forces that depend on the multipliers are updated, provided the system has the state's
+  // forces as at instants. Throws SimulationError as iterate() does.
   void solve_instant(MultibodyState& state, Real t);
 
-  // The part of a motion that the constraints at the state take away, the least in the norm of M: d of
-  // [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as
-  // iterate() does.
+  // The part of a motion that the constraints at the state remove, the least in the norm of M: d of [M,
+  // Phi_q^T; Phi_q, -C] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as iterate() does.
   std::vector<Real> constrained_part(const MultibodyState& state, const std::vector<Real>& motion);
 
-  // Applied forces of a state at time t, as the system now has them, where they differ from the state's.
-  // share: of HhtMethod::change_system. Throws SimulationError as iterate() does.
+  // Replaces the applied forces of a state at time t by those of the system, where they differ. share: as in
+  // HhtMethod::apply_change. Throws SimulationError as iterate() does.
   void change_forces(MultibodyState& state, Real t, Real share);
 
-  // A new step was opened.
+  // Resets the reuse of factors for a new step.
   void begin_step();
-  // One iteration. Throws SimulationError naming the joints or bodies on a singular matrix or a residual that
-  // is not finite.
+  // Does one iteration. Throws SimulationError with the names of the joints or bodies on a singular matrix
+  // or a residual that is not finite.
   IterationNorms iterate();
 
-  // Of rows that share: what the last solve_acceleration() left unsolved in their right-hand sides
-  // [constraints]; of no size unless rows that repeat each other contradict each other.
+  // Residual of redundant rows in the last solve_acceleration() [constraints]; of no size unless redundant
+  // rows contradict each other.
   const std::vector<Real>& misfit() const { return misfit_; }
 
   std::string description() const { return solver_.description(); }
@@ -57,38 +55,40 @@ class NewtonSolver {
  private:
   // Solves the system of acceleration_matrix_ for the right-hand side in acceleration_solver_.
   void solve_acceleration_level();
-  // Where rows share the load: takes from the constraints' part g of the right-hand side what no motion can
-  // satisfy, as round-off and the digits of a deck leave it in rows that repeat each other. Their multipliers
-  // would grow by it over C. It is -C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g), and of that the same
-  // again. Returns whether the matrix has yet to be factored.
+  // With redundant rows: removes from the constraints' part g of the right-hand side what no motion can
+  // satisfy, as round-off and the digits of a deck leave it there; the multipliers would grow by it over C.
+  // It is -C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g); the system is solved twice, the second time
+  // for the rest of the first. Returns whether the matrix has yet to be factored.
   bool drop_misfit(PetscSolver& solver, bool refactor);
-  // Solves [A, Phi_q^T; Phi_q, -C]; where rows share the load, so that none yields: what one has yielded by,
-  // C times its multiplier, goes back to the right-hand side. Of the multipliers those with the same forces
-  // and the least C-norm remain. multipliers: those that the solution is the change of; none where it has all
-  // of them.
+  // Solves [A, Phi_q^T; Phi_q, -C]. With redundant rows the yielding of each row, C times its multiplier, is
+  // fed back to the right-hand side, so that no row yields. Of the multipliers that give the same forces
+  // those with the least C-norm remain. multipliers: the ones whose change is solved for; empty where the
+  // solution is the whole of them.
   void solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
   Real scaled_residual() const;
   Real scaled_correction(std::span<const Real> delta) const;
   Real scaled_change();
   void solve_linear(PetscSolver& solver, bool refactor);
-  // From the solution of solver_, which knows nothing of O (HhtMethod::is_coupled), to that with it: by
-  // generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20, 1983) over its
-  // factors. Sums are of one rank, in one order.
+  // Improves the solution of solver_, which does not contain O (HhtMethod::is_coupled), to that with O, by
+  // generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20, 1983)
+  // preconditioned with its factors. Sums are taken on one rank in a fixed order.
   std::span<const Real> solve_coupled();
-  Real product(const std::vector<Real>& a, const std::vector<Real>& b) const;  // of forces [J^2]
+  Real product(const std::vector<Real>& a,
+               const std::vector<Real>& b) const;  // inner product of forces [J^2]
 
   const MechanicalSystem& system_;
   HhtMethod& method_;
   PetscSolver solver_;
-  // [M, Phi_q^T; Phi_q, -C] has factors of its own: where Phi_q is constant they stay.
+  // Separate factors of [M, Phi_q^T; Phi_q, -C]: they stay valid where Phi_q is constant.
   PetscSolver acceleration_solver_;
   std::vector<Real> acceleration_matrix_;  // [entries of the pattern]
-  bool has_acceleration_factors_ = false;  // of acceleration_solver_.values()
+  bool has_acceleration_factors_ = false;  // whether acceleration_solver_ has factors of acceleration_matrix_
   std::vector<Real> misfit_, forces_, gaps_;
-  std::vector<Real> coupled_, left_;                    // a solution, and what of the forces it leaves
-  std::vector<std::vector<Real>> directions_, images_;  // and their products with the matrix, of norm 1
+  std::vector<Real> coupled_, left_;  // a solution, and its residual force
+  std::vector<std::vector<Real>> directions_,
+      images_;  // search directions and their products with the matrix, of norm 1
   Real last_residual_ = 0;
-  bool first_ = true;  // iteration of its step
+  bool first_ = true;  // the next iteration is the first of its step
 };
 
 }  // namespace scree

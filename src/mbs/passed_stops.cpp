@@ -13,7 +13,7 @@ namespace scree {
 namespace {
 
 constexpr Real kRoundOff = 1e-9;    // of 1 rad or the length scale
-constexpr Real kSlow = 1e-3;        // per second, of the same
+constexpr Real kSlow = 1e-3;        // per second, of 1 rad or the length scale
 constexpr Real kMostStored = 1000;  // times the energy of everything else
 
 }  // namespace
@@ -43,7 +43,7 @@ std::vector<std::string> passed_stops(const RigidBodySystem& system, const std::
     const Real limit = below ? stop.lower : stop.upper, out = below ? 1 : -1,
                passed = out * (limit - sample.at.value), scale = force.is_angle() ? 1 : system.length_scale();
     if (!(passed > kRoundOff * scale)) continue;
-    // (c')^2 / 2 = c'' d / (n + 1), where nothing but the stop changes on the way out.
+    // (c')^2 / 2 = c'' d / (n + 1), where only the force of the limit changes during the return.
     const Real speed =
         std::sqrt(std::max(out * sample.at.second * passed * 2 / (stop.exponent + 1), Real(0)));
     if (!(speed > kSlow * scale)) continue;
@@ -51,8 +51,8 @@ std::vector<std::string> passed_stops(const RigidBodySystem& system, const std::
                other = energies.kinetic + energies.elastic - stored + weight * system.length_scale();
     const char* const unit = force.is_angle() ? "rad" : "m";
     const std::string what = fmt::format(
-        "{0}: passed at t = 0: joint '{1}' stands at {2:.6g} {3}, {4:.4g} {3} {5} = {6:.6g}. The stop begins "
-        "with {7:.4g} {8}, holds {9:.4g} J and throws the joint out with up to {10:.3g} {3}/s",
+        "{0}: violated at t = 0: joint '{1}' is at {2:.6g} {3}, {4:.4g} {3} {5} = {6:.6g}. The limit starts "
+        "with {7:.4g} {8}, stores {9:.4g} J and accelerates the joint to up to {10:.3g} {3}/s",
         stop.title, stop.joint, sample.at.value, unit, passed, below ? "below lower" : "above upper", limit,
         sample.effort, force.is_angle() ? "N m" : "N", stored, speed);
     const std::string remedy = "start the joint within its limits, or move this one";

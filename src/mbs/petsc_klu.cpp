@@ -16,10 +16,10 @@ PetscErrorCode factors_of(Mat factor, KluFactors** factors) {
   PetscFunctionReturn(kSuccess);
 }
 
-// The name under which a matrix has its pattern.
+// The name under which a matrix carries its pattern.
 constexpr const char* kPattern = "scree_pattern";
 
-// KLU's numbers for the words of PETSc's options; a scaling of -1 is none and no check of the pattern,
+// KLU's codes for the values of PETSc's options. A scaling of -1 means none, and no check of the pattern
 // either.
 PetscErrorCode read_options(const char* prefix, klu_common& options, PetscBool* ordered) {
   const char* const orderings[] = {"AMD", "COLAMD"};
@@ -127,7 +127,7 @@ PetscErrorCode make_factor(Mat matrix, MatFactorType type, Mat* factor) {
   auto factors = std::make_unique<KluFactors>();
   PetscCall(MatCreateShell(PETSC_COMM_SELF, rows, columns, rows, columns, factors.get(), factor));
   PetscCall(MatShellSetContextDestroy(*factor, destroy));
-  factors.release();  // the matrix has it now
+  factors.release();  // owned by the matrix from here on
   PetscCall(set_operation(*factor, MATOP_LUFACTOR_SYMBOLIC, factor_symbolic));
   PetscCall(set_operation(*factor, MATOP_LUFACTOR_NUMERIC, factor_numeric));
   PetscCall(set_operation(*factor, MATOP_SOLVE, solve_with<&KluFactors::solve>));
@@ -148,13 +148,14 @@ PetscErrorCode attach_pattern(Mat matrix, const SparsePattern& pattern) {
   PetscCall(PetscContainerSetPointer(container, const_cast<SparsePattern*>(&pattern)));
   PetscCall(PetscObjectCompose(reinterpret_cast<PetscObject>(matrix), kPattern,
                                reinterpret_cast<PetscObject>(container)));
-  PetscCall(PetscContainerDestroy(&container));  // the matrix has it now
+  PetscCall(PetscContainerDestroy(&container));  // the matrix holds its own reference
   PetscFunctionReturn(kSuccess);
 }
 
 PetscErrorCode register_klu_refactor() {
   PetscFunctionBegin;
-  PetscCall(MatInitializePackage());  // its own packages first: PETSc 3.18 forgets them otherwise
+  PetscCall(
+      MatInitializePackage());  // PETSc's own packages first: PETSc 3.18 does not register them afterwards
   PetscCall(MatSolverTypeRegister(kKluRefactor, MATSEQAIJ, MAT_FACTOR_LU, make_factor));
   PetscFunctionReturn(kSuccess);
 }

@@ -16,8 +16,8 @@ class PetscSession {
   PetscSession(const PetscSession&) = delete;
   PetscSession& operator=(const PetscSession&) = delete;
 
-  // The given options that nothing has asked for so far, e.g. because of a misspelt name; for a warning at
-  // the end.
+  // The given options that no call has used so far, e.g. because of a misspelt name; for a warning at the
+  // end.
   std::vector<std::string> unused_options() const;
 
  private:

@@ -20,7 +20,7 @@ namespace scree {
 namespace {
 
 constexpr const char* kPrefix = "mbs_";
-constexpr int kOwnWords = 5;  // of PetscSession before the user's
+constexpr int kOwnWords = 5;  // leading arguments set by PetscSession
 
 // Factor packages in the order of their measured speed on chains of bodies.
 constexpr std::array kPackages = {
@@ -148,8 +148,7 @@ bool PetscSolver::Impl::is_available(const char* package) {
 }
 
 // The user's choice is needed before KSPSetFromOptions applies it: PETSc's own LU does not pivot, and the
-// zero block needs rows put in an order with nonzeros on the diagonal, which the other packages do not
-// expect.
+// zero block needs rows ordered for nonzeros on the diagonal, which the other packages do not expect.
 void PetscSolver::Impl::choose_package() {
   std::array<char, 64> chosen{};
   PetscBool given = PETSC_FALSE;
@@ -179,7 +178,7 @@ void PetscSolver::Impl::create() {
   check(register_klu_refactor());
 #endif
   const PetscInt n = pattern.rows();
-  // PETSc works in these arrays; nothing is copied.
+  // PETSc uses these arrays in place; nothing is copied.
   check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(),
                                   values.data(), &matrix));
 #if SCREE_REFACTORS
@@ -210,7 +209,7 @@ std::span<const Real> PetscSolver::solution() const { return impl_->solution; }
 
 void PetscSolver::set_units(std::vector<Real> units) { impl_->units = std::move(units); }
 
-// Matrix and right-hand side by the units, or back.
+// Multiplies matrix and right-hand side by the units, or divides by them.
 void PetscSolver::Impl::multiply(bool back) {
   const auto times = [&](Real& value, Real unit) { value = back ? value / unit : value * unit; };
   for (int row = 0; row < pattern.rows(); ++row) {
@@ -242,7 +241,8 @@ bool PetscSolver::Impl::solve(bool refactor) {
   }
   check(VecGetArrayWrite(rhs_vector, &array));
   check(VecRestoreArrayWrite(rhs_vector, &array));
-  // Factoring here, not within KSPSolve, leaves the solver usable after a matrix that cannot be factored.
+  // Factoring here instead of within KSPSolve leaves the solver usable after a matrix that cannot be
+  // factored.
   PetscErrorCode factored = KSPSetUp(solver);
   if (!failed(factored)) factored = PCSetUp(preconditioner);
   if (is_singular(factored)) return false;
@@ -255,7 +255,7 @@ bool PetscSolver::Impl::solve(bool refactor) {
   return reason > 0 && finite;
 }
 
-// Of a solver without a session, as PETSc's own configuration and the order of the packages say.
+// Description of a solver without a session, by PETSc's configuration and the order of the packages.
 std::string PetscSolver::Impl::likely_description() {
 #if SCREE_REFACTORS
   const char* const package = kKluRefactor;

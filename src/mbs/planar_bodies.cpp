@@ -1,4 +1,5 @@
-// Planar bodies: positions x, y [m] and angle [rad], velocities their rates; u adds up, T = 1.
+// Planar bodies: positions x, y [m] and angle [rad], velocities their rates; displacements u are added to
+// positions, T = 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +26,7 @@ std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
   return block;
 }
 
-// What is of bodies in space stays as it is.
+// Writes the planar components only; those of spatial bodies keep their values.
 void write_motion(const Real* q, const Real* v, Real z, BodyMotion& motion) {
   motion.position = {q[0], q[1], z}, motion.velocity = {v[0], v[1], 0};
   motion.angle = q[2], motion.angular_velocity = v[2];
@@ -50,7 +51,7 @@ class PlanarBodies final : public RigidBodies {
   }
 
   void start(std::vector<Real>& position, std::vector<Real>& velocity) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       Real *q = b.at.in(position), *v = b.at.of(velocity);
       q[0] = b.body.position.x, q[1] = b.body.position.y, q[2] = b.body.angle;
       v[0] = b.body.velocity.x, v[1] = b.body.velocity.y, v[2] = b.body.angular_velocity;
@@ -58,11 +59,11 @@ class PlanarBodies final : public RigidBodies {
   }
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                  BodyPoses& poses) const override {
-    for (const Placed& b : bodies_) poses.planar.set(b.at.body, b.at.in(position), b.at.of(velocity));
+    for (const BodyData& b : bodies_) poses.planar.set(b.at.body, b.at.in(position), b.at.of(velocity));
   }
   void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                 std::vector<Real>& position) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *from = b.at.in(start), *u = b.at.of(displacement);
       Real* to = b.at.in(position);
       for (int k = 0; k < 3; ++k) to[k] = from[k] + u[k];
@@ -73,34 +74,34 @@ class PlanarBodies final : public RigidBodies {
   void set_tangents(const std::vector<Real>&, BodyPoses&) const override {}
 
   void set_scale(Real length, std::vector<Real>& coordinate_scale) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       Real* scale = b.at.of(coordinate_scale);
       scale[0] = scale[1] = length, scale[2] = 1;
     }
   }
   void add_mass(SparseTerm& mass) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       mass.add(b.at.column, b.at.column, b.body.mass);
       mass.add(b.at.column + 1, b.at.column + 1, b.body.mass);
       mass.add(b.at.column + 2, b.at.column + 2, b.body.inertia);
     }
   }
   void add_inverse_mass(SparseTerm& inverse) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       inverse.add(b.at.column, b.at.column, 1 / b.body.mass);
       inverse.add(b.at.column + 1, b.at.column + 1, 1 / b.body.mass);
       inverse.add(b.at.column + 2, b.at.column + 2, 1 / b.body.inertia);
     }
   }
   void set_weight(std::vector<Real>& force) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       b.at.of(force)[0] = b.body.mass * gravity_.x;
       b.at.of(force)[1] = b.body.mass * gravity_.y;
     }
   }
   Real weight_scale(Real length) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_)
+    for (const BodyData& b : bodies_)
       largest = std::max(largest, length * b.body.mass * norm(planar(gravity_)));
     return largest;
   }
@@ -119,7 +120,7 @@ class PlanarBodies final : public RigidBodies {
   Real add_contact(const BodyPoses&, const std::vector<BodyWrench>& wrench, Real length,
                    std::vector<Real>& force) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const BodyWrench& w = wrench[static_cast<std::size_t>(b.at.body)];
       Real* f = b.at.of(force);
       f[0] += w.force.x;
@@ -133,7 +134,7 @@ class PlanarBodies final : public RigidBodies {
   }
   void add_contact_derivatives(const BodyPoses&, const std::vector<BodyWrench>&,
                                SystemDerivatives& derivatives) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
       const ContactBlock& block = contact_of(b.at.body);
       if (!b.body.touchable) {
@@ -150,7 +151,7 @@ class PlanarBodies final : public RigidBodies {
   void subtract_commutator(const MultibodyState&, std::vector<Real>&) const override {}
   Real error(const HhtMethod& step, Real length) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *a0 = b.at.of(step.start_acceleration()), *a1 = b.at.of(step.acceleration());
       const Vec3 shift0{a0[0], a0[1], 0}, shift1{a1[0], a1[1], 0}, turn0{0, 0, a0[2]}, turn1{0, 0, a1[2]};
       const auto error = [&](Vec3 from, Vec3 to, Real over) {
@@ -162,7 +163,7 @@ class PlanarBodies final : public RigidBodies {
   }
   void add_integrator_loss(const MultibodyState& start, const MultibodyState& end,
                            Real& loss) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q0 = b.at.in(start.position), *q1 = b.at.in(end.position);
       const Real *v0 = b.at.of(start.velocity), *v1 = b.at.of(end.velocity), *f0 = b.at.of(start.applied),
                  *f1 = b.at.of(end.applied);
@@ -171,7 +172,7 @@ class PlanarBodies final : public RigidBodies {
     }
   }
   void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real* v = b.at.of(state.velocity);
       energies.kinetic += kinetic_energy(b.body.mass, shift(v)) + kinetic_energy(b.body.inertia, turn(v));
       energies.gravitational += gravitational_energy(b.body.mass, gravity_, shift(b.at.in(state.position)));
@@ -180,12 +181,12 @@ class PlanarBodies final : public RigidBodies {
 
   void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
               std::vector<BodyMotion>& out) const override {
-    for (const Placed& b : bodies_)
+    for (const BodyData& b : bodies_)
       write_motion(b.at.in(position), b.at.of(velocity), b.body.position.z,
                    out[static_cast<std::size_t>(b.at.body)]);
   }
   void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q0 = b.at.in(state.position), *v0 = b.at.of(state.velocity),
                  *a0 = b.at.of(state.acceleration);
       Real q[3], v[3];
@@ -198,7 +199,8 @@ class PlanarBodies final : public RigidBodies {
   }
 
  private:
-  // Of a body, what every step walks along: the model's holds names and shapes, too.
+  // The data of a body that every step reads, without the names and shapes of the model's bodies, which
+  // would slow the loop.
   struct Constants {
     Real mass, inertia;
     Vec3 position;
@@ -207,16 +209,16 @@ class PlanarBodies final : public RigidBodies {
     Real angular_velocity;
     bool touchable;  // Newton's matrix has a place for its contacts
   };
-  struct Placed {
+  struct BodyData {
     Constants body;
     BodyPlace at;
   };
-  // (x, y, angle) row by row, of what touches a body.
+  // Stiffness of the contacts of a body, (x, y, angle) row by row.
   struct ContactBlock {
     std::array<Real, 9> stiffness{}, damping{};
   };
 
-  // One block for all where nothing touches any: the walk along the bodies then leaves the others alone.
+  // One shared block where nothing touches any body, so that the loop over bodies reads no other memory.
   const ContactBlock& contact_of(int body) const {
     static const ContactBlock none;
     return touched_.empty() ? none : contact_[static_cast<std::size_t>(body)];
@@ -232,7 +234,7 @@ class PlanarBodies final : public RigidBodies {
   static Vec3 turn(const Real* v) { return {0, 0, v[2]}; }
 
   Vec3 gravity_;
-  std::vector<Placed> bodies_;
+  std::vector<BodyData> bodies_;
   std::vector<ContactBlock> contact_;  // per body of the model; zero where nothing touches
   std::vector<int> touched_;           // bodies with another contact_
 };

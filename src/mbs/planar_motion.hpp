@@ -21,7 +21,7 @@ inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
 inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
 inline Vec2 operator*(Real s, Vec2 a) { return {s * a.x, s * a.y}; }
 inline Real dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
-inline Vec2 perp(Vec2 a) { return {-a.y, a.x}; }  // turned by +90 degrees
+inline Vec2 perp(Vec2 a) { return {-a.y, a.x}; }  // rotated by +90 degrees
 inline Real norm(Vec2 a) { return std::sqrt(dot(a, a)); }
 inline Vec2 planar(Vec3 a) { return {a.x, a.y}; }
 
@@ -39,11 +39,11 @@ struct PlanarPose {
 class PlanarMotion {
  public:
   explicit PlanarMotion(const BodyLayout& layout) : poses_(static_cast<std::size_t>(layout.bodies()) + 1) {}
-  // position, velocity: (x, y, angle) of one body, and rates.
+  // Sets the pose of one body; position, velocity: (x, y, angle) and rates.
   void set(int body, const Real* q, const Real* v) {
     PlanarPose& pose = poses_[static_cast<std::size_t>(body + 1)];
     pose.position = {q[0], q[1]}, pose.velocity = {v[0], v[1]}, pose.spin = v[2];
-    // Many instants in a row are the same one, and the angle of many bodies stays.
+    // Successive calls are often at the same instant, and the angle of many bodies does not change.
     const Real angle = q[2];
     if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) return;
     pose.angle = angle, pose.rotation = Rotation(angle);
@@ -58,7 +58,7 @@ class PlanarMotion {
 struct PointPair {
   int body[2] = {kGround, kGround};
   Vec2 point[2];             // s_i, in the body frames [m]
-  int column[2] = {-1, -1};  // first of each body, -1: of the ground
+  int column[2] = {-1, -1};  // first column of each body, -1: of the ground
 };
 
 inline PointPair point_pair(const BodyLayout& layout, const int (&body)[2], const Vec3 (&point)[2]) {
@@ -68,7 +68,7 @@ inline PointPair point_pair(const BodyLayout& layout, const int (&body)[2], cons
   return pair;
 }
 
-// The pair at one instant: a_i = A_i s_i, d = P_2 - P_1 with P_i = r_i + a_i, and its rate.
+// Geometry of the pair at one instant: a_i = A_i s_i, d = P_2 - P_1 with P_i = r_i + a_i, and its rate.
 struct PairGeometry {
   Vec2 arm[2];      // a_i [m]
   Vec2 gap;         // d [m]
@@ -105,7 +105,7 @@ inline PairCoordinates pair_coordinates(const PointPair& pair) {
   return index;
 }
 
-// Leaves out the angle of a body whose point is its centre: that point does not move with it.
+// Omits the angle of a body whose point is its centre, as that point does not move with the angle.
 inline PairCoordinates point_coordinates(const PointPair& pair) {
   PairCoordinates index = pair_coordinates(pair);
   for (int i = 0; i < 2; ++i) {

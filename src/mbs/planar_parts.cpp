@@ -21,7 +21,7 @@ class PlanarParts final : public JointParts {
   void points_meet() override { add(coincidence_constraint(pair_)); }
   void point_on_axis() override { add(axis_constraint(pair_, perp(axis_), ScalarFunction(0))); }
   void same_orientation() override { add(angle_constraint(pair_, ScalarFunction(angle_offset_))); }
-  void axes_parallel() override {}  // they are
+  void axes_parallel() override {}  // always true in the plane
   void point_on_plane() override { refuse(); }
   void axes_perpendicular() override { refuse(); }
   void arms_perpendicular() override { refuse(); }

@@ -11,17 +11,18 @@ namespace scree {
 
 namespace {
 
-constexpr Real kSuspect = 1e-8;      // pivot of A^T A, the squared distance of a column from those before it
+constexpr Real kSuspect =
+    1e-8;  // pivot of A^T A, the squared distance of a column from the columns before it
 constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
-constexpr Real kRoundOff = 1e-12;    // coefficients below, likewise
+constexpr Real kRoundOff = 1e-12;    // coefficients that count as zero, relative to the largest
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
 constexpr Real kNearPart = 1e-3;     // coefficient of a near dependency that counts, relative to the largest
-constexpr int kPasses = 2;           // of projections, each leaves their round-off
+constexpr int kPasses = 2;           // of projections, each of which leaves their round-off
 
 using Matrix = Eigen::SparseMatrix<Real>;
 using Vector = Eigen::VectorXd;
 
-// Eigen's own sums over dense vectors make GCC 12 warn of its AVX-512 header.
+// Eigen's own sums over dense vectors trigger a warning of GCC 12 in its AVX-512 header.
 Real dot(const Vector& a, const Vector& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), Real(0));
 }
@@ -31,7 +32,7 @@ Real largest(const Vector& a) {
   return size;
 }
 
-// lengths: what the columns are divided by.
+// lengths: receives the divisors of the columns.
 Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries,
                     std::vector<Real>& lengths) {
   std::vector<Eigen::Triplet<Real>> triplets;
@@ -57,11 +58,11 @@ Matrix selected(const Matrix& a, const std::vector<int>& columns) {
   return b;
 }
 
-// Columns of A that are far from combinations of each other, and the others, which may be near them.
+// Columns of A that are well independent of each other, and the suspects, which may depend on them.
 class Basis {
  public:
-  // A column close to those before it spoils the pivots of those behind it, so that what is left is factored
-  // again until nothing in it is suspect. suspect: of a pivot.
+  // A column close to the ones before it spoils the pivots of those after it. The remaining columns are
+  // therefore factored again until none is suspect. suspect: threshold of a pivot.
   Basis(const Matrix& a, Real suspect) : columns_(static_cast<std::size_t>(a.cols())) {
     std::iota(columns_.begin(), columns_.end(), 0);
     factors_.setShift(kPivotShift);
@@ -84,8 +85,8 @@ class Basis {
   }
 
   const std::vector<int>& suspects() const { return suspects_; }
-  // Takes from `rest` its combination of the basis, and from `weight` the coefficients of that, by column of
-  // A.
+  // Subtracts from `rest` its combination of the basis, and from `weight` the coefficients of it, by column
+  // of A.
   void project(Vector& rest, Vector& weight) const {
     if (columns_.empty()) return;
     for (int pass = 0; pass < kPasses; ++pass) {
@@ -154,8 +155,8 @@ std::vector<Dependency> column_dependencies(int rows, int columns, const std::ve
   return dependencies;
 }
 
-// Of w = (A^T A)^-1 e_j with columns of length one the product A w / w_j is column j less its combination of
-// the others, of length 1 / sqrt(w_j).
+// With w = (A^T A)^-1 e_j and columns of length one the product A w / w_j is column j less its combination
+// of the others, of length 1 / sqrt(w_j).
 std::vector<NearDependency> nearest_combinations(int rows, int columns,
                                                  const std::vector<MatrixEntry>& entries,
                                                  const std::vector<int>& of) {

@@ -1,4 +1,4 @@
-// Finds linearly dependent columns of a sparse matrix.
+// Linear dependencies of the columns of a sparse matrix.
 #pragma once
 
 #include <utility>
@@ -13,36 +13,36 @@ struct MatrixEntry {
   Real value;
 };
 
-// sum of weight * column = 0.
+// One dependency: sum of weight * column = 0.
 struct Dependency {
-  std::vector<int> columns;                  // that take part, in increasing order
-  std::vector<std::pair<int, Real>> weight;  // those of the others are no more than round-off
+  std::vector<int> columns;                  // the columns that take part, in increasing order
+  std::vector<std::pair<int, Real>> weight;  // the weights of all others are round-off
 };
 
 constexpr Real kDependent = 1e-9;
 
 // All linear dependencies of columns, as many as the columns less the rank. Entries at equal positions add
-// up; with a value that is not finite there are none. Columns are scaled to length one; one counts as
+// up; none is returned where a value is not finite. Columns are scaled to length one; a column counts as
 // dependent if it is a combination of others to within `distance`. The cost is that of a sparse Cholesky
-// factorization of A^T A, linear in the length of a chain, and for each dependency and each column that is
-// near one the cost of a solution with it.
+// factorization of A^T A, linear in the length of a chain, plus one solution for each dependency and for
+// each column near one.
 std::vector<Dependency> column_dependencies(int rows, int columns, const std::vector<MatrixEntry>& entries,
                                             Real distance = kDependent);
 
-// How far a column of length one is from the nearest combination of all others of length one, and that
+// The distance of a column of length one from the nearest combination of all others of length one, and that
 // combination with the column itself; its `columns` are those whose weight counts.
 struct NearDependency {
   Real distance = 1;
   Dependency combination;
 };
-// Of each column in `of`, whatever the order of the others: distances above 1e-7 are exact to a percent,
-// below that they are no more than small. None where an entry is not finite. The cost is that of the
-// factorization and of one solution for each column asked for.
+// Nearest combinations of the columns in `of`, whatever the order of the others. Distances above 1e-7 are
+// exact to a percent; below that they are upper bounds. Empty where an entry is not finite. The cost is that
+// of the factorization and of one solution for each column asked for.
 std::vector<NearDependency> nearest_combinations(int rows, int columns,
                                                  const std::vector<MatrixEntry>& entries,
                                                  const std::vector<int>& of);
 
-// The columns of one of them; empty if the columns are independent.
+// The columns of one dependency; empty if the columns are independent.
 std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries);
 
 }  // namespace scree

@@ -67,7 +67,7 @@ void ReactionWatch::observe(const MultibodyState& start, const MultibodyState& e
 bool ReactionWatch::oscillates() const { return steps_ >= kSteps && alternating_ >= kGrowth * first_; }
 
 std::string oscillation_text(Real share, Real hht_alpha) {
-  constexpr Real kLeastAlpha = -1.0 / 3;  // of HHT (deck/keys_setup.cpp)
+  constexpr Real kLeastAlpha = -1.0 / 3;  // least hht_alpha (deck/keys_setup.cpp)
   const bool none = hht_alpha == 0;       // of either sign
   return fmt::format(
       "within the steps the reactions of joints and drivers, not those recorded, change sign at every step "

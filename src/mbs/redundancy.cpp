@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kNamesShown = 8;
 constexpr Real kParallel = 1e-9;  // sine between axes
-constexpr int kRowsPerLoop = 3;   // that repeat others in a planar loop of hinges
+constexpr int kRowsPerLoop = 3;   // redundant rows of a planar loop of revolute joints
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -34,8 +34,9 @@ std::string names_of(const RigidBodySystem& system, const std::set<int>& groups)
   return list_names(names);
 }
 
-// Hinges in space with parallel axes: a loop of them has three rows too many, and a spherical joint has two
-// rows less than a hinge, a cylindrical one another one. The first groups are the joints'.
+// Remedy for spatial revolute joints with parallel axes: a loop of them has three redundant rows; a
+// spherical joint has two rows less than a revolute joint, a cylindrical one has one less. The first groups
+// are those of the joints.
 std::string remedy_of_loops(const Model& model, const std::set<int>& groups, std::size_t repeated) {
   Vec3 axis;
   for (const int group : groups) {
@@ -49,16 +50,15 @@ std::string remedy_of_loops(const Model& model, const std::set<int>& groups, std
   }
   if (repeated % kRowsPerLoop != 0) return "";
   if (repeated > kRowsPerLoop)
-    return "; or, for the same motion without any, make in each loop one of these hinges spherical and "
-           "another "
-           "one cylindrical";
+    return "; or, for the same motion without any, make one of these revolute joints spherical and "
+           "another one cylindrical in each loop";
   return fmt::format(
       "; or, for the same motion without any, make joint '{}' spherical and joint '{}' cylindrical",
       model.joints[at(*groups.begin())].name, model.joints[at(*groups.rbegin())].name);
 }
 
-// In other positions rows need not repeat each other if their bodies have as many coordinates as rows.
-// Two rows alone are the same one twice, wherever the bodies are.
+// Remedy for dependent rows whose bodies have at least as many coordinates as there are rows: they may be
+// independent in other positions. Two rows alone are one condition twice, in every position.
 std::string remedy_of_position(const RigidBodySystem& system, const SparseTerm& jacobian,
                                const std::vector<Dependency>& repeated) {
   if (std::ranges::all_of(repeated, [](const Dependency& d) { return d.columns.size() <= 2; })) return "";
@@ -74,12 +74,13 @@ std::string remedy_of_position(const RigidBodySystem& system, const SparseTerm& 
   for (int column = 0; column < system.coordinates(); ++column)
     coordinates += bodies.contains(system.layout().body_of_column(column));
   if (system.constraints() - static_cast<int>(outside.size()) > coordinates) return "";
-  return "; where they do so in this position alone, as a linkage that lies flat, it is singular: share, or "
-         "start elsewhere";
+  return "; where they do so in this position alone, as in a flat linkage, the position is singular: permit "
+         "it, "
+         "or start elsewhere";
 }
 
-// The only driver among rows that repeat each other, where it moves: the others leave it no way to go, and no
-// share of the load makes one.
+// The only driver among redundant rows, where it moves: the other rows block its motion, and minimum-norm
+// reactions do not change that.
 const Driver* stuck_driver(const Model& model, const RigidBodySystem& system,
                            const std::vector<Dependency>& repeated) {
   for (const Dependency& dependency : repeated) {
@@ -87,7 +88,7 @@ const Driver* stuck_driver(const Model& model, const RigidBodySystem& system,
     const auto drives = [&](int group) { return system.groups()[at(group)].drives; };
     if (std::ranges::count_if(groups, drives) != 1) continue;
     const int group = *std::ranges::find_if(groups, drives);
-    const Driver& driver = model.drivers[at(group) - model.joints.size()];  // they follow the joints
+    const Driver& driver = model.drivers[at(group) - model.joints.size()];  // drivers follow the joints
     if (driver.motion.kind != TimeFunctionKind::constant) return &driver;
   }
   return nullptr;
@@ -103,7 +104,7 @@ constexpr const char* per_of(Asked asked) {
   return asked == Asked::positions ? "" : asked == Asked::velocities ? "/s" : "/s^2";
 }
 
-// Phi_q^T, its rows times the scales of their coordinates.
+// Columns of Phi_q^T, whose rows are multiplied by the scales of their coordinates.
 std::vector<MatrixEntry> scaled_columns(const RigidBodySystem& system, const SparseTerm& jacobian) {
   std::vector<MatrixEntry> transposed;
   for (std::size_t i = 0; i < jacobian.size(); ++i) {
@@ -113,8 +114,8 @@ std::vector<MatrixEntry> scaled_columns(const RigidBodySystem& system, const Spa
   return transposed;
 }
 
-// By how much the row that is easiest to change, a driver's where there is one, differs from what the others
-// leave for it.
+// The difference between the row that is easiest to change, a driver's where there is one, and the value
+// that the other rows imply for it.
 struct Difference {
   int row = 0;
   Real size = 0;  // [m, rad and their rates]
@@ -180,19 +181,19 @@ std::string check_redundancy(const Model& model, const RigidBodySystem& system, 
   const int rows = system.constraints(), rank = rows - static_cast<int>(repeated.size());
   if (model.integrator.redundant == RedundantRows::share)
     return fmt::format("{} rows of rank {}: {}", rows, rank, names_of(system, groups));
-  if (const Driver* const stuck = stuck_driver(model, system, repeated))
+  if (const Driver* const blocked = stuck_driver(model, system, repeated))
     throw InputError(with_label(
-        stuck->deck_label,
+        blocked->deck_label,
         fmt::format(
             "driver '{}' asks for a motion that the mechanism cannot follow: its position at t = 0 is a "
             "dead point, where {} are dependent. Start elsewhere, or drive another joint: "
-            "integrator.redundant = \"share\" does not pass it",
-            stuck->name, names_of(system, groups))));
+            "integrator.redundant = \"minimum-norm\" does not pass it",
+            blocked->name, names_of(system, groups))));
   throw InputError(with_label(
       label(*groups.rbegin()),
       fmt::format("redundant constraints: {} fix the same motion more than once, {} rows have rank {}; the "
                   "motion is unique, the reactions of these are not. Remove or change one; or set "
-                  "integrator.redundant = \"share\" for the least reactions{}{}",
+                  "integrator.redundant = \"minimum-norm\" for minimum-norm reactions{}{}",
                   names_of(system, groups), rows, rank, remedy_of_loops(model, groups, repeated.size()),
                   remedy_of_position(system, jacobian, repeated))));
 }
@@ -209,21 +210,21 @@ void check_contradictions(const RigidBodySystem& system, const std::vector<Depen
   }
   if (worst == nullptr) return;
   const ConstraintGroup& group = system.groups()[at(system.group_of(most.row))];
-  const std::string apart =
-      fmt::format("the {} that they ask for at t = {:.9g}{} are {:.6g} {}{} apart", word_of(asked), t,
+  const std::string difference_text =
+      fmt::format("the {} that they require at t = {:.9g}{} differ by {:.6g} {}{}", word_of(asked), t,
                   t > 0 ? " s" : "", most.size, system.is_angle(most.row) ? "rad" : "m", per_of(asked));
   const std::string names = names_of(system, {*worst});
   if (asked == Asked::accelerations && !group.drives)
     throw InputError(with_label(
         group.deck_label,
-        fmt::format("{} repeat each other in the position at t = 0, which is singular, and no motion goes on "
-                    "from the velocities there: {}. Give those of a motion that does, or start elsewhere",
-                    names, apart)));
+        fmt::format("{} are redundant in the position at t = 0, which is singular, and no motion continues "
+                    "the velocities there: {}. Give velocities of a possible motion, or start elsewhere",
+                    names, difference_text)));
   throw InputError(with_label(
       group.deck_label,
-      fmt::format("{} contradict each other: {}, and no motion has them all. Change or "
+      fmt::format("{} contradict each other: {}, and no motion satisfies them all. Change or "
                   "remove one{}",
-                  names, apart,
+                  names, difference_text,
                   worst->columns.size() > 2 ? "; or, where the position at t = 0 is singular, start elsewhere"
                                             : "")));
 }

@@ -1,4 +1,4 @@
-// What of a system depends on how the pose of a body is written: the bodies of one kind.
+// The operations on bodies that depend on how a pose is stored: planar or spatial.
 #pragma once
 
 #include <cmath>
@@ -15,11 +15,11 @@
 
 namespace scree {
 
-// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays far
-// above it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
+// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays
+// far above it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
 inline constexpr Real kElasticFloor = 1e-6;
 
-// Where a body stands in the model and in the vectors of the system.
+// Offsets of a body's entries in the model and in the vectors of the system.
 struct BodyPlace {
   int body = 0;
   int position = 0, column = 0;  // first of its own
@@ -34,31 +34,33 @@ struct BodyPlace {
   }
 };
 
-// Not a number if one of them is not: no step passes as exact because a comparison was false.
+// Maximum that is not a number if one argument is not: no step passes as exact because a comparison was
+// false.
 inline Real larger_error(Real a, Real b) { return std::isnan(a) || a > b ? a : b; }
 
-// Whether Newton's matrix has a place for the stiffness of what touches a body. Explicit steps give none.
+// Whether Newton's matrix has entries for the stiffness of contacts on a body. Explicit steps have no such
+// stiffness.
 inline bool may_be_stiffened(const Model& model, const Body& body) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   return !body.shapes.empty() || (implicit && !body.meshes.empty());
 }
 
-// Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes its
-// bodies' places of the layout. Vectors over bodies are in the model's order.
+// Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes the
+// entries of its bodies by the layout. Vectors over bodies are in the model's order.
 class RigidBodies {
  public:
   virtual ~RigidBodies() = default;
 
-  // At t = 0; position: [positions], velocity: [columns].
+  // Writes the start at t = 0; position: [positions], velocity: [columns].
   virtual void start(std::vector<Real>& position, std::vector<Real>& velocity) const = 0;
   virtual void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                          BodyPoses& poses) const = 0;
-  // As of MechanicalSystem.
+  // As in MechanicalSystem.
   virtual void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                         std::vector<Real>& position) const = 0;
   virtual void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const = 0;
 
-  // T^-1 at the end of a displacement, for what follows with these poses.
+  // Sets T^-1 at the end of a displacement, for subsequent evaluations with these poses.
   virtual void set_tangents(const std::vector<Real>& displacement, BodyPoses& poses) const = 0;
 
   // length: of the system [m].
@@ -69,19 +71,19 @@ class RigidBodies {
   // Largest weight times the length [J].
   virtual Real weight_scale(Real length) const = 0;
 
-  // Forces that stand for what M a leaves out; returns the size of the largest [J]. Derivatives: -Q_v T^-1
-  // and M (T^-1 - 1).
+  // Adds the inertial forces that M a does not contain; returns the largest contribution [J]. The
+  // derivatives are -Q_v T^-1 and M (T^-1 - 1).
   virtual Real add_inertial_force(const BodyPoses& poses, std::vector<Real>& force) const = 0;
   virtual void add_inertial_derivatives(const BodyPoses& poses, SystemDerivatives& derivatives) const = 0;
 
   virtual void set_contact_stiffness(const std::vector<WrenchStiffness>& touched) = 0;
-  // Adds the contacts' forces; returns the size of the largest [J].
+  // Adds the forces of the contacts; returns the largest contribution [J].
   virtual Real add_contact(const BodyPoses& poses, const std::vector<BodyWrench>& wrench, Real length,
                            std::vector<Real>& force) const = 0;
   virtual void add_contact_derivatives(const BodyPoses& poses, const std::vector<BodyWrench>& wrench,
                                        SystemDerivatives& derivatives) const = 0;
 
-  // Subtracts w x w' / 12 of each body that turns in space from `rate` [columns], [rad/s^3].
+  // Subtracts w x w' / 12 of each spatial body from `rate` [columns], [rad/s^3].
   virtual void subtract_commutator(const MultibodyState& state, std::vector<Real>& rate) const = 0;
   // Scaled local error of the positions of an open step.
   virtual Real error(const HhtMethod& step, Real length) const = 0;
@@ -91,7 +93,7 @@ class RigidBodies {
 
   virtual void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
                       std::vector<BodyMotion>& out) const = 0;
-  // tau [s] after the state, under its accelerations.
+  // Motion extrapolated by tau [s] from the state, under its accelerations.
   virtual void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const = 0;
 };
 

@@ -17,13 +17,13 @@ namespace scree {
 namespace {
 
 Real characteristic_length(const Model& model) {
-  Real radius = 0, reach = 0;
+  Real radius = 0, largest_arm = 0;
   for (const Body& body : model.bodies) {
     for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
   }
   const auto add_point = [&](int body, Vec3 point) {
     if (body == kGround) return;
-    reach = std::max(reach, is_spatial(model, body) ? norm(point) : norm(planar(point)));
+    largest_arm = std::max(largest_arm, is_spatial(model, body) ? norm(point) : norm(planar(point)));
   };
   for (int i = 0; i < 2; ++i) {
     for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
@@ -32,18 +32,18 @@ Real characteristic_length(const Model& model) {
   for (const Bushing& element : model.bushings)
     for (int i = 0; i < 2; ++i) add_point(element.body[i], element.point[i]);
   for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
-  if (radius > 0 || reach > 0) return radius > 0 ? radius : reach;
+  if (radius > 0 || largest_arm > 0) return radius > 0 ? radius : largest_arm;
   const Real of_corners = largest_corner_radius(model);
   return of_corners > 0 ? of_corners : 1;
 }
 
-// A natural spline through points that begin level does not begin at rest.
+// A natural spline through points that begin level does not start with zero velocity.
 std::string start_remedy(const TimeFunction& given, const ScalarFunction& motion) {
   if (given.kind != TimeFunctionKind::table || given.interpolation != Interpolation::natural) return "";
   return fmt::format(
       "; its table's natural spline begins with a rate of {:.4g}: interpolation = \"monotone\" stays between "
       "the "
-      "values, \"clamped\" with end_rates begins as they say",
+      "values, \"clamped\" starts with the rates in end_rates",
       motion(0).rate);
 }
 
@@ -124,8 +124,8 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
       std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
 }
 
-// Of the rows of a joint those of lengths are displacements along perpendicular axes, or points that
-// coincide: their multipliers are forces.
+// Rows of a joint that are lengths are displacements along perpendicular axes, or coincident points: their
+// multipliers are forces.
 std::vector<std::vector<int>> RigidBodySystem::load_rows(const Model& model) const {
   std::vector<std::vector<int>> rows(model.joints.size());
   for (std::size_t j = 0; j < rows.size(); ++j)

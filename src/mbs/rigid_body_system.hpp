@@ -22,19 +22,19 @@ namespace scree {
 struct ConstraintGroup {
   std::string title;       // "joint 'pin'", "driver 'crank'"
   std::string name;        // "pin"
-  std::string deck_label;  // as of a joint of the model
-  bool drives = false;     // it is a driver
-  Real start = 0;          // of a driver, its motion at t = 0
-  std::string remedy{};    // of a driver whose velocity at t = 0 contradicts what else is given
+  std::string deck_label;  // as of the joint in the model
+  bool drives = false;     // whether it is a driver
+  Real start = 0;          // of a driver: its motion at t = 0
+  std::string remedy{};    // of a driver whose velocity at t = 0 contradicts the other constraints
   BodyKind kind = BodyKind::planar;
-  int body = kGround;              // the joint's first one
-  Quaternion marker{};             // of the joint on it
-  int first = 0, end = 0;          // of the system's constraint objects
-  int first_row = 0, end_row = 0;  // of Phi
+  int body = kGround;              // the joint's first body
+  Quaternion marker{};             // the joint's marker on that body
+  int first = 0, end = 0;          // range of the system's constraint objects
+  int first_row = 0, end_row = 0;  // range of rows of Phi
 };
 
-// Positions and columns of the bodies stand as in the model's BodyLayout. After the bodies' positions stand
-// the angles of joints in space at the last accepted step [rad]: what tells how often they went round. Rows
+// Positions and columns of the bodies are ordered as in the model's BodyLayout. The angles of spatial joints
+// at the last accepted step [rad] follow after the positions of the bodies; they count the revolutions. Rows
 // of Phi: joints, then drivers, then couplers.
 class RigidBodySystem final : public MechanicalSystem {
  public:
@@ -57,18 +57,19 @@ class RigidBodySystem final : public MechanicalSystem {
   std::string coordinate_name(int coordinate) const override;
   std::string constraint_name(int constraint) const override;
 
-  // Contacts as the next evaluate() and differentiate() use them; the model starts without any.
+  // Sets the contacts for the next evaluate() and differentiate(); the model starts without any.
   void set_contacts(const ContactWrenches& contacts);
-  // The same contacts with other wrenches, one per body.
+  // Keeps the contacts' stiffness and replaces their wrenches, one per body.
   void set_forces(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
-  // The wrenches set last have the same forces and torques.
+  // Whether the wrenches set last have the same forces and torques.
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
 
-  // Of joints in space: how many of the positions, the last ones, are angles.
+  // Number of angles of spatial joints, the last of the positions.
   int counted_angles() const { return static_cast<int>(counted_.size()); }
-  // Writes these angles: those of the poses, on the branches next to the angles that the poses were set with.
+  // Writes the counted angles of the poses, each on the branch nearest to the angle with which the poses
+  // were set.
   void count_turns(const BodyPoses& poses, std::vector<Real>& position) const;
-  // Of the last evaluate().
+  // Poses of the last evaluate().
   const BodyPoses& poses() const { return poses_; }
 
   // M^-1, constant.
@@ -86,12 +87,12 @@ class RigidBodySystem final : public MechanicalSystem {
   // a joint or force element from the centre of its body; without these that of meshes on planes, or 1 m.
   Real length_scale() const { return length_scale_; }
   const std::vector<ConstraintGroup>& groups() const { return groups_; }
-  // Of one row.
+  // Group of one row.
   int group_of(int row) const { return group_[static_cast<std::size_t>(row)]; }
-  // C of one row is an angle [rad], not a length [m].
+  // Whether C of one row is an angle [rad]; otherwise it is a length [m].
   bool is_angle(int row) const { return is_angle_[static_cast<std::size_t>(row)]; }
 
-  // At any instant, from scratch.
+  // Poses of any instant, without use of earlier evaluations.
   BodyPoses poses_at(const SystemInstant& at) const;
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
   // memory: as in the state.
@@ -102,9 +103,10 @@ class RigidBodySystem final : public MechanicalSystem {
     Vec3 force, torque;
     Quaternion frame;
   };
-  // at: with its multipliers; memory: as in the state. Of a cylinder, which has no rows, what acts along it.
+  // Reactions of all groups. at: with its multipliers; memory: as in the state. A cylinder has no rows; its
+  // reaction is the force along it.
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& memory) const;
-  // Of the spring-dampers, then of the torsional ones: ForceElement::effort.
+  // ForceElement::effort of the spring-dampers, then of the torsional ones.
   std::vector<Real> spring_efforts(const SystemInstant& at) const;
 
  private:
@@ -117,14 +119,14 @@ class RigidBodySystem final : public MechanicalSystem {
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                  BodyPoses& poses) const;
   BodyPoses start_poses() const;
-  // start: at t = 0.
+  // Adds the rows of joints, drivers and couplers. start: the poses at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
   void add_elements(const Model& model, const BodyPoses& start);
   void add_cylinder_forces(const SystemInstant& at, const std::vector<Real>& memory, const BodyPoses& poses,
                            std::vector<GroupReaction>& reactions) const;
-  // Of every joint.
+  // The rows of the transmitted force, for every joint.
   std::vector<std::vector<int>> load_rows(const Model& model) const;
-  // The group's names are given, the rest follows. joint: whose the rows are; of a coupler's, the first one.
+  // Completes a group whose names are given. joint: the one with these rows; of a coupler the first one.
   void add_group(ConstraintGroup group, std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint,
                  BodyKind kind);
 
@@ -133,20 +135,20 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<std::unique_ptr<RigidBodies>> kinds_;
   std::vector<CountedAngle> counted_;
   Real length_scale_ = 1;
-  Real constant_force_scale_ = 0;  // of the weights and of stiffness; see SystemTerms::force_scale [J]
+  Real constant_force_scale_ = 0;  // of weights and stiffness; see SystemTerms::force_scale [J]
   std::vector<Real> weight_;       // generalized forces of gravity
   BodyPoses poses_;
   BodyPoses scratch_;
   std::vector<BodyWrench> wrench_;
   std::vector<PairStiffness> pairs_;
   std::vector<std::unique_ptr<Constraint>> constraints_;
-  std::vector<int> first_row_;  // of every constraint object
-  std::vector<bool> is_angle_;  // of every row
-  std::vector<int> group_;      // of every row
+  std::vector<int> first_row_;  // per constraint object
+  std::vector<bool> is_angle_;  // per row
+  std::vector<int> group_;      // per row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
-  std::size_t springs_ = 0;                      // of these the first so many
-  std::vector<const BushingElement*> bushings_;  // of these
+  std::size_t springs_ = 0;                      // number of spring-dampers, the first of elements_
+  std::vector<const BushingElement*> bushings_;  // those among elements_
   JointForces joint_forces_;
   std::vector<Real> coordinate_scale_, constraint_scale_;
 };

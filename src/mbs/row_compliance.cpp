@@ -7,7 +7,7 @@ namespace scree {
 
 namespace {
 
-using Entries = std::vector<std::vector<std::size_t>>;  // of a SparseTerm, by row
+using Entries = std::vector<std::vector<std::size_t>>;  // numbers of the entries of a SparseTerm, by row
 
 Entries entries_by_row(const SparseTerm& term, std::size_t rows) {
   Entries entries(rows);

@@ -1,4 +1,4 @@
-// The compliance of the constraints' rows where some may repeat others: it makes the reactions unique.
+// Compliance of the constraint rows where some may be redundant: it makes the reactions unique.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,17 @@
 
 namespace scree {
 
-// eps. The matrix' condition grows with 1/eps, the gap that the compliance leaves with eps: at 1e-9
-// multipliers have seven digits, and rows of 1 m and 1 kg under a few N yield by 1e-15 m in a step of 1 ms.
+// eps. The condition number of the matrix grows with 1/eps, the violation that the compliance leaves grows
+// with eps. At 1e-9 multipliers have seven digits, and rows of 1 m and 1 kg under a few N yield by 1e-15 m
+// in a step of 1 ms.
 inline constexpr Real kComplianceShare = 1e-9;
 
-// eps S with S = diag(Phi_q M^-1 Phi_q^T): how much acceleration a row's own multiplier gives it. A row thus
-// yields by the share eps of what it would without the others, whatever its units, and of all multipliers
-// that give the same forces the solution has the least sum of S lambda^2, to within eps.
+// eps S with S = diag(Phi_q M^-1 Phi_q^T), the acceleration of a row per unit of its own multiplier. A row
+// thus yields by the fraction eps of its yielding without the other rows, whatever its units. Of all
+// multipliers that give the same forces, the solution minimizes the sum of S lambda^2, to within eps.
 class RowCompliance {
  public:
-  RowCompliance() = default;  // of rows that do not share: empty
+  RowCompliance() = default;  // without redundant rows: empty
   // jacobian: Phi_q, whose pattern is taken; inverse_mass: M^-1 [coordinates, coordinates], constant.
   RowCompliance(const SparseTerm& jacobian, const SparseTerm& inverse_mass, int constraints);
 
@@ -29,7 +30,7 @@ class RowCompliance {
   struct Product {
     int row;
     std::size_t one, other;  // entries of the Jacobian
-    Real weight;             // eps times their entry of M^-1
+    Real weight;             // eps times the corresponding entry of M^-1
   };
   std::vector<Product> products_;
   std::vector<Real> of_row_;

@@ -1,4 +1,4 @@
-// One solution of the saddle-point systems without PETSc, and so without MPI.
+// A single solution of the saddle-point systems without PETSc, and so without MPI.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace scree {
 
-// By Eigen's SparseLU, which pivots in every column. values: of the matrix, in the pattern's order. False:
-// the matrix is singular, or the solution is not finite.
+// Solves by Eigen's SparseLU, which pivots in every column. values: of the matrix, in the pattern's order.
+// False: the matrix is singular, or the solution is not finite.
 bool solve_once(const SparsePattern& pattern, std::span<const Real> values, std::span<const Real> rhs,
                 std::span<Real> solution);
 

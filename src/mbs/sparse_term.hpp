@@ -1,4 +1,4 @@
-// A sparse matrix given as a sequence of contributions that is the same in every evaluation.
+// A sparse matrix given as a sequence of contributions whose positions are the same in every evaluation.
 #pragma once
 
 #include <span>
@@ -8,16 +8,16 @@
 
 namespace scree {
 
-// Filled by begin() and add() in a fixed order. The first filling records where the entries are, later ones
-// only replace the values: pattern and values come from the same code and cannot disagree. Equal positions
-// add up.
+// Filled by begin() and add() in a fixed order. The first filling records the positions of the entries,
+// later ones replace the values only: pattern and values come from the same code and cannot disagree.
+// Entries at equal positions add up.
 class SparseTerm {
  public:
   void begin() {
     recording_ = values_.empty();
     cursor_ = 0;
   }
-  // row, column: from 0; an entry with a negative one (the ground, a structural zero) is left out.
+  // row, column: from 0; an entry with a negative one (the ground, a structural zero) is omitted.
   void add(int row, int column, Real value) {
     if (row < 0 || column < 0) return;
     if (recording_)
@@ -26,7 +26,7 @@ class SparseTerm {
       values_[cursor_++] = value;
   }
 
-  // The same for all pairs (coordinate[i], coordinate[j]) and value(i, j), row by row; none is negative.
+  // Adds value(i, j) at all pairs (coordinate[i], coordinate[j]), row by row; no coordinate is negative.
   template <class Value>
   void add_block(std::span<const int> coordinate, const Value& value) {
     const std::size_t n = coordinate.size();
@@ -60,7 +60,7 @@ class SparseTerm {
   }
 
  private:
-  // Not inlined: add() then is, in the loops of every step.
+  // Not inlined, so that add() is inlined into the loops of every step.
   [[gnu::noinline]] void record(int row, int column, Real value) {
     rows_.push_back(row);
     columns_.push_back(column);

@@ -1,6 +1,6 @@
 // Spatial bodies: positions r [m] and a quaternion p, velocities r' [m/s] and the angular velocity w in the
-// body's frame [rad/s]; r + u_r, p exp(u_pi). With M = diag(m, m, m, J) the torque -w x J w stands among the
-// forces.
+// body's frame [rad/s]; a displacement gives r + u_r, p exp(u_pi). With M = diag(m, m, m, J) the gyroscopic
+// torque -w x J w is one of the forces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,14 +23,14 @@ void write(Vec3 v, Real* out) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 Quaternion quaternion(const Real* p) { return {p[0], p[1], p[2], p[3]}; }
 void write(const Quaternion& p, Real* out) { out[0] = p.w, out[1] = p.x, out[2] = p.y, out[3] = p.z; }
 
-// What is of planar bodies stays as it is.
+// Writes the spatial components only; those of planar bodies keep their values.
 void write_motion(Vec3 position, const Quaternion& orientation, Vec3 velocity, Vec3 spin,
                   BodyMotion& motion) {
   motion.position = position, motion.velocity = velocity;
   motion.kind = BodyKind::spatial, motion.orientation = orientation, motion.spin = spin;
 }
 
-// Of a packed symmetric 6x6 block, the 3x3 block (i, j) of forces (0) and torques (1).
+// The 3x3 block (i, j) of a packed symmetric 6x6 block; 0: forces, 1: torques.
 Mat3 block_of(const std::array<Real, 21>& packed, int i, int j) {
   const auto at = [&](int row, int column) {
     const int r = 3 * i + row, c = 3 * j + column;
@@ -39,7 +39,7 @@ Mat3 block_of(const std::array<Real, 21>& packed, int i, int j) {
   return {{at(0, 0), at(0, 1), at(0, 2)}, {at(1, 0), at(1, 1), at(1, 2)}, {at(2, 0), at(2, 1), at(2, 2)}};
 }
 
-// Torques and rotations from the global frame to the body's.
+// Transforms torques and rotations from the global frame to the body's.
 Mat3 in_own_frame(const Mat3& block, const Mat3& rotation, int i, int j) {
   const Mat3 rows = i == 1 ? transposed(rotation) * block : block;
   return j == 1 ? rows * rotation : rows;
@@ -78,7 +78,7 @@ class SpatialBodies final : public RigidBodies {
   }
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                  BodyPoses& poses) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q = b.at.in(position), *v = b.at.of(velocity);
       SpatialPose& pose = poses.spatial[b.at.body];
       pose.position = vec3(q), pose.rotation = rotation_matrix(quaternion(q + 3));
@@ -87,61 +87,61 @@ class SpatialBodies final : public RigidBodies {
   }
   void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                 std::vector<Real>& position) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *from = b.at.in(start), *u = b.at.of(displacement);
       const Vec3 turn = vec3(u + 3);
       if (norm(turn) >= M_PI)
-        throw SimulationError(
-            fmt::format("mbs_correct, rank 0: body '{}' (id {}) turns by more than half a turn in a step; "
-                        "time.step is too long",
-                        given_[static_cast<std::size_t>(&b - bodies_.data())].name, b.at.body));
+        throw SimulationError(fmt::format(
+            "mbs_correct, rank 0: body '{}' (id {}) rotates by more than half a revolution in a step; "
+            "time.step is too long",
+            given_[static_cast<std::size_t>(&b - bodies_.data())].name, b.at.body));
       Real* to = b.at.in(position);
       write(vec3(from) + vec3(u), to);
       write(normalized(quaternion(from + 3) * exponential(turn)), to + 3);
     }
   }
   void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       Real* turn = b.at.of(change) + 3;
       write(inverse_tangent(vec3(b.at.of(displacement) + 3)) * vec3(turn), turn);
     }
   }
   void set_tangents(const std::vector<Real>& displacement, BodyPoses& poses) const override {
-    for (const Placed& b : bodies_)
+    for (const BodyData& b : bodies_)
       poses.spatial[b.at.body].inverse_tangent = inverse_tangent(vec3(b.at.of(displacement) + 3));
   }
 
   void set_scale(Real length, std::vector<Real>& coordinate_scale) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       Real* scale = b.at.of(coordinate_scale);
       write(Vec3{length, length, length}, scale), write(Vec3{1, 1, 1}, scale + 3);
     }
   }
   void add_mass(SparseTerm& mass) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       for (int k = 0; k < 3; ++k) mass.add(b.at.column + k, b.at.column + k, b.mass);
-      add_block(mass, b.turning(), b.turning(), b.inertia);
+      add_block(mass, b.rotation_column(), b.rotation_column(), b.inertia);
     }
   }
   void add_inverse_mass(SparseTerm& inverse) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       for (int k = 0; k < 3; ++k) inverse.add(b.at.column + k, b.at.column + k, 1 / b.mass);
-      add_block(inverse, b.turning(), b.turning(), scree::inverse(b.inertia));
+      add_block(inverse, b.rotation_column(), b.rotation_column(), scree::inverse(b.inertia));
     }
   }
   void set_weight(std::vector<Real>& force) const override {
-    for (const Placed& b : bodies_) write(b.mass * gravity_, b.at.of(force));
+    for (const BodyData& b : bodies_) write(b.mass * gravity_, b.at.of(force));
   }
   Real weight_scale(Real length) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) largest = std::max(largest, length * b.mass * norm(gravity_));
+    for (const BodyData& b : bodies_) largest = std::max(largest, length * b.mass * norm(gravity_));
     return largest;
   }
 
-  // -w x J w; by the angular velocity -(w~ J - (J w)~).
+  // The torque -w x J w, and its derivative by the angular velocity, -(w~ J - (J w)~).
   Real add_inertial_force(const BodyPoses& poses, std::vector<Real>& force) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Vec3 torque = gyroscopic_torque(b.inertia, poses.spatial[b.at.body].spin);
       Real* f = b.at.of(force) + 3;
       write(vec3(f) + torque, f);
@@ -150,12 +150,13 @@ class SpatialBodies final : public RigidBodies {
     return largest;
   }
   void add_inertial_derivatives(const BodyPoses& poses, SystemDerivatives& derivatives) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const SpatialPose& pose = poses.spatial[b.at.body];
       const Mat3 tangent = pose.inverse_tangent;
-      add_block(derivatives.tangent_inertia, b.turning(), b.turning(), b.inertia * (tangent - identity3()));
+      add_block(derivatives.tangent_inertia, b.rotation_column(), b.rotation_column(),
+                b.inertia * (tangent - identity3()));
       const Mat3 damping = tilde(pose.spin) * b.inertia - tilde(b.inertia * pose.spin);
-      add_block(derivatives.damping, b.turning(), b.turning(), damping * tangent);
+      add_block(derivatives.damping, b.rotation_column(), b.rotation_column(), damping * tangent);
     }
   }
 
@@ -166,7 +167,7 @@ class SpatialBodies final : public RigidBodies {
   Real add_contact(const BodyPoses& poses, const std::vector<BodyWrench>& wrench, Real length,
                    std::vector<Real>& force) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const BodyWrench& w = wrench[static_cast<std::size_t>(b.at.body)];
       Real* f = b.at.of(force);
       write(vec3(f) + w.force, f);
@@ -181,13 +182,12 @@ class SpatialBodies final : public RigidBodies {
     }
     return largest;
   }
-  // By the body's own rotations dpi: the contact's block sees A dpi, and the torque A^T tau turns with the
-  // body,
-  // -(A^T tau)~.
+  // Derivatives by the body's own rotations dpi: the contact's block multiplies A dpi, and the torque A^T
+  // tau rotates with the body, -(A^T tau)~.
   void add_contact_derivatives(const BodyPoses& poses, const std::vector<BodyWrench>& wrench,
                                SystemDerivatives& derivatives) const override {
     static const WrenchStiffness none;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const auto found = touched_.find(b.at.body);
       if (!b.touchable && found == touched_.end()) continue;
       const SpatialPose& pose = poses.spatial[b.at.body];
@@ -209,17 +209,17 @@ class SpatialBodies final : public RigidBodies {
   }
 
   void subtract_commutator(const MultibodyState& state, std::vector<Real>& rate) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       Real* turn = b.at.of(rate) + 3;
       const Vec3 w = vec3(b.at.of(state.velocity) + 3), up = vec3(b.at.of(state.acceleration) + 3);
       write(vec3(turn) - rotation_drift(1, w, up), turn);
     }
   }
-  // Newmark's change of the rotation vector lacks the drift.
+  // Newmark's change of the rotation vector lacks the commutator term.
   Real error(const HhtMethod& step, Real length) const override {
     const Real h = step.step();
     Real largest = 0;
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *a0 = b.at.of(step.start_acceleration()), *a1 = b.at.of(step.acceleration());
       const Vec3 w = vec3(b.at.of(step.velocity()) + 3);
       const Vec3 turn = (step.coefficients().error_constant * h * h) * (vec3(a1 + 3) - vec3(a0 + 3)) -
@@ -231,7 +231,7 @@ class SpatialBodies final : public RigidBodies {
   }
   void add_integrator_loss(const MultibodyState& start, const MultibodyState& end,
                            Real& loss) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q0 = b.at.in(start.position), *q1 = b.at.in(end.position), *v0 = b.at.of(start.velocity),
                  *v1 = b.at.of(end.velocity), *f0 = b.at.of(start.applied), *f1 = b.at.of(end.applied);
       loss += integrator_loss(b.mass, vec3(q1) - vec3(q0), vec3(v0), vec3(v1), vec3(f0), vec3(f1));
@@ -242,7 +242,7 @@ class SpatialBodies final : public RigidBodies {
     }
   }
   void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real* v = b.at.of(state.velocity);
       energies.kinetic += kinetic_energy(b.mass, vec3(v)) + rotational_energy(b.inertia, vec3(v + 3));
       energies.gravitational += gravitational_energy(b.mass, gravity_, vec3(b.at.in(state.position)));
@@ -251,17 +251,17 @@ class SpatialBodies final : public RigidBodies {
 
   void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
               std::vector<BodyMotion>& out) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q = b.at.in(position), *v = b.at.of(velocity);
       write_motion(vec3(q), quaternion(q + 3), vec3(v), vec3(v + 3),
                    out[static_cast<std::size_t>(b.at.body)]);
     }
   }
   void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const override {
-    for (const Placed& b : bodies_) {
+    for (const BodyData& b : bodies_) {
       const Real *q = b.at.in(state.position), *v = b.at.of(state.velocity), *a = b.at.of(state.acceleration);
       const auto moved = [&](int k) { return tau * vec3(v + k) + (tau * tau / 2) * vec3(a + k); };
-      // Another normalization can change the last bit, by which a restart would differ.
+      // A second normalization can change the last bit, by which a restart would differ.
       const Quaternion p = quaternion(q + 3),
                        orientation = tau == 0 ? p : normalized(p * exponential(moved(3)));
       write_motion(vec3(q) + moved(0), orientation, vec3(v) + tau * vec3(a), vec3(v + 3) + tau * vec3(a + 3),
@@ -270,19 +270,20 @@ class SpatialBodies final : public RigidBodies {
   }
 
  private:
-  // Of a body, what every step walks along: the model's holds names and shapes, too.
-  struct Placed {
+  // The data of a body that every step reads, without the names and shapes of the model's bodies, which
+  // would slow the loop.
+  struct BodyData {
     BodyPlace at;
     Real mass;
     Mat3 inertia;    // J
     bool touchable;  // Newton's matrix has a place for its contacts
 
-    int turning() const { return at.column + 3; }
+    int rotation_column() const { return at.column + 3; }
   };
 
   Vec3 gravity_;
-  std::vector<Placed> bodies_;
-  std::vector<Body> given_;                 // the same, as the model has them
+  std::vector<BodyData> bodies_;
+  std::vector<Body> given_;                 // the bodies as the model has them
   std::map<int, WrenchStiffness> touched_;  // by body
 };
 

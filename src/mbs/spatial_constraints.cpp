@@ -23,7 +23,7 @@ class Coincidence final : public Constraint {
       const int first = pair_.column[i];
       if (first < 0) continue;
       for (int k = 0; k < 3; ++k) out.add(row + k, first + k, sign);
-      if (turns(i))
+      if (depends_on_rotation(i))
         add_block(out, row, first + 3,
                   -sign * (poses.spatial[pair_.body[i]].rotation * tilde(pair_.point[i])));
     }
@@ -31,7 +31,7 @@ class Coincidence final : public Constraint {
   void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const override {
     const Vec3 force{lambda[0], lambda[1], lambda[2]};
     for (int i = 0; i < 2; ++i) {
-      if (!turns(i)) continue;
+      if (!depends_on_rotation(i)) continue;
       const Real sign = i == 0 ? -1 : 1;
       const int first = pair_.column[i] + 3;
       add_block(out, first, first,
@@ -49,8 +49,8 @@ class Coincidence final : public Constraint {
 
  private:
   static void write(Vec3 v, Real* out) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
-  // Body i is no ground, and its point not its centre.
-  bool turns(int i) const { return pair_.column[i] >= 0 && !(pair_.point[i] == Vec3{}); }
+  // Whether body i is not the ground and its point not its centre.
+  bool depends_on_rotation(int i) const { return pair_.column[i] >= 0 && !(pair_.point[i] == Vec3{}); }
 
   SpatialPair pair_;
 };
@@ -76,7 +76,7 @@ class MeasureConstraint final : public Constraint {
   void acceleration_rhs(const BodyPoses& poses, Real t, Real* rhs) const override {
     *rhs = f_(t).acceleration - c_->second(poses.spatial);
   }
-  // The gradient by the second body's pose is a force, and a torque about its centre in its own frame.
+  // The gradient by the second body's pose gives a force, and a torque about its centre in its own frame.
   void add_reaction(const BodyPoses& poses, const Real* lambda, Vec3& force, Vec3& torque) const override {
     const PairGradient g = c_->gradient(poses.spatial);
     const SpatialPair& pair = c_->pair();

@@ -21,7 +21,7 @@ void add_at(std::vector<Real>& force, int first, Vec3 value) {
   f[0] += value.x, f[1] += value.y, f[2] += value.z;
 }
 
-// T = k (c - c_0) + k_d c' + actuator(t) along a measure c with gradient g and Hessian H.
+// T = k (c - c_0) + k_d c' + actuator(t) along a primitive function c with gradient g and Hessian H.
 // Q = -T g,  -Q_q = g (k g + k_d H^T v)^T + T H,  -Q_v = k_d g g^T
 class MeasureSpring final : public ForceElement {
  public:
@@ -155,7 +155,7 @@ class AppliedForceElement final : public ForceElement {
   int body_, column_;
   Vec3 point_;
   bool follows_body_;
-  Mat3 axes_;  // from the marker's to the body's
+  Mat3 axes_;  // from the marker's axes to the body's
   ScalarFunction force_[3], torque_[3];
 };
 

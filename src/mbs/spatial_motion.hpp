@@ -15,7 +15,7 @@ struct SpatialPose {
   Mat3 rotation = identity3();         // A, from the body's frame to the global one
   Mat3 inverse_tangent = identity3();  // T^-1 of the open step's displacement
 
-  // A s and A^T v.
+  // A s, and A^T v below.
   Vec3 turn(Vec3 s) const { return rotation * s; }
   Vec3 turn_back(Vec3 v) const { return transposed_times(rotation, v); }
   // Rate of A s, and its second derivative without accelerations: A w~ s, A w~ w~ s.
@@ -31,8 +31,8 @@ class SpatialMotion {
   SpatialPose& operator[](int body) { return poses_[static_cast<std::size_t>(body + 1)]; }
   const SpatialPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
 
-  // Angle of a joint at the last accepted step, whole turns included [rad]: of the branches of an angle the
-  // one nearest to it is meant. 0 where none was set. number: angle_number (mbs/joint_parts.hpp).
+  // Angle of a joint at the last accepted step, whole revolutions included [rad]; it selects the branch of
+  // the angle nearest to it. 0 where none was set. number: angle_number (mbs/joint_parts.hpp).
   Real counted_angle(int number) const {
     const auto k = static_cast<std::size_t>(number);
     return k < counted_.size() ? counted_[k] : 0;
@@ -48,7 +48,7 @@ class SpatialMotion {
   std::vector<Real> counted_;       // by number
 };
 
-// Two bodies, a point fixed to each and the first column of each.
+// Two bodies, a point fixed to each, and the first column of each.
 struct SpatialPair {
   int body[2] = {kGround, kGround};
   Vec3 point[2];             // s_i, in the body frames [m]

@@ -19,22 +19,22 @@ class SpatialParts final : public JointParts {
 
   void points_meet() override { add(coincidence_constraint(pair_)); }
   void point_on_axis() override {
-    displaced(0, ScalarFunction(0));
-    displaced(1, ScalarFunction(0));
+    add_displacement(0, ScalarFunction(0));
+    add_displacement(1, ScalarFunction(0));
   }
-  void point_on_plane() override { displaced(2, ScalarFunction(0)); }
+  void point_on_plane() override { add_displacement(2, ScalarFunction(0)); }
   void same_orientation() override {
-    square(0, 1);
-    square(1, 2);
-    square(2, 0);
+    add_perpendicular(0, 1);
+    add_perpendicular(1, 2);
+    add_perpendicular(2, 0);
   }
   void axes_parallel() override {
-    square(0, 2);
-    square(1, 2);
+    add_perpendicular(0, 2);
+    add_perpendicular(1, 2);
   }
-  void axes_perpendicular() override { square(2, 2); }
-  void arms_perpendicular() override { square(0, 1); }
-  // The sine of the twist that the second body has in excess of the first, both about their own axes.
+  void axes_perpendicular() override { add_perpendicular(2, 2); }
+  void arms_perpendicular() override { add_perpendicular(0, 1); }
+  // The sine of the difference between the rotations of the two bodies, each about its own axis.
   void equal_spins() override {
     std::vector<WeightedMeasure> terms;
     terms.push_back({1, dot1_measure(pair_, axis(0, 0), axis(1, 1))});
@@ -51,7 +51,7 @@ class SpatialParts final : public JointParts {
   void arm_angle(JointCoordinate angle, ScalarFunction f) override {
     add(measure_constraint(measured(angle), std::move(f)));
   }
-  void displacement(ScalarFunction f) override { displaced(2, std::move(f)); }
+  void displacement(ScalarFunction f) override { add_displacement(2, std::move(f)); }
   void length(ScalarFunction f) override { add(measure_constraint(distance_measure(pair_), std::move(f))); }
 
   std::unique_ptr<Measure> measured(JointCoordinate angle) const {
@@ -64,11 +64,11 @@ class SpatialParts final : public JointParts {
 
  private:
   Vec3 axis(int body, int k) const { return row_of(axes_[body], k); }
-  void displaced(int k, ScalarFunction f) {
+  void add_displacement(int k, ScalarFunction f) {
     add(measure_constraint(dot2_measure(pair_, axis(0, k)), std::move(f)));
   }
   // Axis i of the first marker is perpendicular to axis j of the second one.
-  void square(int i, int j) {
+  void add_perpendicular(int i, int j) {
     add(measure_constraint(dot1_measure(pair_, axis(0, i), axis(1, j)), ScalarFunction(0)));
   }
 

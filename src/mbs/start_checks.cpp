@@ -16,25 +16,25 @@ namespace scree {
 
 namespace {
 
-constexpr Real kPositionGap = 1e-10;     // of the constraint's scale
-constexpr Real kKeptGap = 1e-6;          // the same on the way, where steps have kept it to their tolerance
-constexpr Real kContradiction = 1e-6;    // the same of rows that repeat each other: a deck's digits
-constexpr Real kVelocityGap = 1e-8;      // of the largest velocity plus the constraint's scale per second
-constexpr Real kAccelerationGap = 1e-3;  // the same of accelerations
+constexpr Real kPositionGap = 1e-10;   // of the constraint's scale
+constexpr Real kKeptGap = 1e-6;        // of the scale, during a run, where steps keep Phi to their tolerance
+constexpr Real kContradiction = 1e-6;  // of the scale, between redundant rows: the digits of a deck
+constexpr Real kVelocityGap = 1e-8;    // of the largest velocity plus the constraint's scale per second
+constexpr Real kAccelerationGap =
+    1e-3;  // of the largest acceleration plus the constraint's scale per second squared
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// What is told of a driver besides; per: as below.
-std::string of_driver(const ConstraintGroup& group, std::string_view per) {
+// Additional text on a driver; per: as below.
+std::string driver_text(const ConstraintGroup& group, std::string_view per) {
   if (!group.drives) return "";
   return per == "/s"   ? group.remedy
          : per.empty() ? fmt::format("; the motion begins at {:.6g}", group.start)
                        : "";
 }
 
-// Of all groups the one whose gap [m, rad], or its rate with per = "/s", is the farthest above the limit:
-// what is wrong with the length of its length rows or of its angle rows, or nothing. driven: what of a
-// driver.
+// Text on the group whose gap [m, rad], or its rate with per = "/s", exceeds the limit most, in its length
+// rows or its angle rows; empty where none does. driven: additional text on a driver.
 std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit,
                           const std::string& what, const std::string& driven, const char* per) {
   std::string trouble;
@@ -53,7 +53,7 @@ std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>
       trouble = with_label(group.deck_label,
                            fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}{6}", group.title,
                                        group.drives ? driven : what, size, angle ? "rad" : "m", per,
-                                       limit * scale, of_driver(group, per)));
+                                       limit * scale, driver_text(group, per)));
     }
   return trouble;
 }
@@ -66,8 +66,8 @@ Real rate_scale(const RigidBodySystem& system, const std::vector<Real>& rate) {
   return 1 + fastest;
 }
 
-// The same of what rows ask for.
-Real asked_scale(const RigidBodySystem& system, const std::vector<Real>& wanted) {
+// 1 and the largest right-hand side of a row over its scale.
+Real rhs_scale(const RigidBodySystem& system, const std::vector<Real>& wanted) {
   Real fastest = 0;
   for (std::size_t j = 0; j < wanted.size(); ++j)
     fastest = std::max(fastest, std::abs(wanted[j]) / system.constraint_scale()[j]);
@@ -87,30 +87,29 @@ SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
 void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit, Real t) {
   const std::string when = fmt::format("t = {:.9g}{}", t, t > 0 ? " s" : "");
   const std::string trouble =
-      group_trouble(system, gap, limit, "its two sides do not meet at " + when + ", they miss by",
-                    "its motion and the joint's coordinate at " + when + " are apart by", "");
+      group_trouble(system, gap, limit, "its two sides do not meet at " + when + ", their distance is",
+                    "its motion and the joint's coordinate at " + when + " differ by", "");
   if (!trouble.empty()) throw InputError(trouble);
 }
 
 void check_joints_meet(const Model& model) {
   for (const Joint& joint : model.joints)
     if (const JointGap ends = joint_gap(model, joint); !ends.meets())
-      throw InputError(with_label(
-          joint.deck_label,
-          fmt::format(
-              "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g} m",
-              joint.name, ends.size, ends.allowed)));
+      throw InputError(
+          with_label(joint.deck_label, fmt::format("joint '{}': its two sides do not meet at t = 0, their "
+                                                   "distance is {:.6g} m, allowed is {:.3g} m",
+                                                   joint.name, ends.size, ends.allowed)));
 }
 
-// Whether a joint's points meet at t = 0 the model's rule says; of angles and drivers the rows of Phi.
+// Points of joints are checked by the model's rule (joint_gap); angles and drivers by the rows of Phi.
 void check_start_gaps(const Model& model, const RigidBodySystem& system, std::vector<Real> gap) {
-  for (std::size_t k = 0; k < model.joints.size(); ++k)  // the first groups are the joints'
+  for (std::size_t k = 0; k < model.joints.size(); ++k)  // the first groups are those of the joints
     for (int row = system.groups()[k].first_row; row < system.groups()[k].end_row; ++row)
       if (!system.is_angle(row)) gap[at(row)] = 0;
   check_gaps(system, gap, kPositionGap, 0);
 }
 
-// Rows that keep two axes parallel hold for axes that point against each other, too; an angle does not.
+// Rows that keep two axes parallel also hold for opposite axes; an angle between them does not.
 void check_senses(const Model& model) {
   for (const Joint& joint : model.joints) {
     if (!has_coordinate(joint.kind, JointCoordinate::angle) ||
@@ -120,11 +119,11 @@ void check_senses(const Model& model) {
     for (int i = 0; i < 2; ++i)
       axis[i] = to_global_direction(model, joint.body[i], rotation_matrix(joint.marker[i]) * Vec3{0, 0, 1});
     if (dot(axis[0], axis[1]) < 0)
-      throw InputError(
-          with_label(joint.deck_label,
-                     fmt::format("joint '{}': its axes on the two bodies point against each other at t = 0; "
-                                 "they must point the same way",
-                                 joint.name)));
+      throw InputError(with_label(
+          joint.deck_label,
+          fmt::format("joint '{}': its axes on the two bodies are opposite at t = 0; they must have "
+                      "the same direction",
+                      joint.name)));
   }
 }
 
@@ -148,12 +147,12 @@ void check_directions(const Model& model, const RigidBodySystem& system, const B
   }
 }
 
-// Two drivers of one coordinate repeat each other wherever the bodies are: they must agree for the whole run.
+// Two drivers of one coordinate are redundant in every position: they must agree for the whole run.
 void check_driven_twice(const Model& model, const RigidBodySystem& system,
                         const std::vector<Dependency>& repeated) {
   constexpr int kInstants = 200;
   std::vector<Dependency> twice;
-  const auto driven = [&](int row) {  // the drivers' groups follow the joints'
+  const auto driven = [&](int row) {  // groups of drivers follow those of joints
     const std::size_t group = at(system.group_of(row));
     return system.groups()[group].drives ? model.drivers[group - model.joints.size()].joint : -1;
   };
@@ -164,8 +163,7 @@ void check_driven_twice(const Model& model, const RigidBodySystem& system,
   for (int k = 1; k <= kInstants && !twice.empty(); ++k) {
     const Real t = model.time.end * k / kInstants;
     system.velocity_rhs({t, {}, {}}, rate);
-    check_contradictions(system, twice, rate, kContradiction * asked_scale(system, rate), Asked::velocities,
-                         t);
+    check_contradictions(system, twice, rate, kContradiction * rhs_scale(system, rate), Asked::velocities, t);
   }
 }
 
@@ -182,7 +180,7 @@ StartFindings check_start(const Model& model, RigidBodySystem& system, const std
   check_start_gaps(model, system, terms.constraint);
   std::vector<Real> rate(at(system.constraints()), 0);
   system.velocity_rhs({0, position, velocity}, rate);
-  check_contradictions(system, findings.repeated, rate, kVelocityGap * asked_scale(system, rate),
+  check_contradictions(system, findings.repeated, rate, kVelocityGap * rhs_scale(system, rate),
                        Asked::velocities);
   for (Real& asked : rate) asked = -asked;
   const SparseTerm& jacobian = terms.constraint_jacobian;
@@ -198,10 +196,10 @@ StartFindings check_start(const Model& model, RigidBodySystem& system, const std
 void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
                                   const std::vector<Real>& position, const std::vector<Real>& velocity) {
   if (repeated.empty()) return;
-  terms_at(system, position, velocity, 0);  // for the poses
+  terms_at(system, position, velocity, 0);  // sets the poses of the system
   std::vector<Real> asked(at(system.constraints()), 0);
   system.acceleration_rhs({0, position, velocity}, asked);
-  check_contradictions(system, repeated, asked, kAccelerationGap * asked_scale(system, asked),
+  check_contradictions(system, repeated, asked, kAccelerationGap * rhs_scale(system, asked),
                        Asked::accelerations);
 }
 
@@ -213,7 +211,7 @@ std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Re
 
 void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
                                const std::vector<Real>& acceleration) {
-  const std::string what = "no accelerations at t = 0 satisfy it and the others, they miss by";
+  const std::string what = "no accelerations at t = 0 satisfy it and the other constraints, the residual is";
   const std::string trouble =
       group_trouble(system, misfit, kAccelerationGap * rate_scale(system, acceleration), what, what, "/s^2");
   if (!trouble.empty()) throw InputError(trouble);
@@ -226,8 +224,8 @@ void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& positio
 
 std::string near_singular(RigidBodySystem& system, const std::vector<Real>& position, Real t) {
   constexpr Real kNear = 1e-3;  // of rows of length 1
-  const std::vector<Real> rest(at(system.coordinates()), 0);
-  const SystemTerms terms = terms_at(system, position, rest, t);
+  const std::vector<Real> zero_velocity(at(system.coordinates()), 0);
+  const SystemTerms terms = terms_at(system, position, zero_velocity, t);
   const std::vector<Dependency> repeated = repeated_rows(system, terms.constraint_jacobian, kNear);
   return repeated.empty() ? "" : names_of(system, repeated);
 }

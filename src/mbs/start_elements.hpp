@@ -1,4 +1,4 @@
-// Elements of joints that are judged by where they start.
+// Elements of joints that are checked at their start position.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class StartElements {
   explicit StartElements(const Model& model) : stops_(stops_of(model)), servos_(servos_of(model)) {}
 
   bool empty() const { return stops_.empty() && servos_.empty(); }
-  // Warnings, as passed_stops() and thrown_servos() have them; throws as these do.
+  // Warnings of passed_stops() and thrown_servos(); throws as they do.
   std::vector<std::string> findings(const RigidBodySystem& system, const MultibodyState& start,
                                     Real weight) const {
     std::vector<std::string> all = passed_stops(system, stops_, start, weight);

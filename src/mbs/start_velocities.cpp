@@ -13,7 +13,7 @@ namespace scree {
 namespace {
 
 constexpr Real kChanged = 1e-10;  // of the largest velocity plus the coordinate's scale per second
-constexpr Real kZero = 1e-14;     // the same: round-off of a velocity that is 0
+constexpr Real kZero = 1e-14;     // of the same scale: round-off of a velocity that is 0
 constexpr std::size_t kBodiesShown = 8;
 
 // The shortest TOML float that reads back to the same bits.
@@ -31,7 +31,7 @@ Real velocity_scale(const RigidBodySystem& system, const std::vector<Real>& velo
   return 1 + fastest;
 }
 
-// Of the origin of the body's frame at t = 0, which is what a deck gives [m/s]. v: the body's velocities.
+// Velocity of the origin of the body's frame at t = 0, as a deck gives it [m/s]. v: the body's velocities.
 Vec3 origin_velocity(const Body& body, const Real* v) {
   BodyMotion motion = start_motion(body);
   if (body.kind == BodyKind::spatial)
@@ -48,7 +48,7 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
   const Real scale = velocity_scale(system, to);
   const auto limit = [&](std::size_t i, Real share) { return share * scale * system.coordinate_scale()[i]; };
   const auto changed = [&](std::size_t i) { return std::abs(to[i] - from[i]) > limit(i, kChanged); };
-  // Of a velocity like that of column i.
+  // A velocity comparable to that of column i, as text.
   const auto number = [&](Real value, std::size_t i) {
     return all_digits(std::abs(value) > limit(i, kZero) ? value : 0);
   };
@@ -65,8 +65,8 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
       return std::abs(component(after, k) - component(before, k)) > limit(x, kChanged);
     };
     const bool moves = differs(0) || differs(1) || differs(2);
-    const bool turns = changed(turn) || (spatial && (changed(turn + 1) || changed(turn + 2)));
-    if (body.in_row || !(moves || turns)) continue;
+    const bool is_rotation = changed(turn) || (spatial && (changed(turn + 1) || changed(turn + 2)));
+    if (body.in_row || !(moves || is_rotation)) continue;
     if (++shown > kBodiesShown) {
       ++more;
       continue;
@@ -75,10 +75,10 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
     if (moves)
       add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, along(0), along(1),
                       dimension == 2 ? "" : ", " + along(2)));
-    if (turns && spatial)
+    if (is_rotation && spatial)
       add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name, number(to[turn], turn),
                       number(to[turn + 1], turn + 1), number(to[turn + 2], turn + 2)));
-    else if (turns)
+    else if (is_rotation)
       add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(to[turn], turn)));
   }
   if (more > 0) text += fmt::format(" and the same for {} more", more);
@@ -96,12 +96,13 @@ std::string largest_change(const RigidBodySystem& system, const std::vector<Real
   const int column = static_cast<int>(largest), body = system.layout().body_of_column(column);
   const std::size_t within = static_cast<std::size_t>(column - system.layout().column(body));
   const bool spatial = system.bodies()[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
-  const bool turns = within >= (spatial ? 3 : 2);
-  const std::string what = turns && !spatial ? "angular velocity"
-                                             : fmt::format("{} component of the {}velocity",
-                                                           "xyz"[within % 3], turns ? "angular " : "");
+  const bool is_rotation = within >= (spatial ? 3 : 2);
+  const std::string what =
+      is_rotation && !spatial
+          ? "angular velocity"
+          : fmt::format("{} component of the {}velocity", "xyz"[within % 3], is_rotation ? "angular " : "");
   return fmt::format("{} of {} from {} to {} {}", what, system.coordinate_name(column),
-                     all_digits(from[largest]), all_digits(to[largest]), turns ? "rad/s" : "m/s");
+                     all_digits(from[largest]), all_digits(to[largest]), is_rotation ? "rad/s" : "m/s");
 }
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// Velocities at t = 0 that joints and drivers fix: what is said of them.
+// Texts on velocities at t = 0 that joints and drivers determine.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace scree {
 
-// Which deck keys to set to what, with all digits, so that the bodies start with the velocities `to` where
-// they have `from`: "bodies.crank.velocity = [0.0, 1.25], bodies.crank.angular_velocity = 2.5". dimension: of
-// the space. Bodies of a row share their keys: these are left out. Empty where no key is left.
+// The deck keys and their values, with all digits, with which the bodies start with the velocities `to`
+// instead of `from`: "bodies.crank.velocity = [0.0, 1.25], bodies.crank.angular_velocity = 2.5". dimension:
+// of the domain. Keys that the bodies of a row share are left out. Empty where no key is left.
 std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& from,
                         const std::vector<Real>& to, int dimension);
 

@@ -11,11 +11,11 @@ namespace scree {
 
 namespace {
 
-// What a first step of length h leaves of a motion whose period it does not resolve: this share of c'' h^2,
-// for alpha from -0.05 to 0 (Hilber and Hughes, Earthquake Engineering and Structural Dynamics 6, 1978, call
-// it overshoot; the share is measured).
+// Overshoot of a first step of length h whose motion has a period that h does not resolve, as a fraction of
+// c'' h^2, for alpha from -0.05 to 0 (Hilber and Hughes, Earthquake Engineering and Structural Dynamics 6,
+// 1978). The fraction is measured.
 constexpr Real kOvershoot = 1e-3;
-constexpr Real kMost = 0.3;      // of the way to the position
+constexpr Real kMost = 0.3;      // fraction of the distance to the position
 constexpr Real kVisible = 1e-4;  // of 1 rad or the length scale
 
 }  // namespace
@@ -43,16 +43,15 @@ std::vector<std::string> thrown_servos(const RigidBodySystem& system, const std:
     const JointForce::Sample sample = force.sample(poses, at, 0);
     const Real off = std::abs(servo.position - sample.at.value),
                scale = force.is_angle() ? 1 : system.length_scale(),
-               way = off + servo.step * std::abs(servo.rate - sample.at.rate),
-               thrown = kOvershoot * std::abs(sample.at.second) * servo.step * servo.step;
-    if (thrown <= std::max(kMost * way, kVisible * scale)) continue;
+               distance = off + servo.step * std::abs(servo.rate - sample.at.rate),
+               overshoot = kOvershoot * std::abs(sample.at.second) * servo.step * servo.step;
+    if (overshoot <= std::max(kMost * distance, kVisible * scale)) continue;
     findings.push_back(fmt::format(
-        "servo '{0}' starts {1:.4g} {2} beside its position, and a fixed step of {3:.4g} s does not resolve "
-        "how "
-        "fast it pulls there: the first steps may throw joint '{4}' {5:.3g} {2} off. Give it a limit or a "
+        "servo '{0}' starts {1:.4g} {2} off its position, and a fixed step of {3:.4g} s does not resolve "
+        "its response: joint '{4}' may overshoot by {5:.3g} {2} in the first steps. Give it a limit or a "
         "position that starts where the joint is, take time.step = {6:.2g} s, or time.control = \"adaptive\"",
-        servo.name, off, force.is_angle() ? "rad" : "m", servo.step, servo.joint, thrown,
-        servo.step * std::sqrt(kMost * way / thrown)));
+        servo.name, off, force.is_angle() ? "rad" : "m", servo.step, servo.joint, overshoot,
+        servo.step * std::sqrt(kMost * distance / overshoot)));
   }
   return findings;
 }

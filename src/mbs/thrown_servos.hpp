@@ -1,4 +1,4 @@
-// Servos that start beside their position and are thrown off it by a fixed step that is too long.
+// Servos that start off their position and overshoot because a fixed step is too long.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@ namespace scree {
 // A motor of type position in a model with fixed steps.
 struct Servo {
   std::string name, joint;
-  Real position, rate;  // wanted at t = 0 [rad or m, per s]
+  Real position, rate;  // prescribed at t = 0 [rad or m, per s]
   Real step;            // [s]
   std::size_t number;   // among the system's joint forces
 };
-// Empty where steps adapt: these follow the error.
+// Empty with adaptive steps, which follow the error.
 std::vector<Servo> servos_of(const Model& model);
 
-// Warnings of the servos whose first step may throw them far off their position, one text for each. start:
-// with its accelerations.
+// Warnings, one text each, of the servos whose first step may overshoot their position by far. start: with
+// its accelerations.
 std::vector<std::string> thrown_servos(const RigidBodySystem& system, const std::vector<Servo>& servos,
                                        const MultibodyState& start);
 

@@ -1,4 +1,4 @@
-// Boxes around triangles and shells, and which of many boxes overlap one.
+// Boxes around triangles and shells, and a search for the boxes that overlap a given one.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,8 @@ std::vector<MeshBox> shell_boxes(const std::vector<MeshBox>& boxes,
 std::vector<Index> triangles_near_others(const std::vector<MeshBox>& boxes,
                                          const std::vector<Index>& shell_of_triangle);
 
-// A tree of boxes, split at the median of their middles along the longest side. The boxes live longer.
+// A tree of boxes, split at the median of their centres along the longest side. Keeps a reference: the boxes
+// must outlive it.
 class BoxTree {
  public:
   explicit BoxTree(const std::vector<MeshBox>& boxes) : boxes_(boxes), order_(boxes.size()) {
@@ -42,7 +43,7 @@ class BoxTree {
   // Calls visit(number) for all boxes that overlap the one given.
   template <class Visit>
   void for_each_at(const MeshBox& box, const Visit& visit) const {
-    if (!nodes_.empty()) look(0, box, visit);
+    if (!nodes_.empty()) visit_node(0, box, visit);
   }
 
  private:
@@ -50,7 +51,7 @@ class BoxTree {
   struct Node {
     MeshBox box;
     Index first, last;  // into order_
-    Index second = -1;  // of two children, the first of which follows the node; -1: a leaf
+    Index second = -1;  // second child; the first child follows the node; -1: a leaf
   };
 
   Index build(Index first, Index last) {
@@ -63,19 +64,19 @@ class BoxTree {
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const Index middle = first + (last - first) / 2;
     const auto along = [&](Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-    const auto place = [&](Index i) { return along(boxes_[i].min) + along(boxes_[i].max); };
+    const auto centre = [&](Index i) { return along(boxes_[i].min) + along(boxes_[i].max); };
     std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                     [&](Index i, Index j) { return place(i) < place(j); });
+                     [&](Index i, Index j) { return centre(i) < centre(j); });
     build(first, middle);
     const Index second = build(middle, last);
     nodes_[number].second = second;
     return number;
   }
   template <class Visit>
-  void look(Index number, const MeshBox& box, const Visit& visit) const {
+  void visit_node(Index number, const MeshBox& box, const Visit& visit) const {
     const Node& node = nodes_[number];
     if (!overlap(node.box, box)) return;
-    if (node.second >= 0) return look(number + 1, box, visit), look(node.second, box, visit);
+    if (node.second >= 0) return visit_node(number + 1, box, visit), visit_node(node.second, box, visit);
     for (Index i = node.first; i < node.last; ++i)
       if (overlap(boxes_[order_[i]], box)) visit(order_[i]);
   }

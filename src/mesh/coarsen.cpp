@@ -25,7 +25,7 @@ using Corners = std::array<Index, 3>;
 
 std::pair<Index, Index> edge_of(Index a, Index b) { return std::minmax(a, b); }
 
-// Vertices by their coordinates, triangles from their lowest corner and by their corners.
+// Vertices sorted by coordinates; triangles start at their lowest vertex and are sorted by their vertices.
 TriangleMesh in_own_order(const TriangleMesh& mesh) {
   std::vector<Index> order(mesh.vertices.size()), number(order.size());
   std::iota(order.begin(), order.end(), 0);
@@ -65,12 +65,12 @@ struct Quadric {
   Real at(Vec3 p) const { return std::max(Real(0), dot(p, square * p) - 2 * dot(linear, p) + constant); }
 };
 
-// A vertex may go into another one.
+// A possible edge collapse, of one vertex into another one.
 struct Collapse {
   Real cost, length;  // [m^4], squared [m^2]
   Index gone, kept;
-  int age_gone, age_kept;  // of the two when it was thought of
-  // The queue's first is the cheapest.
+  int age_gone, age_kept;  // of the two vertices when the collapse was queued
+  // The cheapest collapse comes first in the queue.
   bool operator<(const Collapse& other) const {
     return std::tie(cost, length, gone, kept) > std::tie(other.cost, other.length, other.gone, other.kept);
   }
@@ -108,12 +108,12 @@ class Coarsener {
   }
 
  private:
-  // What one collapse would make.
+  // The changes that a collapse would make.
   struct Change {
-    std::vector<Index> turned, gone;               // triangles
-    std::vector<std::pair<Index, Index>> of_near;  // vertices that are away, and the triangle nearest to them
-    std::vector<Real> distances;                   // of these
-    std::vector<Index> of_border;                  // those on the border that goes
+    std::vector<Index> changed, gone;              // triangles
+    std::vector<std::pair<Index, Index>> of_near;  // removed vertices and the triangle nearest to each
+    std::vector<Real> distances;                   // of these vertices
+    std::vector<Index> of_border;                  // those on the removed border edge
   };
 
   static Vec3 middle_of(const TriangleMesh& mesh) {
@@ -151,7 +151,7 @@ class Coarsener {
     }
   }
 
-  // Free and sharp edges, and those with more than two triangles; and vertices that must stay.
+  // Finds free edges, sharp edges and edges with more than two triangles, and the vertices that must stay.
   void find_borders() {
     std::map<std::pair<Index, Index>, std::vector<Index>> edges;
     for (Index t = 0; t < static_cast<Index>(triangles_.size()); ++t)
@@ -180,7 +180,7 @@ class Coarsener {
     queue_.push({both.at(vertices_[kept] - middle_), dot(apart, apart), gone, kept, age_[gone], age_[kept]});
   }
 
-  // The vertex at the other end of the border that goes on from `kept` over `gone`.
+  // The vertex at the other end of the border that continues from `kept` beyond `gone`.
   Index border_beyond(Index gone, Index kept) const {
     for (const Index w : neighbours(gone))
       if (w != kept && is_border(gone, w)) return w;
@@ -189,7 +189,7 @@ class Coarsener {
 
   bool collapse(Index gone, Index kept) {
     Change change;
-    for (const Index t : at_[gone]) (has(triangles_[t], kept) ? change.gone : change.turned).push_back(t);
+    for (const Index t : at_[gone]) (has(triangles_[t], kept) ? change.gone : change.changed).push_back(t);
     if (!keeps_topology(gone, kept, change) || !keeps_shape(gone, kept, change)) return false;
     const Index beyond = borders_at_[gone] == 2 ? border_beyond(gone, kept) : kNone;
     if (beyond != kNone && !keeps_border(gone, kept, beyond, change)) return false;
@@ -198,24 +198,24 @@ class Coarsener {
     return true;
   }
 
-  // The neighbours that both have are the third corners of the triangles between them, and no triangle comes
-  // to lie on another one.
+  // Whether the only common neighbours of both vertices are the third corners of the triangles between them,
+  // and no triangle comes to lie on another one.
   bool keeps_topology(Index gone, Index kept, const Change& change) const {
     const std::vector<Index> a = neighbours(gone), b = neighbours(kept);
     std::vector<Index> common;
     std::ranges::set_intersection(a, b, std::back_inserter(common));
-    if (common.size() != change.gone.size() || change.turned.empty()) return false;
+    if (common.size() != change.gone.size() || change.changed.empty()) return false;
     const auto sorted = [](Corners t) {
       std::ranges::sort(t);
       return t;
     };
-    for (const Index t : change.turned)
+    for (const Index t : change.changed)
       for (const Index other : at_[kept])
         if (sorted(moved(triangles_[t], gone, kept)) == sorted(triangles_[other])) return false;
     return true;
   }
 
-  // Height over the longest edge; of a triangle without area 0.
+  // Height over the longest edge; 0 of a degenerate triangle.
   Real slenderness(const Corners& t) const {
     Real longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -225,14 +225,14 @@ class Coarsener {
     return norm(area_normal(t)) / longest;
   }
   bool keeps_shape(Index gone, Index kept, const Change& change) const {
-    return std::ranges::all_of(change.turned, [&](Index t) {
+    return std::ranges::all_of(change.changed, [&](Index t) {
       const Corners now = moved(triangles_[t], gone, kept);
       const Real shape = slenderness(now);
       return shape > 0 && shape >= std::min(kSliver, slenderness(triangles_[t])) &&
              is_smooth(area_normal(now), area_normal(triangles_[t])) && stays_smooth(t, now, gone, kept);
     });
   }
-  // Across the edges of a triangle that turns.
+  // Whether no edge of a changed triangle becomes sharp.
   bool stays_smooth(Index t, const Corners& now, Index gone, Index kept) const {
     for (int k = 0; k < 3; ++k) {
       const Index a = now[k], b = now[(k + 1) % 3];
@@ -243,12 +243,12 @@ class Coarsener {
     return true;
   }
   bool is_smooth_to(const Corners& now, Index a, Index b, Index other, Index gone, Index kept) const {
-    if (has(triangles_[other], gone) && has(triangles_[other], kept)) return true;  // goes
+    if (has(triangles_[other], gone) && has(triangles_[other], kept)) return true;  // is removed
     const Corners beside = moved(triangles_[other], gone, kept);
     return !has(beside, a) || !has(beside, b) || is_smooth(area_normal(now), area_normal(beside));
   }
 
-  // The border runs from `beyond` to `kept` then, near all that it ran through.
+  // Whether the border, which then runs from `beyond` to `kept`, stays near all vertices that it contained.
   bool keeps_border(Index gone, Index kept, Index beyond, Change& change) const {
     const std::vector<Index> around = neighbours(beyond);
     if (std::ranges::binary_search(around, kept)) return false;
@@ -267,7 +267,7 @@ class Coarsener {
     for (const Index v : away) {
       Real nearest = kInfinity;
       Index triangle = kNone;
-      for (const Index t : change.turned) {
+      for (const Index t : change.changed) {
         const Corners now = moved(triangles_[t], gone, kept);
         const Real far =
             squared_distance(vertices_[now[0]], vertices_[now[1]], vertices_[now[2]], vertices_[v]);
@@ -287,7 +287,7 @@ class Coarsener {
         if (v != gone) std::erase(at_[v], t);
       triangles_[t] = {kNone, kNone, kNone};
     }
-    for (const Index t : change.turned) {
+    for (const Index t : change.changed) {
       triangles_[t] = moved(triangles_[t], gone, kept);
       at_[kept].push_back(t);
     }
@@ -329,16 +329,16 @@ class Coarsener {
 
   const std::vector<Vec3>& vertices_;
   Real distance_, cosine_;
-  std::vector<Corners> triangles_;        // kNone where they are gone
+  std::vector<Corners> triangles_;        // kNone where they are removed
   std::vector<std::vector<Index>> at_;    // triangles at each vertex, increasing
-  std::vector<std::vector<Index>> near_;  // of each triangle: vertices that are gone, and nearest to it
+  std::vector<std::vector<Index>> near_;  // for each triangle, the removed vertices nearest to it
   std::map<std::pair<Index, Index>, std::vector<Index>>
-      on_border_;                // of each edge: vertices that went along it
-  std::vector<int> borders_at_;  // how many of these edges at a vertex
+      on_border_;                // for each edge, the vertices collapsed along it
+  std::vector<int> borders_at_;  // number of these edges at a vertex
   std::vector<Quadric> quadrics_;
   std::vector<Real> moved_;  // [m]
   std::vector<int> age_;
-  std::vector<char> refused_;  // a collapse of this vertex
+  std::vector<char> refused_;  // whether a collapse of this vertex was refused
   Vec3 middle_;
   std::priority_queue<Collapse> queue_;
 };

@@ -8,16 +8,16 @@ namespace scree {
 
 struct CoarseMesh {
   TriangleMesh mesh;
-  Real moved = 0;  // the farthest that a vertex given is beside it [m]
+  Real moved = 0;  // largest distance of an original vertex from the mesh [m]
 };
 
-// A sound welded mesh without some of its vertices: edges are collapsed into one of their ends, those first
-// by which it stays nearest to the planes of the triangles given (Garland and Heckbert, SIGGRAPH 97, 209),
-// the shorter of equals, as long as no vertex given is then farther than `distance` [m] from it. Sharp edges,
-// which turn by more than feature_angle [rad], and free ones stay: their vertices go along them alone, and
-// none comes where they end or fork. No edge becomes sharp, no triangle turns over or becomes a sliver, and
-// what was closed stays closed. It depends on the triangles alone, not on their order: they come out in one
-// of their own.
+// A sound welded mesh with some of its vertices removed. Edges are collapsed into one of their ends, in the
+// order of the distance from the planes of the original triangles (Garland and Heckbert, SIGGRAPH 97, 209)
+// and, where equal, of their length, as long as every original vertex stays within `distance` [m] of the
+// mesh. Sharp edges, whose dihedral angle exceeds feature_angle [rad], and free edges are preserved: their
+// vertices are collapsed along them only, and vertices where they end or fork stay. No edge becomes sharp,
+// no triangle is inverted or becomes a sliver, and closed meshes stay closed. The result does not depend on
+// the order of the triangles; it has an order of its own.
 CoarseMesh coarsened(const TriangleMesh& mesh, Real distance, Real feature_angle);
 
 }  // namespace scree

@@ -32,7 +32,7 @@ GridVector cross(const GridVector& a, const GridVector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 GridVolume dot(const GridVector& a, const GridVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-// Zero for zero alone; for comparisons with others about the same points.
+// Zero for the zero vector alone; comparable among vectors of the same points.
 GridVolume size(const GridVector& a) {
   const auto absolute = [](GridVolume x) { return x < 0 ? -x : x; };
   return absolute(a.x) + absolute(a.y) + absolute(a.z);
@@ -52,7 +52,7 @@ Extent extent_of(const std::vector<Vec3>& points) {
 }
 
 std::vector<GridPoint> on_grid(const std::vector<Vec3>& points, const Extent& box) {
-  const auto cell = [](Real x, Real min, Real max) {  // halves: their differences are finite
+  const auto cell = [](Real x, Real min, Real max) {  // half coordinates, whose differences are finite
     return max > min ? std::llround((x / 2 - min / 2) / (max / 2 - min / 2) * kCells) : 0;
   };
   std::vector<GridPoint> grid;
@@ -67,18 +67,18 @@ std::vector<GridPoint> on_grid(const std::vector<Vec3>& points, const Extent& bo
   throw InputError("its vertices lie in one plane: their convex hull has no volume");
 }
 
-// From a tetrahedron on, the farthest of the points outside a face is added: the faces that it sees give way
-// to a cone from their border to it. A point in the plane of a face does not see it, as if it lay a little
-// deeper: so the faces that are seen always hang together, and every point that was outside one of them, and
-// still is outside, is outside the cone.
+// Starts from a tetrahedron and adds the farthest of the points outside a face: the faces visible from it
+// are replaced by a cone from their border to it. From a point in the plane of a face that face is not
+// visible, as if the point lay a little deeper. The visible faces are therefore always connected, and every
+// point outside one of them that is still outside the hull is outside the cone.
 class Hull {
  public:
   explicit Hull(const std::vector<GridPoint>& points)
       : points_(points), faces_(4), first_(points.size(), kNone) {
     start();
-    while (!waiting_.empty()) {
-      const Index face = waiting_.back();
-      waiting_.pop_back();
+    while (!queued_.empty()) {
+      const Index face = queued_.back();
+      queued_.pop_back();
       if (faces_[face].alive && !faces_[face].outside.empty()) grow(face);
     }
   }
@@ -93,31 +93,31 @@ class Hull {
  private:
   struct Face {
     std::array<Index, 3> corner{};  // counterclockwise seen from outside
-    std::array<Index, 3> across{};  // faces, across the edge from corner k to the next
-    std::vector<Index> outside;     // points that see it
-    Index farthest = kNone;         // of these
-    GridVolume height = 0;          // of that one, times twice the area
+    std::array<Index, 3> across{};  // neighbouring faces, across the edge from corner k to the next
+    std::vector<Index> outside;     // points from which the face is visible
+    Index farthest = kNone;         // one of `outside`
+    GridVolume height = 0;          // of `farthest`, times twice the area
     bool alive = true;
   };
   struct Border {
-    Index from, to;  // vertices, as on the side that goes
-    Index beyond;    // the face that stays
+    Index from, to;  // vertices, in the direction of the removed side
+    Index beyond;    // the face that remains
   };
 
-  // Above 0 where p sees the face; times the volume.
+  // Positive where the face is visible from p; the height as a volume.
   GridVolume height(const std::array<Index, 3>& corner, Index p) const {
     const GridPoint a = points_[corner[0]];
     return dot(cross(from(a, points_[corner[1]]), from(a, points_[corner[2]])), from(a, points_[p]));
   }
-  bool sees(Index p, const Face& face) const { return height(face.corner, p) > 0; }
+  bool is_visible_from(Index p, const Face& face) const { return height(face.corner, p) > 0; }
 
-  // The point that is the farthest by `measure`, the lowest of equals.
-  template <class Measure>
-  Index farthest(const Measure& measure) const {
+  // The point with the largest measure, the lowest of equals.
+  template <class Height>
+  Index farthest(const Height& height_of) const {
     Index best = 0;
     GridVolume most = 0;
     for (Index p = 0; p < static_cast<Index>(points_.size()); ++p)
-      if (const GridVolume far = measure(p); far > most) most = far, best = p;
+      if (const GridVolume far = height_of(p); far > most) most = far, best = p;
     if (most == 0) fail_flat();
     return best;
   }
@@ -129,14 +129,14 @@ class Hull {
     const auto over = [&](Index p) { return height({a, b, c}, p); };
     const Index d = farthest([&](Index p) { return std::max(over(p), -over(p)); });
     const bool seen = over(d) > 0;
-    const Index left = seen ? c : b, right = seen ? b : c;  // a, left, right does not see d
+    const Index left = seen ? c : b, right = seen ? b : c;  // triangle a, left, right is not visible from d
     put(0, {a, left, right}, {1, 2, 3});
     put(1, {left, a, d}, {0, 3, 2});
     put(2, {right, left, d}, {0, 1, 3});
     put(3, {a, right, d}, {0, 2, 1});
     std::vector<Index> all(points_.size());
     std::iota(all.begin(), all.end(), 0);
-    hand_out(all, {0, 1, 2, 3});
+    assign(all, {0, 1, 2, 3});
   }
 
   void put(Index f, const std::array<Index, 3>& corner, const std::array<Index, 3>& across) {
@@ -145,8 +145,8 @@ class Hull {
     face.corner = corner, face.across = across;
   }
 
-  // Each point to the first of the faces that it sees.
-  void hand_out(const std::vector<Index>& points, const std::vector<Index>& faces) {
+  // Assigns each point to the first of the faces that are visible from it.
+  void assign(const std::vector<Index>& points, const std::vector<Index>& faces) {
     for (const Index p : points)
       for (const Index f : faces) {
         Face& face = faces_[f];
@@ -157,18 +157,18 @@ class Hull {
         break;
       }
     for (const Index f : faces)
-      if (!faces_[f].outside.empty()) waiting_.push_back(f);
+      if (!faces_[f].outside.empty()) queued_.push_back(f);
   }
 
   void grow(Index face) {
     const Index p = faces_[face].farthest;
     std::vector<Index> points;
-    const std::vector<Border> borders = take_away(face, p, points);
-    hand_out(points, cone(borders, p));
+    const std::vector<Border> borders = remove_visible(face, p, points);
+    assign(points, cone(borders, p));
   }
 
-  // The faces that p sees, from this one on; their points.
-  std::vector<Border> take_away(Index face, Index p, std::vector<Index>& points) {
+  // Removes the faces visible from p, starting at this one, and collects their points; returns their border.
+  std::vector<Border> remove_visible(Index face, Index p, std::vector<Index>& points) {
     std::vector<Index> seen{face};
     std::vector<Border> borders;
     faces_[face].alive = false;
@@ -177,7 +177,7 @@ class Hull {
       for (int e = 0; e < 3; ++e) {
         const Index next = gone.across[e];
         if (!faces_[next].alive) continue;
-        if (sees(p, faces_[next])) {
+        if (is_visible_from(p, faces_[next])) {
           faces_[next].alive = false;
           seen.push_back(next);
         } else {
@@ -191,7 +191,7 @@ class Hull {
     return borders;
   }
 
-  // The new faces.
+  // Adds the faces from the border to p and returns them.
   std::vector<Index> cone(const std::vector<Border>& borders, Index p) {
     std::vector<Index> made;
     for (const Border& border : borders) {
@@ -222,9 +222,9 @@ class Hull {
 
   const std::vector<GridPoint>& points_;
   std::vector<Face> faces_;
-  std::vector<Index> free_;     // places of faces that are gone
-  std::vector<Index> waiting_;  // faces with points outside, some of them gone
-  std::vector<Index> first_;    // of a vertex on the border of a cone: the new face whose edge begins there
+  std::vector<Index> free_;    // positions of removed faces
+  std::vector<Index> queued_;  // faces with points outside, some of them removed
+  std::vector<Index> first_;   // for a vertex on the border of a cone, the new face whose edge begins there
 };
 
 TriangleMesh without_unused(const std::vector<Vec3>& points, std::vector<std::array<Index, 3>> triangles) {

@@ -11,10 +11,9 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// The drum's section. `inner` and `outer` run counterclockwise; a lifter stands from inner[foot] to
-// inner[foot + 1] and has two tips. The arc from there to the next foot has an even number of segments. Under
-// a lifter the outer ring goes on, and `under` is beside it where the inner one does not: inner, with those
-// between its feet, has the outer one's angles.
+// The drum's section. `inner` and `outer` run counterclockwise. A lifter stands between inner[foot] and
+// inner[foot + 1] and has two tips. The arc from there to the next foot has an even number of segments.
+// `inner` has the angles of `outer`, except between the feet of a lifter, where `under` has them instead.
 struct Section {
   std::vector<Vec3> inner, outer, tips, under;  // under: of the first lifter, then of the second, ...
   std::vector<std::size_t> feet;
@@ -51,12 +50,12 @@ Section drum_section(const DrumShape& shape) {
   return section;
 }
 
-// The section's vertices at one height.
+// The vertices of the section at one height.
 struct Level {
   Ring inner, tips;
 };
 
-// Around the free space: the inner ring with the ways over the lifters.
+// Contour of the free space: the inner ring, over the lifters.
 Ring contour(const Section& section, const Level& level) {
   if (section.feet.empty()) return level.inner;
   Ring ring;
@@ -93,8 +92,8 @@ void add_cut(MeshBuilder& builder, const Section& section, const Level& level, c
   up ? builder.strip(outer, wall, true) : builder.strip(wall, outer, true);
 }
 
-// The end wall inside the contour: between two lifters a fan about the middle of the arc, which sees the axis
-// and both lifters' sides; towards each lifter a triangle from the axis.
+// The end wall inside the contour. Between two lifters it is a fan about the middle of the arc, from which
+// the axis and both lifters' sides are visible; towards each lifter it is a triangle from the axis.
 void add_inner_end(MeshBuilder& builder, const Section& section, const Level& level, Real z, bool up) {
   const Index axis = builder.vertex({0, 0, z});
   const auto add = [&](Index a, Index b, Index c) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// Largest distance of a chord that spans this angle from its arc of radius 1, without the difference of two
-// numbers near 1.
+// Largest distance of a chord that spans this angle from its arc of radius 1, without subtraction of numbers
+// near 1.
 Real sag_of(Real angle) {
   const Real s = std::sin(angle / 4);
   return 2 * s * s;
@@ -21,8 +21,7 @@ Real sag_of(Real angle) {
 
 Real around(Real radius, Index segments) { return radius * sag_of(2 * kPi / segments); }
 
-// Sag of the side of a cone [m]. A chord's middle is beside the circle by the sag, and beside the side by
-// that times the cosine of its slope.
+// Sag of the side of a cone [m]: the sag of a chord of its circle times the cosine of the side's slope.
 Real of_cone(Real radius, Real top_radius, Real length, Index segments) {
   const Real slant = std::hypot(length, radius - top_radius);
   return around(std::max(radius, top_radius), segments) * length / slant;
@@ -55,8 +54,8 @@ Real facet_deviation(const FunnelShape& shape) {
   return shape.outlet_length > 0 ? std::max(cone, around(shape.radius, shape.segments)) : cone;
 }
 
-// The largest facet is in the middle of a face of the icosahedron. Its corners are at an angle from the
-// face's axis whose tangent is halved with each level, as the middles of the facet's edges are half as far
+// The largest facet is in the middle of a face of the icosahedron. The tangent of the angle between its
+// corners and the face's axis is halved with each level, as the middles of the facet's edges are half as far
 // from the axis and as far along it as its corners.
 Real facet_deviation(const SphereShape& shape) {
   const Real g = std::numbers::phi_v<Real>, cosine = g * g / std::sqrt(3 * (1 + g * g));
@@ -64,8 +63,8 @@ Real facet_deviation(const SphereShape& shape) {
   return shape.radius * sag_of(2 * std::atan(tangent));
 }
 
-// A half sphere's facets between two latitudes are flat, and symmetric to a meridian: the nearest point to
-// the centre is on the line between the middles of its two chords.
+// A half sphere's facets between two latitudes are plane and symmetric about a meridian: the point nearest
+// to the centre is on the line between the middles of its two chords.
 Real facet_deviation(const CapsuleShape& shape) {
   const Real chord = std::cos(kPi / shape.segments);
   Real nearest = 1;
@@ -76,7 +75,7 @@ Real facet_deviation(const CapsuleShape& shape) {
   return shape.radius * (1 - nearest);
 }
 
-// The outer wall has the angles of the arcs between the lifters and of those under them.
+// The outer wall has the angles of the arcs between the lifters and of the arcs under them.
 Real facet_deviation(const DrumShape& shape) {
   const DrumArcs arcs = drum_arcs(shape);
   return (shape.radius + shape.wall) * sag_of(std::max(arcs.angle, arcs.angle_below));
@@ -84,22 +83,22 @@ Real facet_deviation(const DrumShape& shape) {
 
 namespace {
 
-// Distance of a point from the helicoid z = -rise * angle, which goes on to any radius: the least over the
-// angle of the distance from the line at that angle, by Newton's method from the point's own angle on.
+// Distance of a point from the helicoid z = -rise * angle of unlimited radius: the least distance from the
+// line at an angle, over all angles, by Newton's method from the point's own angle.
 Real distance_from_helicoid(Vec3 p, Real rise) {
   const Real radius = std::hypot(p.x, p.y), own = std::atan2(p.y, p.x);
-  Real turn = 0;  // from there
+  Real angle_from_start = 0;  // from that angle
   for (int step = 0; step < 20; ++step) {
-    const Real height = p.z + rise * (own + turn);
-    const Real slope = radius * radius * std::sin(2 * turn) / 2 + rise * height;
-    const Real bend = radius * radius * std::cos(2 * turn) + rise * rise;
+    const Real height = p.z + rise * (own + angle_from_start);
+    const Real slope = radius * radius * std::sin(2 * angle_from_start) / 2 + rise * height;
+    const Real bend = radius * radius * std::cos(2 * angle_from_start) + rise * rise;
     if (!(bend > 0)) break;
-    turn -= slope / bend;
+    angle_from_start -= slope / bend;
   }
-  return std::hypot(radius * std::sin(turn), p.z + rise * (own + turn));
+  return std::hypot(radius * std::sin(angle_from_start), p.z + rise * (own + angle_from_start));
 }
 
-// The largest distance of points of a triangle.
+// The largest distance of points of a triangle from the helicoid.
 Real farthest_from_helicoid(Vec3 a, Vec3 b, Vec3 c, Real rise) {
   constexpr int kPoints = 24;
   Real farthest = 0;
@@ -111,9 +110,9 @@ Real farthest_from_helicoid(Vec3 a, Vec3 b, Vec3 c, Real rise) {
   return farthest;
 }
 
-// Largest distance of a face of the flight between two sections that are turned by `angle`, each patch split
-// from its inner corner in the one to its outer corner in the other; the other face is its image in a half
-// turn.
+// Largest distance of a face of the flight between two sections that are rotated by `angle` against each
+// other, each patch split from its inner corner in the one to its outer corner in the other; the other face
+// is its image under a half revolution.
 Real of_flight(const ScrewShape& shape, const ScrewParts& parts, Real angle) {
   const Real rise = std::abs(shape.pitch) / (2 * kPi), height = rise * angle;
   const auto at = [&](Real radius, bool high) {
@@ -135,26 +134,27 @@ Real of_flight(const ScrewShape& shape, const ScrewParts& parts, Real angle) {
 Real facet_deviation(const ScrewShape& shape) {
   const ScrewParts parts = screw_parts(shape);
   const Real sector = 2 * kPi * shape.thickness / std::abs(shape.pitch);
-  const Real turn = 2 * kPi * shape.length / std::abs(shape.pitch) / parts.layers;
+  const Real angle_from_start = 2 * kPi * shape.length / std::abs(shape.pitch) / parts.layers;
   const Real on_rim = sector / parts.sector_segments, on_core = (2 * kPi - sector) / parts.core_segments;
   const Real at_ends = shape.core_length > shape.length ? on_rim : 0;
-  return std::max({shape.flight_radius * sag_of(std::max(turn, on_rim)),
-                   shape.core_radius * sag_of(std::max({turn, on_core, at_ends})),
-                   of_flight(shape, parts, turn)});
+  return std::max({shape.flight_radius * sag_of(std::max(angle_from_start, on_rim)),
+                   shape.core_radius * sag_of(std::max({angle_from_start, on_core, at_ends})),
+                   of_flight(shape, parts, angle_from_start)});
 }
 
-Index fitting_segments(Real radius, Real grain, Real feature_angle) {
+Index fitting_segments(Real radius, Real particle_radius, Real feature_angle) {
   constexpr Index kLeast = 16, kMost = 360;
   const Real quarter = std::min<Real>(kMost, std::floor(kPi / 2 / feature_angle) + 1);
-  const Index smooth = static_cast<Index>(quarter);  // in a quarter
-  return std::clamp(segments_within(radius, kFacetShare * grain), std::clamp(4 * smooth, kLeast, kMost),
-                    kMost);
+  const Index smooth = static_cast<Index>(quarter);  // segments in a quarter
+  return std::clamp(segments_within(radius, kFacetShare * particle_radius),
+                    std::clamp(4 * smooth, kLeast, kMost), kMost);
 }
 
-int fitting_levels(Real radius, Real grain) {
+int fitting_levels(Real radius, Real particle_radius) {
   constexpr int kLeast = 2, kMost = 6;
   int levels = kLeast;
-  while (levels < kMost && facet_deviation(SphereShape{radius, levels}) > kFacetShare * grain) ++levels;
+  while (levels < kMost && facet_deviation(SphereShape{radius, levels}) > kFacetShare * particle_radius)
+    ++levels;
   return levels;
 }
 

@@ -16,7 +16,7 @@
 namespace scree {
 namespace {
 
-constexpr Real kRoundOff = 1e-9;  // over the extent: so far from a plane or a line what is on it may be
+constexpr Real kRoundOff = 1e-9;  // tolerance for points on a plane or a line, relative to the extent
 constexpr Index kNone = -1;
 
 Real extent_of(const std::vector<Vec3>& points) {
@@ -25,15 +25,15 @@ Real extent_of(const std::vector<Vec3>& points) {
   return std::sqrt(squared);
 }
 
-// Coordinates in a plane, and which point has them.
+// A point by its coordinates in a plane, and its number.
 struct PlanePoint {
   Real x, y;
   Index point;
 };
 
-// Twice the area of the triangle, above 0 where the way from a over b to c turns left: how far b is from the
-// line through a and c, times the distance of these.
-Real turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+// Twice the area of the triangle, positive where the polyline a, b, c bends left: the distance of b from the
+// line through a and c, times the distance of a and c.
+Real orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -47,7 +47,7 @@ std::vector<PlanePoint> outline(std::vector<PlanePoint> points, Real tolerance) 
   std::vector<PlanePoint> chain;
   const auto add = [&](const PlanePoint& p, std::size_t begin) {
     const auto is_corner = [&](const PlanePoint& a, const PlanePoint& b) {
-      return turn(a, b, p) > tolerance * std::hypot(p.x - a.x, p.y - a.y);
+      return orientation(a, b, p) > tolerance * std::hypot(p.x - a.x, p.y - a.y);
     };
     while (chain.size() >= begin + 2 && !is_corner(chain[chain.size() - 2], chain.back())) chain.pop_back();
     chain.push_back(p);
@@ -71,11 +71,12 @@ Real length_of(const std::vector<PlanePoint>& corners) {
 
 Real area_of(const std::vector<PlanePoint>& corners) {
   Real area = 0;
-  for (std::size_t k = 2; k < corners.size(); ++k) area += turn(corners[0], corners[k - 1], corners[k]) / 2;
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    area += orientation(corners[0], corners[k - 1], corners[k]) / 2;
   return area;
 }
 
-// Corners by the numbers of the points, and where each of the points stands among them.
+// Corners by the numbers of the points, and the position of each point among them.
 std::vector<Index> take_corners(const std::vector<Vec3>& points, std::vector<Index> numbers,
                                 HullCorners& out) {
   std::ranges::sort(numbers);
@@ -117,7 +118,7 @@ HullCorners corners_of_outline(const std::vector<Vec3>& given) {
   return out;
 }
 
-// Corners of points in one plane in space: both its sides are faces.
+// Corners of coplanar points in space: both sides of the plane are faces.
 HullCorners corners_of_flat(const std::vector<Vec3>& points) {
   const Vec3 a = points.front();
   const auto farthest = [&](const auto& measure) {
@@ -147,8 +148,8 @@ Vec3 twice_area(const TriangleMesh& mesh, std::size_t t) {
   return cross(at(1) - at(0), at(2) - at(0));
 }
 
-// The faces of a hull: their number per triangle, and their normals. From the largest triangle on, connected
-// triangles in one plane are one face; slivers join it whatever their own normals are.
+// The faces of a hull: their number for each triangle, and their normals. Starting from the largest
+// triangle, connected coplanar triangles form one face; slivers join it whatever their own normals are.
 class HullFaces {
  public:
   HullFaces(const TriangleMesh& hull, Real tolerance) : hull_(hull), tolerance_(tolerance) {
@@ -172,7 +173,7 @@ class HullFaces {
  private:
   struct Edge {
     Index from, to;
-    std::size_t triangle;  // on its left
+    std::size_t triangle;  // to the left of the edge
     std::pair<Index, Index> ends() const { return {from, to}; }
   };
   void grow(std::size_t seed, Vec3 normal) {
@@ -202,27 +203,27 @@ class HullFaces {
 
   const TriangleMesh& hull_;
   Real tolerance_;
-  std::vector<Edge> edges_;  // ordered by their ends
+  std::vector<Edge> edges_;  // sorted by their ends
   std::vector<Index> face_;
   std::vector<Vec3> normals_;
 };
 
 HullCorners corners_of_solid(const std::vector<Vec3>& points, const TriangleMesh& hull) {
   const HullFaces faces(hull, kRoundOff * extent_of(points));
-  std::vector<std::pair<Index, Index>> meetings;  // of a vertex and a face
+  std::vector<std::pair<Index, Index>> incidences;  // pairs of a vertex and a face
   for (std::size_t t = 0; t < hull.triangles.size(); ++t)
     for (const Index v : hull.triangles[t])
-      if (faces.of(t) != kNone) meetings.emplace_back(v, faces.of(t));
-  std::ranges::sort(meetings);
-  meetings.erase(std::unique(meetings.begin(), meetings.end()), meetings.end());
+      if (faces.of(t) != kNone) incidences.emplace_back(v, faces.of(t));
+  std::ranges::sort(incidences);
+  incidences.erase(std::unique(incidences.begin(), incidences.end()), incidences.end());
   HullCorners out;
   std::vector<std::vector<Index>> corners_of(faces.normals().size());
-  for (std::size_t k = 0, end; k < meetings.size(); k = end) {
-    const Index vertex = meetings[k].first;
-    for (end = k; end < meetings.size() && meetings[end].first == vertex;) ++end;
-    if (end - k < 3) continue;  // inside of a face or an edge
+  for (std::size_t k = 0, end; k < incidences.size(); k = end) {
+    const Index vertex = incidences[k].first;
+    for (end = k; end < incidences.size() && incidences[end].first == vertex;) ++end;
+    if (end - k < 3) continue;  // inside a face or an edge
     for (std::size_t at = k; at < end; ++at)
-      corners_of[static_cast<std::size_t>(meetings[at].second)].push_back(
+      corners_of[static_cast<std::size_t>(incidences[at].second)].push_back(
           static_cast<Index>(out.corners.size()));
     out.corners.push_back(hull.vertices[static_cast<std::size_t>(vertex)]);
   }

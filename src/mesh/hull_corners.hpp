@@ -9,17 +9,17 @@
 
 namespace scree {
 
-// Strict corners alone: what lies on a face or an edge of the hull is none. A box has eight, however finely
-// its faces are divided.
+// Strict corners only: points inside a face or an edge of the hull are not among them. A box has eight,
+// however finely its faces are divided.
 struct HullCorners {
   std::vector<Vec3> corners;        // [m], in an order that depends on the points alone
-  std::vector<Index> first;         // of the faces, into face_corners, and the end
-  std::vector<Index> face_corners;  // face by face those that lie in one plane; in 2D the ends of an edge
+  std::vector<Index> first;         // per face its first entry of face_corners, and the end
+  std::vector<Index> face_corners;  // per face its corners, which are coplanar; in 2D the ends of an edge
   std::vector<Vec3> normals;        // per face, unit, outwards
-  Vec3 middle;                      // no corner is farther from it than reach [m]
+  Vec3 middle;                      // no corner is farther from it than `reach` [m]
   Real reach = 0;
-  // Radius of the sphere whose area is that of the hull; in 2D of the circle that is as long as the hull's
-  // outline [m].
+  // Radius of the sphere with the surface area of the hull; in 2D of the circle with the length of the
+  // hull's outline [m].
   Real radius = 0;
 
   Index faces() const { return static_cast<Index>(normals.size()); }
@@ -29,8 +29,8 @@ struct HullCorners {
   }
 };
 
-// The corners of these points, which are not all on one line in space, nor all at one position; planar: in
-// the plane z = 0, for a space of dimension 2. What is flat to 1e-9 of its extent counts as flat.
+// The strict corners of these points, which are not all on one line in space, nor all at one position.
+// planar: points in the plane z = 0, for dimension 2. Hulls flatter than 1e-9 of their extent count as flat.
 HullCorners hull_corners(const std::vector<Vec3>& points, bool planar);
 
 }  // namespace scree

@@ -9,7 +9,7 @@ struct Cut {
   Real x, y;
 };
 
-// Where the plane at z cuts an edge whose ends lie on its two sides.
+// Intersection of the plane at z with an edge whose ends lie on its two sides.
 Cut cut_of(const MeshView& mesh, Index a, Index b, Real z) {
   if (b < a) std::swap(a, b);
   const Vec3 p = mesh.vertices[a], q = mesh.vertices[b];
@@ -29,7 +29,7 @@ bool crosses(const MeshView& mesh, const MeshTriangle& triangle, Vec3 p) {
   return cuts[0].x + t * (cuts[1].x - cuts[0].x) > p.x;
 }
 
-// How often the ray crosses the triangles below a node of the tree.
+// Number of crossings of the ray with the triangles below a node of the tree.
 int crossings(const MeshView& mesh, int level, Index node, Vec3 p) {
   const MeshBox& box = mesh.boxes[mesh.level_start[level] + node];
   if (p.x > box.max.x || p.y < box.min.y || p.y > box.max.y || p.z < box.min.z || p.z > box.max.z) return 0;

@@ -1,4 +1,4 @@
-// What primitives are put together from: rings of vertices, strips between them and fans.
+// Building blocks of primitives: rings of vertices, strips between them and fans.
 #pragma once
 
 #include <vector>
@@ -8,22 +8,22 @@
 
 namespace scree {
 
-// Numbers of vertices in their order around.
+// Numbers of vertices, in order around the ring.
 using Ring = std::vector<Index>;
 
 class MeshBuilder {
  public:
   Index vertex(Vec3 v);
   Vec3 place(Index vertex) const { return mesh_.vertices[vertex]; }
-  // Several at once, moved to height z.
+  // Adds several vertices, at height z.
   Ring ring(const std::vector<Vec3>& points, Real z);
   void triangle(Index a, Index b, Index c) { mesh_.triangles.push_back({a, b, c}); }
-  // a, b, c, d around, split from a to c.
+  // Adds a quadrilateral with corners in order, split from a to c.
   void quad(Index a, Index b, Index c, Index d);
-  // Between rings or lines of equal length: seen with `low` below and both running to the right. A ring of
-  // one vertex is a tip. closed: also from the last back to the first.
+  // Adds the strip between two rings or lines of equal length, seen with `low` below and both running to the
+  // right. A ring of one vertex is a tip. closed: also between the last and the first vertices.
   void strip(const Ring& low, const Ring& high, bool closed);
-  // The ring as seen from its outside, where it runs counterclockwise, about a vertex in its middle.
+  // Adds a fan over the ring about a vertex in its middle; seen from outside the ring runs counterclockwise.
   void fan(Index middle, const Ring& ring);
   TriangleMesh take() { return std::move(mesh_); }
 

@@ -18,10 +18,10 @@ constexpr std::size_t kMostPlaces = 5;
 
 std::string text_of(Vec3 v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
 
-// Places of one kind of trouble: all are counted, the first are named.
-class Places {
+// Collects the positions of one kind of defect: all are counted, the first are named.
+class Positions {
  public:
-  // text(): what the place is called.
+  // text(): the name of the position.
   template <class Text>
   void add(Text text) {
     if (count_++ < kMostPlaces) named_ += (named_.empty() ? "" : "; ") + text();
@@ -39,10 +39,10 @@ class Places {
   std::string named_;
 };
 
-// What is said of a mesh that is torn where vertices of open edges nearly meet, or "".
+// Text on a mesh that is torn where vertices of open edges nearly coincide; empty where there is none.
 std::string tear_text(const TriangleMesh& mesh, const std::vector<Side>& open) {
-  constexpr std::size_t kMostOpen = 1000;  // each is compared with each
-  constexpr Real kNearly = 0.01;           // of the shortest edge
+  constexpr std::size_t kMostOpen = 1000;  // all pairs are compared
+  constexpr Real kNearly = 0.01;           // relative to the shortest edge
   if (open.size() > kMostOpen) return "";
   std::vector<Index> ends;
   Real nearest = kInfinity, shortest = kInfinity;
@@ -89,7 +89,7 @@ class Checker {
   }
 
   void check_numbers() {
-    Places places;
+    Positions places;
     for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
       const auto [a, b, c] = corners_of(mesh_, i);
       if (!is_finite(a) || !is_finite(b) || !is_finite(c)) places.add([&] { return text_of_triangle(i); });
@@ -99,7 +99,7 @@ class Checker {
   }
 
   void check_areas() {
-    Places places;
+    Positions places;
     for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i)
       if (!has_area(corners_of(mesh_, i))) places.add([&] { return text_of_triangle(i); });
     places.report("a triangle has no area", "triangles have no area", "each must span a plane", troubles_);
@@ -113,7 +113,7 @@ class Checker {
       rows.push_back({t[0], t[1], t[2], i});
     }
     std::sort(rows.begin(), rows.end());
-    Places places;
+    Positions places;
     for (std::size_t i = 1; i < rows.size(); ++i) {
       if (!std::equal(rows[i].begin(), rows[i].begin() + 3, rows[i - 1].begin())) continue;
       places.add([&] {
@@ -125,7 +125,7 @@ class Checker {
   }
 
   void check_edges(bool sheet) {
-    Places open, crowded, turned;
+    Positions open, crowded, turned;
     std::vector<Side> free;
     for_each_edge(sides_of(mesh_), [&](const Side* first, const Side* last) {
       const auto text = [&] { return edge_text(first, last); };
@@ -133,10 +133,9 @@ class Checker {
       if (last - first > 2 && !sheet) crowded.add(text);
       if (last - first == 2 && first[0].forward == first[1].forward && !sheet) turned.add(text);
     });
-    open.report(
-        "an edge has one triangle", "edges have one triangle",
-        "a closed mesh has two at each (one that is meant to be open is a sheet)" + tear_text(mesh_, free),
-        troubles_);
+    open.report("an edge has one triangle", "edges have one triangle",
+                "a closed mesh has two at each (an open surface needs sheet = true)" + tear_text(mesh_, free),
+                troubles_);
     crowded.report("an edge has more than two triangles", "edges have more than two triangles",
                    "a closed mesh has two at each", troubles_);
     turned.report("an edge lies between opposite windings", "edges lie between opposite windings",
@@ -144,7 +143,8 @@ class Checker {
   }
 
   void check_volume() {
-    constexpr Real kLeastThickness = 1e-12;  // of the mesh's own size: below it round-off decides the sign
+    constexpr Real kLeastThickness =
+        1e-12;  // relative to the mesh's own size: below it round-off decides the sign
     const Real volume = mesh_volume(mesh_), area = mesh_area(mesh_);
     if (std::abs(volume) <= kLeastThickness * area * std::sqrt(area)) {
       troubles_.push_back(fmt::format("it encloses {:.3g} m^3, nothing but round-off", volume));
@@ -157,7 +157,7 @@ class Checker {
   }
 
   void check_shells() {
-    Places inverted, inner;
+    Positions inverted, inner;
     const std::vector<Index> shell = shells_of(mesh_);
     for (const MisplacedShell& misplaced : misplaced_shells(mesh_, shell, crossing_shells(mesh_, shell))) {
       const auto text = [&] {

@@ -1,6 +1,6 @@
-// What a sphere touches on a mesh: the local minima of its distance, of which near-equal ones on one smooth
-// patch count once. Host and device, with the same bits: no result depends on the order in which triangles
-// are looked at.
+// Contacts of a sphere with a mesh: the local minima of its distance. Near-equal minima on one smooth patch
+// count once. Host and device, with the same bits: no result depends on the order in which triangles are
+// visited.
 #pragma once
 
 #include <cmath>
@@ -13,24 +13,24 @@
 
 namespace scree {
 
-// The most contacts of one sphere with one mesh: the nearest count.
+// The largest number of contacts of one sphere with one mesh; further ones than the nearest are dropped.
 inline constexpr int kMeshSlots = 8;
 
-// In the frame of the mesh.
+// A contact, in the frame of the mesh.
 struct MeshContact {
   Index feature;   // part of a face; part_count + row of MeshView::features of an edge or a vertex
-  Index triangle;  // the lowest that has it; -1 where it was not looked for
+  Index triangle;  // the lowest of its triangles; -1 where it was not determined
   Real distance;   // of the centre from the surface, negative inside [m]
-  Vec3 point;      // of the plane of the part; else the nearest one [m]
+  Vec3 point;      // a point of the part's plane; otherwise the nearest point [m]
   Vec3 normal;     // unit, from the surface to the centre; inside a closed mesh outwards
 };
 
 namespace mesh_detail {
 
-inline constexpr Real kWeakRoundOff = 0x1p-36;   // of corners of slivers, where regions meet at small angles
-inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that has a direction [m^2]
+inline constexpr Real kWeakRoundOff = 0x1p-36;   // at corners of slivers, where regions meet at small angles
+inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that still defines a direction [m^2]
 
-// Patches that a feature adjoins.
+// The patches next to a feature.
 struct PatchList {
   const Index* first;
   Index count;
@@ -50,20 +50,20 @@ SCREE_HD bool share_patch(const MeshView& mesh, Index a, Index b) {
   return false;
 }
 
-// Face 0, edge 1, vertex 2.
+// 0 for a face, 1 for an edge, 2 for a vertex.
 SCREE_HD int feature_type(const MeshView& mesh, Index feature) {
   return feature < mesh.part_count ? 0 : mesh.features[feature - mesh.part_count].b < 0 ? 2 : 1;
 }
 
-// The order in which contacts count.
+// Priority of contacts: by distance, then by type, then by feature.
 SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const MeshContact& b) {
   if (a.distance != b.distance) return a.distance < b.distance;
   const int of_a = feature_type(mesh, a.feature), of_b = feature_type(mesh, b.feature);
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
 }
 
-// From the nearest point of an edge to c, if that is no farther than `reach` and c lies in the edge's normal
-// cone.
+// Whether c lies in the edge's normal cone and within `reach` of its nearest point; `from`: from that point
+// to c.
 SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Real reach, Vec3& from) {
   const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
   const Real along = dot(d, e);
@@ -80,7 +80,8 @@ SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec
 
 enum class Cone { outside, weak, inside };
 
-// Where d from a vertex lies to its normal cone; weak: outside by what may be round-off.
+// Position of d, measured from a vertex, relative to the vertex' normal cone; weak: outside, but possibly by
+// round-off.
 SCREE_HD Cone cone_of_vertex(const MeshView& mesh, const MeshFeature& vertex, Vec3 d) {
   const Vec3 v = mesh.vertices[vertex.a];
   Cone cone = Cone::inside;
@@ -107,13 +108,13 @@ SCREE_HD MeshContact contact_from(const MeshView& mesh, Index row, Vec3 c, Vec3 
 
 }  // namespace mesh_detail
 
-// Whether two contacts are one to a sphere: they share a patch, and their normals differ by no more than the
+// Whether two contacts count as one: they share a patch, and their normals differ by no more than the
 // feature angle.
 SCREE_HD bool same_cluster(const MeshView& mesh, const MeshContact& a, const MeshContact& b) {
   return dot(a.normal, b.normal) >= mesh.cosine && mesh_detail::share_patch(mesh, a.feature, b.feature);
 }
 
-// Whether two features share a patch, or adjoin patches that meet along an edge.
+// Whether two features share a patch, or are next to patches that share an edge.
 SCREE_HD bool on_neighbouring_patches(const MeshView& mesh, Index feature_a, Index feature_b) {
   if (mesh_detail::share_patch(mesh, feature_a, feature_b)) return true;
   const auto of_a = mesh_detail::patches_of(mesh, feature_a), of_b = mesh_detail::patches_of(mesh, feature_b);
@@ -126,8 +127,8 @@ SCREE_HD bool on_neighbouring_patches(const MeshView& mesh, Index feature_a, Ind
   return false;
 }
 
-// A feature seen from c wherever that is: the plane of a part, the line of an edge, a vertex. Its normal does
-// not point against `side`; the distance is negative where c is on the other side.
+// A feature as a contact of c, wherever c is: the plane of a part, the line of an edge, a vertex. Its normal
+// does not oppose `side`; the distance is negative where c is on the other side.
 SCREE_HD MeshContact mesh_feature_at(const MeshView& mesh, Index feature, Vec3 c, Vec3 side) {
   MeshContact contact;
   if (feature < mesh.part_count) {
@@ -147,16 +148,16 @@ SCREE_HD MeshContact mesh_feature_at(const MeshView& mesh, Index feature, Vec3 c
   return contact;
 }
 
-// How far past touch the triangles of a row are looked for [m]. What was touched in the step before is among
-// them, as contacts go on from there, even where the skin is shorter than the way of a step: no step should
-// take a particle farther than this part of its radius.
+// How far beyond touch the triangles of a row are collected [m]. Features touched in the previous step must
+// be among them, as their contacts continue, even where the skin is shorter than the displacement of a step:
+// no step should move a particle farther than this fraction of its radius.
 SCREE_HD Real mesh_skin(Real radius, Real skin) {
   constexpr Real kLeastShare = Real(1) / 16;
   return skin > kLeastShare * radius ? skin : kLeastShare * radius;
 }
 
-// Whether c, less than `reach` away, is well over this triangle, -1 for none, from outside: `face` is then
-// the contact with its plane, and no other triangle of that plane tells more.
+// Whether c, less than `reach` away, is well over this triangle (-1: none) from outside. `face` is then the
+// contact with its plane, and no other triangle of that plane adds information.
 SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, MeshContact& face) {
   if (t < 0 || t >= mesh.triangle_count) return false;
   const MeshTriangle& triangle = mesh.triangles[t];
@@ -168,20 +169,20 @@ SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, Mesh
   return true;
 }
 
-// Looks at triangles for what a sphere may touch there. Search: gets the candidates by add(), says by known()
-// which triangles could tell nothing new of their part, and by reach_at() how far away what counts of a
-// triangle may be.
+// Narrow-phase query of triangles for the possible contacts of a sphere. The derived class Search receives
+// candidates by add(), reports by known() which triangles add nothing new to their part, and by reach_at()
+// the largest distance at which a triangle counts.
 template <class Search>
 class TriangleLook {
  protected:
   SCREE_HD TriangleLook(const MeshView& mesh, Vec3 c, Real reach)
       : mesh_(mesh), c_(c), reach_(reach), beside_{reach, reach} {}
 
-  // What is found beside candidates.
+  // Results of the query other than candidates.
   struct Beside {
-    Real nearest_weak;  // of the vertices that hold but for round-off [m]
-    Real depth;         // of c behind the nearest face of a closed mesh that it is over from behind [m]
-    Index behind = -1, behind_triangle = -1;  // that face, the lowest of its triangles
+    Real nearest_weak;  // distance of vertices whose cone contains c but for round-off [m]
+    Real depth;         // of c behind the nearest face of a closed mesh over whose back it lies [m]
+    Index behind = -1, behind_triangle = -1;  // that face, and the lowest of its triangles
 
     SCREE_HD void add(const Beside& other) {
       if (other.nearest_weak < nearest_weak) nearest_weak = other.nearest_weak;
@@ -209,13 +210,13 @@ class TriangleLook {
       return;
     }
     const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
-    if (passed != 0) return look_at_features(t, triangle, passed, reach);
-    // Over a triangle no cone of its edges and vertices can be.
+    if (passed != 0) return query_features(t, triangle, passed, reach);
+    // Over a triangle no normal cone of its edges and vertices contains c.
     if (!weak_pass_ && std::abs(height) < reach) add_face(t, triangle.part, part, height);
   }
 
-  // The centre is in a closed mesh, nearer to a face than to anything in front: that face alone pushes it
-  // out.
+  // The centre is inside a closed mesh and nearer to a face than to any other feature: that face alone
+  // pushes it out.
   SCREE_HD bool is_inside(Real nearest) const { return beside_.behind >= 0 && beside_.depth < nearest; }
   SCREE_HD MeshContact inside() const {
     const MeshPart& part = mesh_.parts[beside_.behind];
@@ -226,7 +227,7 @@ class TriangleLook {
   Vec3 c_;
   Real reach_;
   Beside beside_;
-  Index well_over_ = -1;  // part of the triangle that c is well over, as far as that is known
+  Index well_over_ = -1;  // part of the triangle that c is known to be well over
   bool weak_pass_ = false;
 
  private:
@@ -238,25 +239,25 @@ class TriangleLook {
     beside_.add_behind(t, id, -height);
   }
 
-  // passed: the triangle's edges that c lies past; in the cones of others it is not.
-  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned passed, Real reach) {
+  // passed: the edges of the triangle beyond which c lies; c is in no cone of the others.
+  SCREE_HD void query_features(Index t, const MeshTriangle& triangle, unsigned passed, Real reach) {
     Index row = triangle.first_feature;
     for (int k = 0; k < 3; ++k) {
       if (!(triangle.flags & (kOwnsEdge << k))) continue;
-      if (!weak_pass_ && passed & (1u << k)) look_at_edge(t, row, reach);
+      if (!weak_pass_ && passed & (1u << k)) query_edge(t, row, reach);
       ++row;
     }
     for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
-      look_at_vertex(t, row, reach);
+      query_vertex(t, row, reach);
   }
 
-  SCREE_HD void look_at_edge(Index t, Index row, Real reach) {
+  SCREE_HD void query_edge(Index t, Index row, Real reach) {
     Vec3 from;
     if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, reach + mesh_.round_off, from))
       add_feature(t, row, from, false);
   }
 
-  SCREE_HD void look_at_vertex(Index t, Index row, Real reach) {
+  SCREE_HD void query_vertex(Index t, Index row, Real reach) {
     using mesh_detail::Cone;
     const MeshFeature& feature = mesh_.features[row];
     const Vec3 from = c_ - mesh_.vertices[feature.a];
@@ -266,7 +267,7 @@ class TriangleLook {
     add_feature(t, row, from, cone == Cone::weak && !weak_pass_);
   }
 
-  // wait: until it is known whether anything else counts.
+  // wait: postpones the feature until it is known whether any other one counts.
   SCREE_HD void add_feature(Index t, Index row, Vec3 from, bool wait) {
     if (!mesh_.sheet && dot(from, in_double(mesh_.features[row].outward)) < 0) return;
     MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
@@ -277,7 +278,7 @@ class TriangleLook {
   }
 };
 
-// Looks at the triangles of a row once or, where there are more contacts than slots, several times.
+// Queries the triangles of a row once or, with more contacts than slots, several times.
 class MeshContactSearch : TriangleLook<MeshContactSearch> {
   friend TriangleLook<MeshContactSearch>;
 
@@ -288,7 +289,7 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
   // likely: a triangle that c may be over; -1: unknown.
   SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
     if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, add(face);
-    look(triangles, count);
+    query_all(triangles, count);
     const Real weak = beside_.nearest_weak;
     const Real nearest = found_ > 0 && out_[0].distance < weak ? out_[0].distance : weak;
     if (is_inside(nearest)) {
@@ -297,15 +298,15 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
     }
     const bool any_weak = weak < reach_;
     keep();
-    well_over_ = -1;  // its face may be among those that were left out
-    for (; left_out_ && kept_ < kMeshSlots; keep()) look(triangles, count);
+    well_over_ = -1;  // its face may have been dropped
+    for (; left_out_ && kept_ < kMeshSlots; keep()) query_all(triangles, count);
     if (any_weak && kept_ < kMeshSlots) add_weak(triangles, count);
     return kept_;
   }
 
  private:
-  // Finds the nearest candidates for the slots that are free, in order.
-  SCREE_HD void look(const Index* triangles, Index count) {
+  // Finds the nearest candidates for the free slots, in order.
+  SCREE_HD void query_all(const Index* triangles, Index count) {
     left_out_ = false;
     for (Index i = 0; i < count; ++i) look_at(triangles[i]);
   }
@@ -329,13 +330,13 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
       if (!mesh_detail::comes_before(mesh_, contact, out_[found_ - 1])) return;
       --found_;
     }
-    int place = found_++;
-    for (; place > kept_ && mesh_detail::comes_before(mesh_, contact, out_[place - 1]); --place)
-      out_[place] = out_[place - 1];
-    out_[place] = contact;
+    int slot = found_++;
+    for (; slot > kept_ && mesh_detail::comes_before(mesh_, contact, out_[slot - 1]); --slot)
+      out_[slot] = out_[slot - 1];
+    out_[slot] = contact;
   }
 
-  // Of those found keeps the ones that are not one with a nearer one.
+  // Keeps the candidates that are not in a cluster with a nearer one.
   SCREE_HD void keep() {
     for (int i = kept_; i < found_; ++i) {
       bool one = false;
@@ -347,33 +348,33 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
     found_ = kept_;
   }
 
-  // Vertices between all regions by round-off count where nothing else does.
+  // Adds vertices that are outside all regions by round-off, where nothing else counts.
   SCREE_HD void add_weak(const Index* triangles, Index count) {
     weak_pass_ = true;
     const int strict = kept_;
     do {
-      look(triangles, count);
+      query_all(triangles, count);
       keep();
     } while (left_out_ && kept_ < kMeshSlots);
     for (int i = strict; i < kept_; ++i) {
       const MeshContact contact = out_[i];
-      int place = i;
-      for (; place > 0 && mesh_detail::comes_before(mesh_, contact, out_[place - 1]); --place)
-        out_[place] = out_[place - 1];
-      out_[place] = contact;
+      int slot = i;
+      for (; slot > 0 && mesh_detail::comes_before(mesh_, contact, out_[slot - 1]); --slot)
+        out_[slot] = out_[slot - 1];
+      out_[slot] = contact;
     }
   }
 
-  MeshContact* out_;  // kept ones, then candidates, each in order
+  MeshContact* out_;  // contacts, then candidates, each in order
   int kept_ = 0, found_ = 0;
-  bool left_out_ = false;  // candidates, for want of slots
+  bool left_out_ = false;  // candidates were dropped for lack of slots
 };
 
-// The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the
-// nearest kMeshSlots, if there are more. triangles: all that are within reach of c; others change nothing.
-// Returns their number; what stands behind them in `out` is no contact. Inside a closed mesh it is the
-// nearest face alone, with a negative distance. likely: a triangle that c may be over; it changes nothing but
-// the time that this takes.
+// Finds the contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and
+// feature; the nearest kMeshSlots, if there are more. triangles: all that are within `reach` of c; further
+// ones do not change the result. Returns the number of contacts; entries of `out` behind them are undefined.
+// Inside a closed mesh the only contact is the nearest face, with a negative distance. likely: a triangle
+// that c may be over; it affects the run time only.
 SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
                                 MeshContact out[kMeshSlots], Index likely = -1) {
   return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count, likely);

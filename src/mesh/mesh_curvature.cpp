@@ -10,12 +10,13 @@
 namespace scree {
 namespace {
 
-// A sag of less, over the extent of the mesh, may be of coordinates with 7 digits: slivers of a plane that
-// such a file bends are no curves. Circles of more than some 2000 facets are not judged for this.
+// A sag below this fraction of the mesh's extent may come from coordinates with 7 digits: slivers of a plane
+// that is bent by such a file are not curved. Circles of more than some 2000 facets are not detected for
+// this reason.
 constexpr Real kLeastSag = 1e-6;
-// How much of a turn is left to the next one of the same curve, at least: it is all between the facets of a
+// Smallest ratio of the next bend of a curve to the present one: the ratio is 1 between the facets of a
 // cylinder, a half between equilateral triangles, a third in the twisted faces of a screw.
-constexpr Real kTurnsOn = 0.2;
+constexpr Real kLeastContinuation = 0.2;
 
 struct PartShape {
   Vec3 middle;  // centroid [m]
@@ -41,8 +42,8 @@ std::vector<PartShape> shapes_of(const MeshTopology& topology, const MeshParts& 
 
 Real distance_from_line(Vec3 p, Vec3 a, Vec3 b) { return norm(cross(p - a, b - a)) / norm(b - a); }
 
-// An edge over which a smooth patch turns from part `one` to part `other`.
-struct Turn {
+// An edge at which a smooth patch bends from part `one` to part `other`.
+struct Bend {
   Index one, other, low, high;  // parts; vertices of the edge
   Real angle, length;           // [rad], [m]
   bool concave;                 // seen from outside
@@ -50,21 +51,21 @@ struct Turn {
   Real border = 0;              // length of all edges between the two parts [m]
 };
 
-std::pair<Index, Index> parts_of(const Turn& turn) { return std::minmax({turn.one, turn.other}); }
+std::pair<Index, Index> parts_of(const Bend& bend) { return std::minmax({bend.one, bend.other}); }
 
-void set_borders(std::vector<Turn>& turns) {
-  std::ranges::stable_sort(turns, {}, parts_of);
-  for (std::size_t first = 0, last = 0; first < turns.size(); first = last) {
+void set_borders(std::vector<Bend>& bends) {
+  std::ranges::stable_sort(bends, {}, parts_of);
+  for (std::size_t first = 0, last = 0; first < bends.size(); first = last) {
     Real border = 0;
-    for (; last < turns.size() && parts_of(turns[last]) == parts_of(turns[first]); ++last)
-      border += turns[last].length;
-    for (std::size_t t = first; t < last; ++t) turns[t].border = border;
+    for (; last < bends.size() && parts_of(bends[last]) == parts_of(bends[first]); ++last)
+      border += bends[last].length;
+    for (std::size_t t = first; t < last; ++t) bends[t].border = border;
   }
 }
 
-std::vector<Turn> smooth_turns(const MeshTopology& topology, const MeshParts& parts,
+std::vector<Bend> smooth_turns(const MeshTopology& topology, const MeshParts& parts,
                                const std::vector<PartShape>& shapes, Real cosine) {
-  std::vector<Turn> turns;
+  std::vector<Bend> bends;
   for (const MeshEdge& edge : topology.edges) {
     if (!topology.joins_two(edge)) continue;
     const auto uses = topology.uses_of(edge);
@@ -73,37 +74,37 @@ std::vector<Turn> smooth_turns(const MeshTopology& topology, const MeshParts& pa
     if (one == other || !(dot(n, m) > cosine)) continue;
     const Vec3 a = topology.mesh.vertices[edge.low], along = topology.mesh.vertices[edge.high] - a;
     const Real angle = std::atan2(norm(cross(n, m)), dot(n, m)), length = norm(along);
-    turns.push_back({one, other, edge.low, edge.high, angle, length, dot(shapes[other].middle - a, n) > 0,
+    bends.push_back({one, other, edge.low, edge.high, angle, length, dot(shapes[other].middle - a, n) > 0,
                      (1 / length) * along});
   }
-  set_borders(turns);
-  return turns;
+  set_borders(bends);
+  return bends;
 }
 
-// How a patch bends at the borders of one part, about any direction: sums of angle, length and the square of
-// the edge's direction.
+// Bending of a patch at the borders of one part, about any direction: sums of angle, length and the square
+// of the edge's direction.
 struct Bending {
-  Sym3 all, convex;  // concave turns count as they are; as less than nothing [rad m]
+  Sym3 all, convex;  // all: concave bends with their sign; convex: with concave bends subtracted [rad m]
 };
 
-std::vector<Bending> bendings_of(const std::vector<Turn>& turns, std::size_t parts) {
+std::vector<Bending> bendings_of(const std::vector<Bend>& bends, std::size_t parts) {
   std::vector<Bending> bendings(parts);
-  for (const Turn& turn : turns)
-    for (const Index part : {turn.one, turn.other}) {
-      const Real weight = turn.angle * turn.length;
-      bendings[part].all += outer(weight, turn.axis);
-      bendings[part].convex += outer(turn.concave ? -weight : weight, turn.axis);
+  for (const Bend& bend : bends)
+    for (const Index part : {bend.one, bend.other}) {
+      const Real weight = bend.angle * bend.length;
+      bendings[part].all += outer(weight, bend.axis);
+      bendings[part].convex += outer(bend.concave ? -weight : weight, bend.axis);
     }
   return bendings;
 }
 
 Real about(const Sym3& bending, Vec3 axis) { return dot(axis, bending * axis); }
 
-// Whether a turn is of a curve: the patch goes on turning at the other borders of both parts, about the same
-// direction or aslant. Else it is a crease, of a plane or of a curve that is much flatter.
-bool is_of_curve(const Turn& turn, const Bending& one, const Bending& other) {
-  const Real here = turn.angle * turn.border;
-  return std::min(about(one.all, turn.axis), about(other.all, turn.axis)) >= (1 + kTurnsOn) * here;
+// Whether a bend belongs to a curve: the patch bends at the other borders of both parts, about the same or
+// an oblique direction. Otherwise the edge is a crease, of a plane or of a much flatter curve.
+bool is_of_curve(const Bend& bend, const Bending& one, const Bending& other) {
+  const Real here = bend.angle * bend.border;
+  return std::min(about(one.all, bend.axis), about(other.all, bend.axis)) >= (1 + kLeastContinuation) * here;
 }
 
 }  // namespace
@@ -117,19 +118,19 @@ MeshCurvature mesh_curvature(const MeshTopology& topology, const MeshParts& part
   }
   const Real least_sag = kLeastSag * norm(high - low);
   const std::vector<PartShape> shapes = shapes_of(topology, parts);
-  const std::vector<Turn> turns = smooth_turns(topology, parts, shapes, cosine);
-  const std::vector<Bending> bendings = bendings_of(turns, shapes.size());
+  const std::vector<Bend> bends = smooth_turns(topology, parts, shapes, cosine);
+  const std::vector<Bending> bendings = bendings_of(bends, shapes.size());
   MeshCurvature result;
-  for (const Turn& turn : turns) {
-    const PartShape &one = shapes[turn.one], &other = shapes[turn.other];
-    const Bending &here = bendings[turn.one], &there = bendings[turn.other];
-    if (!is_of_curve(turn, here, there)) continue;
-    // What is on the border of the two parts belongs to them by half.
+  for (const Bend& bend : bends) {
+    const PartShape &one = shapes[bend.one], &other = shapes[bend.other];
+    const Bending &here = bendings[bend.one], &there = bendings[bend.other];
+    if (!is_of_curve(bend, here, there)) continue;
+    // The border of the two parts counts half for each of them.
     Sym3 convex = here.convex;
     convex += there.convex;
     const Real share = 1 / (2 * (one.area + other.area)),
-               curvature = share * std::abs(about(convex, turn.axis));
-    const Vec3 a = vertices[turn.low], b = vertices[turn.high];
+               curvature = share * std::abs(about(convex, bend.axis));
+    const Vec3 a = vertices[bend.low], b = vertices[bend.high];
     const Real width =
         2 * std::min(distance_from_line(one.middle, a, b), distance_from_line(other.middle, a, b));
     const Real sag = curvature * width * width / 8;

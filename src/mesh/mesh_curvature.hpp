@@ -1,4 +1,4 @@
-// How curved the smooth surfaces are that the facets of a mesh stand for.
+// Curvature of the smooth surfaces that the facets of a mesh approximate.
 #pragma once
 
 #include "mesh/mesh_parts.hpp"
@@ -6,12 +6,12 @@
 
 namespace scree {
 
-// Estimated from the turns over the edges of every two facets of a smooth patch, over their area
-// (Cohen-Steiner and Morvan, Symp. Comput. Geom. 19, 2003); exact for equal facets around a circle. A turn
-// that does not go on at the next edges is a crease, of which no curve is known.
+// Estimated from the angles at the edges of every two facets of a smooth patch, over their area
+// (Cohen-Steiner and Morvan, Symp. Comput. Geom. 19, 2003); exact for equal facets around a circle. An edge
+// whose angle does not continue at the next edges is a crease, which has no curvature.
 struct MeshCurvature {
-  Real concave_radius = kInfinity;  // least, seen from outside, of a sheet from either side [m]
-  Real sag = 0;                     // largest, between a facet and the curve [m]
+  Real concave_radius = kInfinity;  // smallest, seen from outside; of an open surface from either side [m]
+  Real sag = 0;                     // largest distance between a facet and the curve [m]
 };
 
 // cosine: of the feature angle.

@@ -7,8 +7,8 @@ namespace scree {
 
 namespace {
 
-// An edge that turns inwards by less is kept: it may be flat but for round-off, and then has a side from
-// which it is convex.
+// Concave edges below this sine are kept: they may be flat but for round-off, and then are convex from one
+// side.
 constexpr Real kFlatSine = 1e-9;
 
 class FeatureFinder {
@@ -85,8 +85,8 @@ class FeatureFinder {
       patches.push_back(parts_.parts[id].patch);
       outward += parts_.parts[id].normal;
     }
-    // What tells edges of two faces from others is the number of tests: where the two run against each other
-    // there are no sides either, and the first is asked twice.
+    // The number of tests distinguishes edges of two faces from others. Where the two faces have opposite
+    // windings there are no sides either, and the first face is tested twice.
     if (edge.uses == 2 && !topology_.joins_two(edge)) tests.push_back(tests.front());
     add(edge.low, edge.high, tests, patches, outward, tests.front() < 0 ? ~tests.front() : tests.front());
   }
@@ -118,7 +118,7 @@ class FeatureFinder {
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   }
 
-  // other: a part whose normal is taken where those of all faces cancel.
+  // other: a part whose normal is used where the normals of all faces cancel.
   void add(Index a, Index b, const std::vector<Index>& tests, std::vector<Index>& patches, Vec3 outward,
            Index other) {
     make_unique(patches);

@@ -11,12 +11,12 @@
 namespace scree {
 
 struct MeshFeatures {
-  std::vector<MeshTriangle> triangles;  // with the rows that they own
-  std::vector<MeshFeature> features;    // by their owners
+  std::vector<MeshTriangle> triangles;  // with the features that they own
+  std::vector<MeshFeature> features;    // ordered by their owners
   std::vector<Index> tests, patches;
 };
 
-// sheet: with two sides; else edges that are concave from outside are left out.
+// sheet: the mesh is two-sided; otherwise edges that are concave from outside are left out.
 MeshFeatures mesh_features(const MeshTopology& topology, const MeshParts& parts, bool sheet);
 
 }  // namespace scree

@@ -7,8 +7,8 @@
 namespace scree {
 namespace {
 
-const Real kSharp = std::cos(std::numbers::pi_v<Real> / 6);  // folds turn by 30 degrees at least
-constexpr Real kAlike = 1e-9;  // angles that differ by less are the same but for round-off [rad]
+const Real kSharp = std::cos(std::numbers::pi_v<Real> / 6);  // smallest angle of a fold: 30 degrees
+constexpr Real kAlike = 1e-9;  // angles that differ by less are equal but for round-off [rad]
 
 // The corner of a triangle that is not on the edge.
 Vec3 corner_off(const MeshTopology& topology, Index triangle, const MeshEdge& edge) {

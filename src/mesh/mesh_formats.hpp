@@ -1,6 +1,6 @@
-// The files that meshes come in: read_mesh.hpp says what is common. Each takes a file's bytes and its name
-// for messages, throws InputError, and trusts no number of the file: what it makes is never larger than what
-// the file has bytes for.
+// Parsers of mesh files; read_mesh.hpp documents what they have in common. Each takes the bytes of a file
+// and its name for messages, throws InputError, and trusts no number in the file: its result is never larger
+// than the file has bytes for.
 #pragma once
 
 #include <string>

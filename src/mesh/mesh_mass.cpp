@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-// The middle of the box around the mesh.
+// The centre of the box around the mesh.
 Vec3 middle(const TriangleMesh& mesh) {
   if (mesh.vertices.empty()) return {};
   Vec3 low = mesh.vertices.front(), high = low;
@@ -20,15 +20,16 @@ Vec3 middle(const TriangleMesh& mesh) {
   return Real(0.5) * low + Real(0.5) * high;
 }
 
-// Integrals of 1 (content), x and x x^T over what triangles span.
+// Integrals of 1 (content), x and x x^T over the triangles, or over the tetrahedra that they span with the
+// origin.
 struct Moments {
   Real content = 0;
   Vec3 first;
   Sym3 second;
 };
 
-// s s^T + a a^T + b b^T + c c^T with s = a + b + c: times the area / 12 the integral of x x^T over a
-// triangle, times the volume / 20 that over the tetrahedron of it and the origin.
+// s s^T + a a^T + b b^T + c c^T with s = a + b + c. Multiplied by area / 12 it is the integral of x x^T over
+// a triangle, by volume / 20 that over the tetrahedron of it and the origin.
 Sym3 corner_squares(const std::array<Vec3, 3>& corner, Real weight) {
   Sym3 sum = outer(weight, corner[0] + corner[1] + corner[2]);
   for (const Vec3 c : corner) sum += outer(weight, c);
@@ -63,7 +64,7 @@ class ExactMoments {
   std::array<ExactSum, 10> sums_;
 };
 
-// About the origin given; of(corners): the moments of what a triangle spans.
+// Moments about the given origin; of(corners): those of one triangle.
 template <class Of>
 Moments moments_about(const TriangleMesh& mesh, Vec3 origin, Of of) {
   ExactMoments moments;
@@ -75,7 +76,7 @@ Moments moments_about(const TriangleMesh& mesh, Vec3 origin, Of of) {
   return moments.value();
 }
 
-// tr(S) 1 - S, of a mass with integral x x^T = density S.
+// Inertia tr(S) 1 - S of a mass whose integral of x x^T is density S.
 Sym3 inertia_of(const Sym3& s, Real density) {
   return {density * (s.yy + s.zz), -density * s.xy, -density * s.xz,
           density * (s.xx + s.zz), -density * s.yz, density * (s.xx + s.yy)};
@@ -89,7 +90,7 @@ MassProperties mass_of(const TriangleMesh& mesh, Real density, Of of) {
   const Moments coarse = moments_about(mesh, origin, of);
   const Vec3 center = origin + 1 / coarse.content * coarse.first;
   const Moments fine = moments_about(mesh, center, of);
-  const Vec3 shift = 1 / fine.content * fine.first;  // what the centre was rounded by
+  const Vec3 shift = 1 / fine.content * fine.first;  // rounding error of the centre
   MassProperties whole{density * fine.content, center + shift, inertia_of(fine.second, density)};
   whole.inertia += point_inertia(-whole.mass, shift);
   return whole;

@@ -9,10 +9,10 @@ namespace scree {
 
 namespace {
 
-// Planes are fitted this often at most while a part grows.
+// Largest number of plane fits while a part grows.
 constexpr int kMostFits = 8;
-// Edges that turn by the feature angle but for round-off do not join patches: a drum of twelve facets has
-// twelve at 30 degrees.
+// Edges whose angle equals the feature angle but for round-off do not join patches: a drum of twelve facets
+// has twelve edges at 30 degrees.
 constexpr Real kAngleRoundOff = 1e-9;
 
 Vec3 area_vector(const TriangleMesh& mesh, Index t) {
@@ -20,13 +20,13 @@ Vec3 area_vector(const TriangleMesh& mesh, Index t) {
   return cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
 }
 
-// Parts while they are found, one after the other.
+// Collects parts one after the other.
 class PartFinder {
  public:
   PartFinder(const MeshTopology& topology, Real flatness)
       : topology_(topology), flatness_(flatness), part_of_(topology.mesh.triangles.size(), -1) {}
 
-  // From the largest triangles on, whose planes are known best.
+  // Starts from the largest triangles, whose planes are the most accurate.
   MeshParts find() {
     std::vector<std::pair<Real, Index>> seeds;
     for (Index t = 0; t < static_cast<Index>(part_of_.size()); ++t)
@@ -38,7 +38,7 @@ class PartFinder {
   }
 
  private:
-  // The farther a part reaches, the better its plane is known: slivers at its far end may fit only then.
+  // A larger part has a more accurate plane: slivers at its far end may fit only then.
   void grow(Index seed) {
     const Index id = static_cast<Index>(parts_.size());
     std::vector<Index> members{seed};
@@ -65,7 +65,7 @@ class PartFinder {
     }
   }
 
-  // The normal of a sliver is not asked for more than its sign.
+  // Of a sliver's normal only the sign is used.
   bool lies_in(const MeshPart& part, Index t) const {
     Real size = 0;
     for (const Index v : topology_.mesh.triangles[t]) {
@@ -77,8 +77,8 @@ class PartFinder {
     return dot(area_vector(topology_.mesh, t), part.normal) > -flatness_ * size;
   }
 
-  // Twice the area vector of what the members' outer edges enclose, exactly 0 across an axis along which they
-  // do not extend.
+  // Twice the vector area enclosed by the members' outer edges, exactly 0 along an axis across which they do
+  // not extend.
   Vec3 area_inside_border(const std::vector<Index>& members, Vec3 point) const {
     Vec3 area;
     for (const Index t : members)
@@ -111,7 +111,7 @@ class PartFinder {
   std::vector<MeshPart> parts_;
 };
 
-// Sets of numbers that are joined one pair after the other; a set's root is its lowest number.
+// Disjoint sets of numbers with union by pairs; the root of a set is its lowest number.
 class JoinedSets {
  public:
   explicit JoinedSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }

@@ -10,9 +10,9 @@
 namespace scree {
 
 struct MeshParts {
-  std::vector<MeshPart> parts;  // numbered by their lowest triangles
-  std::vector<Index> part_of;   // each triangle
-  IndexLists neighbours;        // of each patch, increasing: those that it meets along an edge
+  std::vector<MeshPart> parts;  // in the order of their lowest triangles
+  std::vector<Index> part_of;   // for each triangle
+  IndexLists neighbours;        // for each patch, increasing: the patches with which it shares an edge
 };
 
 // flatness: how far the vertices of a part may be from its plane [m]; cosine: of the feature angle.

@@ -16,20 +16,20 @@ namespace scree {
 
 namespace {
 
-// How many of the triangles given there are among these; one that was split counts once.
+// The number of original triangles among these; one that was split counts once.
 std::size_t count_given(std::vector<Index> numbers) {
   std::ranges::sort(numbers);
   return static_cast<std::size_t>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
 }
 
-// numbers: increasing, of triangles of the mesh given.
+// The repaired triangles of one kind. numbers: increasing, of triangles of the original mesh.
 RepairedTriangles noted(const NumberedMesh& given, const std::vector<Index>& numbers) {
   if (numbers.empty()) return {};
   const auto first = std::ranges::find(given.numbers, numbers.front()) - given.numbers.begin();
   return {count_given(numbers), triangle_text(given.mesh, static_cast<Index>(first), numbers.front())};
 }
 
-// Whether squares of areas are numbers, too.
+// Whether squares of areas are finite.
 bool has_products(Vec3 v) {
   constexpr Real kMost = 1e75;
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) < kMost;
@@ -50,7 +50,7 @@ std::string turned_text(const MeshRepair& repair, bool sheet) {
   if (count == repair.left)
     return fmt::format(
         "all of its {} triangles ran clockwise seen from outside and are turned (the first: {}): it is a "
-        "solid, touched from outside alone; sheet = true makes a container of it",
+        "solid, with contacts from outside only; sheet = true makes a container of it",
         count, first);
   return fmt::format(
       "{} of its {} triangles {} turned, so that all run counterclockwise seen from outside (the first: {})",
@@ -66,7 +66,7 @@ MeshRepair repaired(NumberedMesh mesh, bool sheet) {
   const NumberedMesh given = now;
   repair.without_area = noted(given, leave_out_without_area(now));
   repair.twins = noted(given, leave_out_twins(now, sheet));
-  // Without vertices that nothing uses any more.
+  // Removes vertices that no triangle uses any more.
   if (repair.without_area.count + repair.twins.count > 0) now.mesh = welded(now.mesh);
   repair.turned = noted(given, sheet ? turn_alike(now) : turn_outward(now));
   repair.left = count_given(now.numbers);
@@ -76,9 +76,9 @@ MeshRepair repaired(NumberedMesh mesh, bool sheet) {
 std::string repair_text(const MeshRepair& repair, bool sheet) {
   std::vector<std::string> texts;
   if (const auto& [count, first] = repair.without_area; count > 0)
-    texts.push_back(
-        fmt::format("{} without area {} left out, and what they join is joined across them (the first: {})",
-                    triangles(count), is_or_are(count), first));
+    texts.push_back(fmt::format(
+        "{} without area {} left out, and their neighbours are connected across them (the first: {})",
+        triangles(count), is_or_are(count), first));
   if (const auto& [count, first] = repair.twins; count > 0)
     texts.push_back(fmt::format("{} with the corners of others {} left out (the first: {})", triangles(count),
                                 is_or_are(count), first));

@@ -1,4 +1,4 @@
-// What meshes of files often have and what can be put right without a guess.
+// Defects that are frequent in mesh files and that have a unique repair.
 #pragma once
 
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace scree {
 
-// Triangles of one kind that were put right.
+// Triangles with one kind of repair.
 struct RepairedTriangles {
   std::size_t count = 0;
-  std::string first;  // triangle_text() of the first of them
+  std::string first;  // triangle_text() of the first one
 };
 
 struct MeshRepair {
   NumberedMesh mesh;
-  RepairedTriangles without_area, twins;  // left out
-  RepairedTriangles turned;               // of a sheet against most of their neighbours, else inwards
-  std::size_t left = 0;                   // of the triangles given
+  RepairedTriangles without_area, twins;  // removed
+  RepairedTriangles turned;  // reoriented: of an open surface, those against most of their neighbours; else,
+                             // those that point inwards
+  std::size_t left = 0;      // number of original triangles that remain
 };
 
-// mesh: welded. Triangles without area and twins are left out, windings made alike, and of closed meshes
-// outward; each kind as without_area.hpp, twin_triangles.hpp and windings.hpp say. A mesh that has none of
-// these stays as it is, in the order of its triangles and vertices; so does one with numbers that are not
-// finite, or so large that areas are not. What is wrong all the same mesh_troubles() finds.
+// mesh: welded. Degenerate and duplicate triangles are removed, windings are made consistent, and outward on
+// closed meshes; see without_area.hpp, twin_triangles.hpp and windings.hpp. A mesh without these defects is
+// unchanged, also in the order of its triangles and vertices; so is one with numbers that are not finite, or
+// so large that areas are not. mesh_troubles() finds the remaining defects.
 MeshRepair repaired(NumberedMesh mesh, bool sheet);
 
-// What was done, each kind with its count and its first triangle; "" where nothing was.
+// The repairs, each kind with its count and its first triangle; empty where there were none.
 std::string repair_text(const MeshRepair& repair, bool sheet);
 
 }  // namespace scree

@@ -17,15 +17,16 @@ namespace scree {
 
 namespace {
 
-constexpr std::size_t kMostShells = 10'000;  // each is compared with each
-constexpr Real kShareOfThickness = 0.01;     // so deep under a shell's surface its inside begins for sure
+constexpr std::size_t kMostShells = 10'000;  // all pairs are compared
+constexpr Real kThicknessFraction =
+    0.01;  // fraction of the thickness: a point so deep under the surface of a shell is inside it
 
 // Normal of a triangle, of length 2 x area.
 Vec3 normal_of(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
 struct Shell {
   std::vector<std::array<Vec3, 3>> triangles;
-  Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};  // of its box
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};  // corners of its box
 
   void add(const std::array<Vec3, 3>& triangle) {
     triangles.push_back(triangle);
@@ -50,35 +51,35 @@ struct Shell {
   }
 };
 
-// The solid angle of a triangle seen from a point, over 4 pi, above 0 from its back; no number on it: van
-// Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983.
-Real turns_around(Vec3 point, Vec3 a, Vec3 b, Vec3 c) {
+// The solid angle of a triangle seen from a point, over 4 pi, positive from its back; exactly on the
+// triangle it is no number: van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983.
+Real winding_number(Vec3 point, Vec3 a, Vec3 b, Vec3 c) {
   a -= point, b -= point, c -= point;
   const Real la = norm(a), lb = norm(b), lc = norm(c);
   const Real up = dot(a, cross(b, c)), down = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  constexpr Real kOnIt = 1e-9;  // of a right angle's three edges
+  constexpr Real kOnIt = 1e-9;  // relative to the product of the distances
   if (down <= 0 && std::abs(up) <= kOnIt * la * lb * lc) return std::numeric_limits<Real>::quiet_NaN();
   return std::atan2(up, down) / (2 * std::numbers::pi_v<Real>);
 }
 
-// How often the shell goes around the point: 1 inside, 0 outside.
-Real turns_around(Vec3 point, const Shell& shell) {
+// Winding number of the shell about the point: 1 inside, 0 outside.
+Real winding_number(Vec3 point, const Shell& shell) {
   Real turns = 0;
   if (shell.may_hold(point))
-    for (const auto& [a, b, c] : shell.triangles) turns += turns_around(point, a, b, c);
+    for (const auto& [a, b, c] : shell.triangles) turns += winding_number(point, a, b, c);
   return turns;
 }
 
-// Number of points at which the surroundings of a shell are tested: each of them costs a pass over the
-// triangles of the shells whose boxes it is in, and one over all boxes.
-std::size_t points_to_judge(std::size_t triangles, std::size_t shells) {
+// Number of points at which the surroundings of a shell are tested: each costs a pass over the triangles of
+// the shells whose boxes contain it, and one over all boxes.
+std::size_t points_to_test(std::size_t triangles, std::size_t shells) {
   constexpr Real kMostPoints = 16, kMostTriangles = 1e7, kMostBoxes = 1e8;
   const Real many = std::min(kMostTriangles / static_cast<Real>(triangles),
                              kMostBoxes / static_cast<Real>(shells * shells));
   return static_cast<std::size_t>(std::clamp(many, Real(1), kMostPoints));
 }
 
-// The list cut into so many parts, of each the largest triangle.
+// The largest triangle of each part of a list that is cut into so many parts.
 std::vector<Index> largest_of_parts(const TriangleMesh& mesh, const std::vector<Index>& list,
                                     std::size_t parts) {
   std::vector<Index> largest;
@@ -93,7 +94,7 @@ std::vector<Index> largest_of_parts(const TriangleMesh& mesh, const std::vector<
   return largest;
 }
 
-// The point at this depth under the middle of a triangle [m].
+// The point at this depth under the centre of a triangle [m].
 Vec3 behind(const TriangleMesh& mesh, Index triangle, Real depth) {
   const TriangleCorners c = corners_of(mesh, triangle);
   const Vec3 normal = normal_of(c);
@@ -107,15 +108,15 @@ std::vector<Shell> pieces_of(const TriangleMesh& mesh, const std::vector<Index>&
   return shells;
 }
 
-// How deep a point under the surface of a shell may be for sure [m]; depth: at the most.
+// A depth at which a point is certainly under the surface of a shell [m], at most `depth`.
 Real depth_under(const Shell& shell, Real depth) {
-  return std::min(depth, kShareOfThickness * std::abs(shell.volume()) / shell.area());
+  return std::min(depth, kThicknessFraction * std::abs(shell.volume()) / shell.area());
 }
 
-// Whether the shell goes around most of the points.
+// Whether the shell has most of the points inside.
 bool encloses(const Shell& shell, const std::vector<Vec3>& points) {
   const auto inside =
-      std::ranges::count_if(points, [&](Vec3 p) { return std::abs(turns_around(p, shell)) > Real(0.5); });
+      std::ranges::count_if(points, [&](Vec3 p) { return std::abs(winding_number(p, shell)) > Real(0.5); });
   return 2 * inside > std::ssize(points);
 }
 
@@ -138,13 +139,13 @@ ShellNesting shell_nesting(const TriangleMesh& mesh, const std::vector<Index>& s
   for (Index t = 0; t < static_cast<Index>(shell_of_triangle.size()); ++t)
     triangles[shell_of_triangle[t]].push_back(t);
   const Real depth = kCrossingTolerance * extent_of(boxes_of(mesh));
-  const std::size_t most = std::min(kMostPoints, points_to_judge(mesh.triangles.size(), count));
+  const std::size_t most = std::min(kMostPoints, points_to_test(mesh.triangles.size(), count));
   for (std::size_t i = 0; i < count; ++i) {
     const Real under = depth_under(shells[i], depth);
     std::vector<Vec3> points;
     for (const Index t : largest_of_parts(mesh, triangles[i], most))
       points.push_back(behind(mesh, t, nesting.volume[i] < 0 ? -under : under));
-    // What is smaller and touches it from inside does not enclose it.
+    // A smaller shell that touches it from inside does not enclose it.
     const auto size = [&](std::size_t k) { return std::pair(std::abs(nesting.volume[k]), count - k); };
     for (std::size_t j = 0; j < count; ++j)
       if (size(j) > size(i) && encloses(shells[j], points))
@@ -186,21 +187,22 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
   for (const Index t : triangles_near_others(boxes, shell_of_triangle))
     near[shell_of_triangle[t]].push_back(t);
   const Real depth = kCrossingTolerance * extent_of(boxes);
-  const std::size_t points = points_to_judge(mesh.triangles.size(), shells.size());
+  const std::size_t points = points_to_test(mesh.triangles.size(), shells.size());
   std::vector<Real> volume;
   for (const Shell& shell : shells) volume.push_back(shell.volume());
   std::set<Index> misplaced;
   for (Index i = 0; i < count; ++i) {
     if (std::ranges::binary_search(crossing, i)) continue;
     const Real around =
-        volume[i] < 0 ? 1 : 0;  // how often the others must go around the solid behind the shell
+        volume[i] < 0 ? 1
+                      : 0;  // winding number that the other shells must have in the solid behind the shell
     if (near[i].empty() && around != 0) misplaced.insert(i);
     const Real under = depth_under(shells[i], depth);
     for (const Index t : largest_of_parts(mesh, near[i], points)) {
       Real turns = 0;
       Index smallest = i;  // of two solids that share a volume
       for (Index j = 0; j < count; ++j) {
-        const Real of_other = j == i ? 0 : turns_around(behind(mesh, t, under), shells[j]);
+        const Real of_other = j == i ? 0 : winding_number(behind(mesh, t, under), shells[j]);
         turns += of_other;
         if (of_other > Real(0.5) && volume[j] < volume[smallest]) smallest = j;
       }

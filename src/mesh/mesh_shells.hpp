@@ -1,4 +1,4 @@
-// The pieces that a mesh consists of.
+// Shells, the connected pieces of a mesh.
 #pragma once
 
 #include <vector>
@@ -8,20 +8,21 @@
 
 namespace scree {
 
-// Triangles that hang together over shared edges are a shell: of each triangle the number of its shell, from
-// 0 in the order of their first triangles.
+// Number of the shell of each triangle, from 0 in the order of the shells' first triangles. Triangles that
+// are connected over shared edges are one shell.
 std::vector<Index> shells_of(const TriangleMesh& mesh);
 
-// Of each shell [m^3]; below 0 where its windings look inwards. mesh: closed.
+// Volume of each shell [m^3]; negative where its windings are inverted. mesh: closed.
 std::vector<Real> shell_volumes(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
 
-// How the shells of a closed mesh lie in each other, whatever their windings.
+// Nesting of the shells of a closed mesh, whatever their windings.
 struct ShellNesting {
-  std::vector<Real> volume;                // as shell_volumes() has them
-  std::vector<std::vector<Index>> around;  // of each shell, those that enclose it; of more than 10,000 none
+  std::vector<Real> volume;  // as from shell_volumes()
+  std::vector<std::vector<Index>>
+      around;  // per shell, those that enclose it; not determined for more than 10,000 shells
 };
-// Judged by points just inside each shell, so that shells may touch; of those that cut through each other by
-// most of these points.
+// Tested at points just inside each shell, so that shells may touch; for intersecting shells the majority of
+// these points counts.
 ShellNesting shell_nesting(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
 
 struct MisplacedShell {
@@ -29,10 +30,11 @@ struct MisplacedShell {
   Real volume;  // [m^3]
 };
 
-// Of a closed mesh, the shells that do not fit to where they are: those inside others that do not bound a
-// cavity (volume above 0), and those that bound a cavity of nothing (below 0). In order. Judged by points
-// just inside the solid that a shell bounds, up to 16 of each shell, so that shells may touch. crossing:
-// shells, increasing, that are not judged as they cut through others. None is found among more than 10,000.
+// The shells of a closed mesh whose orientation does not suit their position: shells inside others that do
+// not bound a cavity (volume positive), and shells that bound a cavity outside any solid (negative). In
+// increasing order. Tested at up to 16 points just inside the solid that a shell bounds, so that shells may
+// touch. crossing: intersecting shells, increasing, which are not tested. More than 10,000 shells are not
+// tested.
 std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
                                              const std::vector<Index>& shell_of_triangle,
                                              const std::vector<Index>& crossing = {});

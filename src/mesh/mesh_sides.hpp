@@ -1,4 +1,4 @@
-// The sides of all triangles, sorted by the edges that they share.
+// Edges of all triangles (half-edges), sorted so that those of one edge of the mesh are together.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace scree {
 
-// A side of a triangle, from its lower to its higher vertex.
+// An edge of a triangle, from its lower to its higher vertex.
 struct Side {
   Index low, high, triangle;
-  bool forward;  // as the triangle runs
+  bool forward;  // direction in the triangle
   auto operator<=>(const Side&) const = default;
 };
 
-// In order of edge, then triangle. Sides from a vertex to itself are none.
+// Sorted by edge, then triangle. Edges from a vertex to itself are left out.
 inline std::vector<Side> sides_of(const TriangleMesh& mesh) {
   std::vector<Side> sides;
   sides.reserve(3 * mesh.triangles.size());
@@ -30,7 +30,7 @@ inline std::vector<Side> sides_of(const TriangleMesh& mesh) {
   return sides;
 }
 
-// Calls visit(first, last) with the sides of each edge.
+// Calls visit(first, last) with the half-edges of each edge.
 template <class Visit>
 void for_each_edge(const std::vector<Side>& sides, Visit visit) {
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMortonBits = 21;  // per direction
 
-// The bits of x, two zeros between each.
+// The bits of x, separated by two zeros each.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffffu;
   x = (x | x << 16) & 0x1f0000ff0000ffu;
@@ -47,7 +47,7 @@ std::vector<Index> along_curve(const TriangleMesh& mesh) {
   return numbers;
 }
 
-// The triangles in this order, and the vertices that they use in the order in which they do.
+// The triangles in the order given, with vertices in the order of their first use.
 TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order) {
   TriangleMesh result;
   std::vector<Index> number(mesh.vertices.size(), -1);

@@ -1,5 +1,5 @@
-// Which triangles, edges and vertices of a mesh adjoin each other, with the triangles along a curve that
-// keeps neighbours together.
+// Adjacency of the triangles, edges and vertices of a mesh, with triangles ordered along a space-filling
+// curve.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace scree {
 // A triangle at an edge.
 struct EdgeUse {
   Index triangle;
-  bool reversed;  // it runs from the higher vertex to the lower one
+  bool reversed;  // whether it runs from the higher vertex to the lower one
 };
 
 struct MeshEdge {
@@ -34,20 +34,20 @@ struct IndexLists {
 
 struct MeshTopology {
   TriangleMesh mesh;            // triangles along the Morton curve of their centres, vertices by first use
-  std::vector<Index> original;  // number of each triangle before
+  std::vector<Index> original;  // number of each triangle in the original mesh
   std::vector<MeshEdge> edges;
   std::vector<EdgeUse> uses;
-  std::vector<std::array<Index, 3>> edges_of;  // of each triangle, from corner k on
-  IndexLists triangles_at;                     // each vertex, increasing
+  std::vector<std::array<Index, 3>> edges_of;  // per triangle, starting at corner k
+  IndexLists triangles_at;                     // per vertex, increasing
 
   std::span<const EdgeUse> uses_of(const MeshEdge& edge) const {
     return std::span(uses).subspan(edge.first_use, edge.uses);
   }
-  // Whether two triangles meet there, both with the same side up.
+  // Whether exactly two triangles share the edge, with consistent windings.
   bool joins_two(const MeshEdge& edge) const {
     return edge.uses == 2 && uses[edge.first_use].reversed != uses[edge.first_use + 1].reversed;
   }
-  // The triangle across an edge that joins two.
+  // The triangle across an edge for which joins_two().
   Index across(const MeshEdge& edge, Index triangle) const {
     const Index first = uses[edge.first_use].triangle;
     return first != triangle ? first : uses[edge.first_use + 1].triangle;

@@ -1,4 +1,4 @@
-// Which triangles lie near a point: the tree of boxes that a mesh is searched by. Host and device.
+// Search for the triangles near a point, in the mesh's tree of boxes. Host and device.
 #pragma once
 
 #include "base/hd.hpp"
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Of a point from a box: 0 inside [m^2]. Without branches, which a processor could not foresee.
+// Squared distance of a point from a box: 0 inside [m^2]. Without branches, which would be mispredicted.
 SCREE_HD Real squared_distance(const MeshBox& box, Vec3 p) {
   const auto larger = [](Real a, Real b) { return a > b ? a : b; };
   const Vec3 below = box.min - p, above = p - box.max;
@@ -16,7 +16,7 @@ SCREE_HD Real squared_distance(const MeshBox& box, Vec3 p) {
   return dot(d, d);
 }
 
-// Of a point from the segment from a to b [m^2].
+// Squared distance of a point from the segment from a to b [m^2].
 SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 p) {
   const Vec3 e = b - a, d = p - a;
   const Real along = dot(d, e), length = dot(e, e);
@@ -24,7 +24,7 @@ SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 p) {
   return dot(from, from);
 }
 
-// Of a point from a triangle [m^2].
+// Squared distance of a point from a triangle [m^2].
 SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   const Vec3 normal = cross(b - a, c - a);
   if (dot(p - a, cross(normal, b - a)) >= 0 && dot(p - b, cross(normal, c - b)) >= 0 &&
@@ -37,7 +37,7 @@ SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   return nearer < ca ? nearer : ca;
 }
 
-// Whether a triangle is nearer than the square root of this. Its box tells most that are not.
+// Whether a triangle is nearer than the square root of `limit`. The test of its box excludes most.
 SCREE_HD bool is_nearer(const MeshView& mesh, Index triangle, Vec3 p, Real limit) {
   const Index* const v = mesh.triangles[triangle].vertex;
   const Vec3 a = mesh.vertices[v[0]], b = mesh.vertices[v[1]], c = mesh.vertices[v[2]];
@@ -49,7 +49,7 @@ SCREE_HD bool is_nearer(const MeshView& mesh, Index triangle, Vec3 p, Real limit
 }
 
 // Calls visit(triangle) for every triangle less than `reach` from c [m], but for round-off, in increasing
-// order. The place in the tree is a level and a number, so that it needs no stack.
+// order. The state of the traversal is a level and a number, so that it needs no stack.
 SCREE_HD_CALLER
 template <class Visit>
 SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real reach, const Visit& visit) {

@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-// Statements of looks, names and groups.
+// Statements of appearance, names and groups.
 constexpr std::array<std::string_view, 21> kIgnored{
     "vn",     "vt",         "vp",        "g",      "o",     "s",        "mg",
     "usemtl", "mtllib",     "usemap",    "maplib", "bevel", "c_interp", "d_interp",
@@ -53,7 +53,7 @@ class Obj {
     const std::string trouble = add_polygon(mesh_, corners_);
     if (!trouble.empty()) words_.fail("a face cannot be cut into triangles: " + trouble);
   }
-  // "vertex/texture/normal", from 1, or below 0 counted back from the last vertex.
+  // Parses "vertex/texture/normal"; counted from 1, or backwards from the last vertex where negative.
   Index corner(std::string_view word) const {
     const std::int64_t number = words_.to_integer(word.substr(0, word.find('/')), "vertex number");
     const std::int64_t count = static_cast<std::int64_t>(mesh_.vertices.size());

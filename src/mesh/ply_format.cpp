@@ -12,13 +12,13 @@ namespace scree {
 
 namespace {
 
-// What follows the header: values one after the other, as text or as bytes. A Real holds those of every type.
+// The data after the header, value by value, as text or as bytes. A Real holds the values of every type.
 class TextBody {
  public:
   TextBody(const Words& words, std::string_view bytes) : words_(words), bytes_(bytes) {}
 
-  // For how many rows the rest of the file has room at most: a digit and a blank per value.
-  std::uint64_t room(const PlyElement& element) const {
+  // The largest number of rows for which the rest of the file has room: a digit and a blank per value.
+  std::uint64_t rows_that_fit(const PlyElement& element) const {
     return (bytes_.size() - words_.position() + 1) / (2 * element.properties.size());
   }
   void begin_row() { words_.skip_blank_lines(); }
@@ -47,9 +47,9 @@ class TextBody {
 class BinaryBody {
  public:
   BinaryBody(std::string_view bytes, std::size_t first, bool turned, const std::string& file)
-      : bytes_(bytes), at_(first), turned_(turned), file_(file) {}
+      : bytes_(bytes), at_(first), swapped_(turned), file_(file) {}
 
-  std::uint64_t room(const PlyElement& element) const {
+  std::uint64_t rows_that_fit(const PlyElement& element) const {
     std::size_t row = 0;
     for (const PlyProperty& property : element.properties)
       row += (property.count_type != nullptr ? property.count_type : property.type)->bytes;
@@ -60,13 +60,13 @@ class BinaryBody {
     skip(type);
     std::uint64_t bits = 0;
     for (std::size_t k = 0; k < type.bytes; ++k) {
-      const std::size_t from_end = turned_ ? type.bytes - k : k + 1;
+      const std::size_t from_end = swapped_ ? type.bytes - k : k + 1;
       bits = bits << 8 | static_cast<unsigned char>(bytes_[at_ - from_end]);
     }
     if (!type.whole)
       return type.bytes == 4 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
                              : std::bit_cast<double>(bits);
-    const std::size_t unused = 8 * (8 - type.bytes);  // shifted out and in again, with copies of the sign
+    const std::size_t unused = 8 * (8 - type.bytes);  // shifted out and back to extend the sign
     if (type.has_sign) return static_cast<Real>(static_cast<std::int64_t>(bits << unused) >> unused);
     return static_cast<Real>(bits);
   }
@@ -85,11 +85,11 @@ class BinaryBody {
  private:
   std::string_view bytes_;
   std::size_t at_;
-  bool turned_;  // high byte first
+  bool swapped_;  // most significant byte first
   const std::string& file_;
 };
 
-// The rows of all elements. Faces may stand before the vertices that they name.
+// Reads the rows of all elements. Faces may precede the vertices that they refer to.
 template <class Body>
 class PlyReader {
  public:
@@ -97,11 +97,11 @@ class PlyReader {
 
   TriangleMesh mesh(const PlyHeader& header) {
     for (const PlyElement& element : header.elements) {
-      if (static_cast<std::uint64_t>(element.count) > body_.room(element))
+      if (static_cast<std::uint64_t>(element.count) > body_.rows_that_fit(element))
         body_.fail(
             fmt::format("{} rows of element {}: the rest of the file has room for {} at most: it is cut, or "
                         "the count is wrong",
-                        element.count, quoted(element.name), body_.room(element)));
+                        element.count, quoted(element.name), body_.rows_that_fit(element)));
       rows(element);
     }
     body_.end();
@@ -184,8 +184,8 @@ class PlyReader {
   Body body_;
   const std::string& file_;
   TriangleMesh mesh_;
-  std::vector<Real> corners_;       // vertex numbers of all faces, not checked yet
-  std::vector<std::size_t> sizes_;  // of the faces
+  std::vector<Real> corners_;       // vertex numbers of all faces, not validated yet
+  std::vector<std::size_t> sizes_;  // number of corners of each face
 };
 
 }  // namespace

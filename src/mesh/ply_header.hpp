@@ -1,4 +1,4 @@
-// What a PLY file says that it holds.
+// The header of a PLY file.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct PlyType {
 struct PlyProperty {
   std::string name;
   const PlyType* type;
-  const PlyType* count_type;  // of a list; nullptr: one value
+  const PlyType* count_type;  // type of the length of a list; nullptr: a single value
 };
 
 struct PlyElement {
@@ -34,7 +34,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-// Up to the end of the line of end_header. Throws InputError for what PLY 1.0 does not know.
+// Reads up to the end of the line of end_header. Throws InputError for statements outside PLY 1.0.
 PlyHeader read_ply_header(Words& words);
 
 }  // namespace scree

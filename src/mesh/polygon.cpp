@@ -15,10 +15,10 @@ struct Flat {
   Real x, y;
 };
 
-// Twice the area of a triangle, above 0 where it runs counterclockwise.
+// Twice the area of a triangle, positive where it runs counterclockwise.
 Real area2(Flat a, Flat b, Flat c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// Twice the area that the polygon spans, as a vector (Newell's).
+// Twice the vector area of the polygon (Newell).
 Vec3 span_of(const std::vector<Vec3>& points) {
   Vec3 span;
   for (std::size_t k = 1; k + 1 < points.size(); ++k)
@@ -26,7 +26,7 @@ Vec3 span_of(const std::vector<Vec3>& points) {
   return span;
 }
 
-// Seen along the axis that the polygon is most square to, so that it runs counterclockwise.
+// Projection along the axis nearest to the polygon's normal, so that it runs counterclockwise.
 std::vector<Flat> flattened(const std::vector<Vec3>& points) {
   const Vec3 span = span_of(points);
   const Real x = std::abs(span.x), y = std::abs(span.y), z = std::abs(span.z);
@@ -43,7 +43,7 @@ std::vector<Flat> flattened(const std::vector<Vec3>& points) {
   return flat;
 }
 
-// Whether all corners turn to the left, once around.
+// Whether all corners bend to the left, once around.
 bool is_convex(const std::vector<Flat>& points) {
   const std::size_t n = points.size();
   for (std::size_t k = 0; k < n; ++k)
@@ -53,8 +53,7 @@ bool is_convex(const std::vector<Flat>& points) {
   return true;
 }
 
-// Whether two sides cross; they may touch, as those of polygons with a hole do where outline and hole are
-// joined.
+// Whether two sides cross; they may touch, as in polygons with a hole, where outline and hole are joined.
 bool crosses_itself(const std::vector<Flat>& points) {
   const std::size_t n = points.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -67,7 +66,8 @@ bool crosses_itself(const std::vector<Flat>& points) {
   return false;
 }
 
-// Whether the corner at position k can be cut off: it turns to the left and holds no other corner.
+// Whether the corner at position k can be cut off: it bends to the left and its triangle contains no other
+// corner.
 bool is_ear(const std::vector<Flat>& points, const std::vector<Index>& left, std::size_t k) {
   const std::size_t n = left.size();
   const Index before = left[(k + n - 1) % n], tip = left[k], after = left[(k + 1) % n];

@@ -1,4 +1,4 @@
-// Faces of files with any number of corners.
+// Triangulation of polygons with any number of corners, as files have them.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace scree {
 
 // Appends the polygon of the mesh's vertices, at least three, cut into triangles of its winding: convex ones
-// as a fan about the first corner, others ear by ear. Returns "", or why it cannot be cut: then nothing is
-// appended.
+// as a fan about the first corner, others by ear clipping. Returns "", or the reason why it cannot be cut,
+// with nothing appended.
 std::string add_polygon(TriangleMesh& mesh, const std::vector<Index>& corners);
 
 }  // namespace scree

@@ -16,12 +16,13 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// A point of a line in the half plane of radius and height that is turned about z.
+// A point of a line in the half plane of radius and height that is rotated about z.
 struct ProfilePoint {
   Real radius, z;
 };
 
-// What the line sweeps, which runs upwards where it is outside; at radius 0 it is on the axis.
+// The surface of revolution of the line, which runs upwards where it is the outside; points at radius 0 are
+// on the axis.
 TriangleMesh revolved(const std::vector<ProfilePoint>& profile, bool closed, Index segments) {
   MeshBuilder builder;
   std::vector<Ring> rings;
@@ -38,8 +39,7 @@ TriangleMesh revolved(const std::vector<ProfilePoint>& profile, bool closed, Ind
   return builder.take();
 }
 
-// A regular icosahedron with two corners on the z axis would do as well: this one is symmetric to the planes
-// of the axes.
+// This orientation of the icosahedron is symmetric about the coordinate planes.
 TriangleMesh icosahedron() {
   const Real g = std::numbers::phi_v<Real>;
   return {{{-1, g, 0},
@@ -59,7 +59,7 @@ TriangleMesh icosahedron() {
            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 }
 
-// Every triangle as four, the new vertices in the middle of its edges.
+// Splits every triangle into four, with new vertices at the middles of its edges.
 TriangleMesh split_in_four(const TriangleMesh& mesh) {
   TriangleMesh fine{mesh.vertices, {}};
   std::map<std::pair<Index, Index>, Index> middles;
@@ -80,7 +80,7 @@ TriangleMesh split_in_four(const TriangleMesh& mesh) {
 }  // namespace
 
 Vec3 circle_point(std::int64_t k, std::int64_t n) {
-  // Angles in parts of an eighth of a turn, n of which are an eighth; mirrored into the first eighth.
+  // Angles in units of an eighth of a revolution over n, mirrored into the first eighth.
   std::int64_t angle = 8 * (k % n);
   Vec3 sign{1, 1, 0};
   if (angle > 4 * n) angle = 8 * n - angle, sign.y = -1;
@@ -158,7 +158,7 @@ TriangleMesh plate_mesh(const PlateShape& shape) {
   const Ring hole_low = builder.ring(hole, -h.z), hole_high = builder.ring(hole, h.z);
   builder.strip(low, high, true);
   builder.strip(hole_high, hole_low, true);
-  // Corner j has the hole's quarter j before it, and the triangle to the next corner.
+  // Corner j follows the hole's quarter j and precedes the triangle to the next corner.
   const Index quarter = shape.segments / 4;
   for (Index j = 0; j < 4; ++j) {
     for (Index k = j * quarter; k < (j + 1) * quarter; ++k) {

@@ -1,6 +1,6 @@
-// Surfaces made from a few numbers. All but sheets are closed, corners counterclockwise seen from outside,
-// and have one vertex per place. Round ones have their vertices on the true shape; `segments` go once around.
-// Their middle is at the origin and their axis z unless said otherwise. Sizes [m].
+// Surfaces made from a few numbers. All but open surfaces are closed, with corners counterclockwise seen
+// from outside, and no two vertices coincide. Round ones have their vertices on the true shape, with
+// `segments` around. They are centred at the origin with axis z unless stated otherwise. Sizes [m].
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace scree {
 
 // Point k of n on the circle of radius 1, counterclockwise from +x; mirror images have mirrored bits, and
-// those on the axes are exact.
+// points on the axes are exact.
 Vec3 circle_point(std::int64_t k, std::int64_t n);
-// The least number of segments, of at least 3 and a multiple of 4, whose chords lie within `sag` of the arc.
+// The smallest number of segments, a multiple of 4, whose chords lie within `sag` of the arc.
 Index segments_within(Real radius, Real sag);
 
 struct BoxShape {
@@ -50,35 +50,35 @@ struct PipeShape {
   Real inner_radius, outer_radius, length;
   Index segments;
 };
-// A pipe of inner `radius` and `wall`, inside which bars of `lifter_height` (towards the axis) by
-// `lifter_width` run along all its length, the first in +x. end_wall: thickness of the discs that close it
-// beyond `length`; 0: open. At least one segment lies between two lifters.
+// A pipe of inner `radius` and `wall`, with bars of `lifter_height` (towards the axis) by `lifter_width`
+// along all its length inside, the first one at +x. end_wall: thickness of the discs that close it beyond
+// `length`; 0: open. There is at least one segment between two lifters.
 struct DrumShape {
   Real radius, wall, length, end_wall;
   Index lifters;
   Real lifter_height, lifter_width;
   Index segments;
 };
-// A core with a helical flight, cut off square at both ends: at each z the disc of the core and a sector of
-// the flight, which turns once per `pitch` (below 0: left-handed) and is `thickness` thick along z. The core
-// goes on to `core_length` (at least `length`), both in the middle.
+// A core with a helical flight, cut off square at both ends: at each z the section is the disc of the core
+// and a sector of the flight, which makes one revolution per `pitch` (negative: left-handed) and has
+// `thickness` along z. The core extends to `core_length` (at least `length`); both are centred.
 struct ScrewShape {
   Real core_radius, flight_radius, pitch, thickness, length, core_length;
   Index segments;
 };
-// A sheet: the side of a cone from `radius` at z = 0 to `top_radius` at z = length, below which a tube of
-// `radius` goes on by `outlet_length`; 0: none.
+// An open surface: the side of a cone from `radius` at z = 0 to `top_radius` at z = length, continued below
+// by a tube of `radius` and `outlet_length`; 0: none.
 struct FunnelShape {
   Real radius, top_radius, length, outlet_length;
   Index segments;
 };
-// The same with rectangles in place of circles, their edges along x and y (z is left out).
+// A funnel with rectangles in place of circles, their edges along x and y (their z is unused).
 struct HopperShape {
   Vec3 size, top_size;
   Real length, outlet_length;
 };
 
-// What the numbers of a shape, all finite, must not be, or "".
+// The first violated condition on the numbers of a shape, all finite, or "".
 std::string shape_trouble(const BoxShape& shape);
 std::string shape_trouble(const CylinderShape& shape);
 std::string shape_trouble(const ConeShape& shape);
@@ -91,7 +91,7 @@ std::string shape_trouble(const ScrewShape& shape);
 std::string shape_trouble(const FunnelShape& shape);
 std::string shape_trouble(const HopperShape& shape);
 
-// Of shapes without trouble.
+// Meshes of valid shapes, those for which shape_trouble() is empty.
 TriangleMesh box_mesh(const BoxShape& shape);
 TriangleMesh cylinder_mesh(const CylinderShape& shape);
 TriangleMesh cone_mesh(const ConeShape& shape);
@@ -104,18 +104,18 @@ TriangleMesh screw_mesh(const ScrewShape& shape);
 TriangleMesh funnel_mesh(const FunnelShape& shape);
 TriangleMesh hopper_mesh(const HopperShape& shape);
 
-// A sheet: the rectangle of this size about the origin in the plane z = 0, seen from +z.
+// An open surface: the rectangle of this size about the origin in the plane z = 0, facing +z.
 TriangleMesh rectangle_mesh(Real width, Real depth);
-// For planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k, the least
-// power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0 exactly.
-// Seen from the right of the way from point to point. Without ends, which no particle is near.
+// For planar models: segments between points (their z is unused) extruded along z, from -2^k to 2^k, the
+// least power of two that is at least half_depth, so that the nearest point of any z = 0 point has z = 0
+// exactly. Faces to the right of the path from point to point. Without ends, which no particle reaches.
 TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth);
-// A closed line, counterclockwise around its inside, with its ends: a closed mesh. Throws InputError for one
-// that crosses itself.
+// A closed line, counterclockwise around its inside, extruded with ends: a closed mesh. Throws InputError
+// for a line that crosses itself.
 TriangleMesh extruded_outline_mesh(const std::vector<Vec3>& points, Real half_depth);
-// Such a mesh without its ends.
+// The extruded outline without its ends.
 TriangleMesh without_ends(TriangleMesh outline);
-// A line, with ends or without, from -depth / 2 to depth / 2 [m].
+// An extruded line, with or without ends, rescaled to z from -depth / 2 to depth / 2 [m].
 TriangleMesh line_of_depth(TriangleMesh line, Real depth);
 
 }  // namespace scree

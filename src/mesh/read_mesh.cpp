@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-// No format has more vertices or triangles than bytes: with this many an Index counts them.
+// No format has more vertices or triangles than bytes: below this size an Index counts them.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 31;
 
 std::string contents(const std::string& path) {

@@ -17,7 +17,7 @@ namespace scree {
 
 namespace {
 
-// The queue's first is the longest edge, of equal ones that of the lowest vertices.
+// Priority in the queue: the longest edge first, of equal ones that with the lowest vertices.
 struct Edge {
   Real length;
   Index low, high;
@@ -39,7 +39,7 @@ class Refiner {
   }
 
   TriangleMesh mesh() {
-    // A triangle of such edges has the area of an equilateral one at most.
+    // A triangle with such edges has at most the area of an equilateral one.
     const Real largest = std::sqrt(Real(3)) / 4 * edge_length_ * edge_length_;
     if (!(mesh_area(mesh_) <= most_ * largest)) fail();
     while (!queue_.empty()) {
@@ -54,7 +54,7 @@ class Refiner {
   static std::uint64_t key(Index a, Index b) {
     return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
   }
-  // Waits to be split from its first triangle on.
+  // Queues the edge to be split, starting with its first triangle.
   void add_edge(Index a, Index b, Index triangle) {
     const Real length = norm(mesh_.vertices[a] - mesh_.vertices[b]);
     if (!(length > edge_length_)) return;
@@ -68,7 +68,7 @@ class Refiner {
     mesh_.vertices.push_back(Real(0.5) * (mesh_.vertices[a] + mesh_.vertices[b]));
     for (const Index triangle : around) halve(triangle, a, b, middle);
   }
-  // Its edge between a and b, of which a comes first where it runs so.
+  // Splits a triangle at its edge between a and b; a precedes b in the triangle.
   void halve(Index triangle, Index a, Index b, Index middle) {
     std::array<Index, 3> corners = mesh_.triangles[triangle];
     while (corners[0] == a || corners[0] == b)
@@ -84,7 +84,7 @@ class Refiner {
     add_edge(first, middle, triangle), add_edge(middle, second, half);
     add_edge(tip, middle, triangle), add_edge(tip, middle, half);
   }
-  // Triangles in order of their parents, then as they were made.
+  // Triangles in the order of their parents, then of their creation.
   TriangleMesh in_order() {
     std::vector<Index> order(parent_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -102,8 +102,8 @@ class Refiner {
   TriangleMesh mesh_;
   Real edge_length_;
   Index most_;
-  std::vector<Index> parent_;                                     // of each triangle, in the mesh given
-  std::unordered_map<std::uint64_t, std::vector<Index>> around_;  // triangles at the edges that wait
+  std::vector<Index> parent_;  // per triangle, its triangle of the original mesh
+  std::unordered_map<std::uint64_t, std::vector<Index>> around_;  // triangles at the queued edges
   std::priority_queue<Edge> queue_;
 };
 

@@ -1,4 +1,4 @@
-// Meshes of the same surface with smaller triangles.
+// Refinement of meshes without change of their surface.
 #pragma once
 
 #include "base/types.hpp"
@@ -6,11 +6,11 @@
 
 namespace scree {
 
-// A welded mesh whose edges are all at most edge_length [m]: the longest that is longer, of all, is split in
-// its middle with all its triangles, until there is none (ties: the edge of lower vertices first), so that no
-// vertex hangs on an edge and angles stay bounded (Rivara, Int. J. Numer. Meth. Eng. 20, 1984). Parts of a
-// triangle stand together, in its place. The surface stays: curved shapes keep their facets; made of more
-// segments they come nearer. Throws InputError where more than most_triangles would be made.
+// A welded mesh whose edges are all at most edge_length [m]. The longest edge above that is split at its
+// middle, with all its triangles, until there is none (ties: the edge of lower vertices first), so that
+// there are no hanging vertices and angles stay bounded (Rivara, Int. J. Numer. Meth. Eng. 20, 1984). Parts
+// of a triangle take its position in the order. Curved shapes keep their facets; more segments bring them
+// nearer to the true shape. Throws InputError where more than most_triangles would be made.
 TriangleMesh refined(const TriangleMesh& mesh, Real edge_length, Index most_triangles = 100'000'000);
 
 }  // namespace scree

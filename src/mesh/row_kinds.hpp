@@ -1,5 +1,5 @@
-// What rows of triangles near a particle look like, for how many contacts there must be room, and the search
-// where there can hardly be more than one. Host and device.
+// Classification of the rows of triangles near a particle, their number of contact slots, and the search in
+// rows that can hardly have more than one contact. Host and device.
 #pragma once
 
 #include "mesh/mesh_contacts.hpp"
@@ -8,13 +8,13 @@
 
 namespace scree {
 
-// smooth: one patch whose faces, and so all that a sphere may touch there, differ in direction by no more
-// than the feature angle: what is touched from one side is one contact.
+// smooth: one patch whose faces differ in direction by no more than the feature angle, and with them all
+// features that a sphere may touch there: contacts from one side are one contact.
 enum class RowKind : std::uint8_t { any, smooth };
 
 namespace mesh_detail {
 
-inline constexpr Real kCosineRoundOff = 0x1p-20;  // of weak vertices' directions, with plenty to spare
+inline constexpr Real kCosineRoundOff = 0x1p-20;  // of weak vertices' directions, with a large margin
 
 SCREE_HD bool owns_open_feature(const MeshView& mesh, const MeshTriangle& triangle) {
   for (Index row = triangle.first_feature; row < triangle.first_feature + triangle.features; ++row)
@@ -30,7 +30,8 @@ SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index
   for (Index i = 0; i < count; ++i) {
     const MeshTriangle& triangle = mesh.triangles[triangles[i]];
     const MeshPart& other = mesh.parts[triangle.part];
-    // Directions within half the feature angle of one differ by no more than it among each other.
+    // Directions within half the feature angle of one normal differ from each other by no more than the
+    // feature angle.
     const Real c = dot(other.normal, part.normal), of_twice = 2 * c * c - 1;
     if (other.patch != part.patch || !(c > 0) || !(of_twice > mesh.cosine + mesh_detail::kCosineRoundOff) ||
         mesh_detail::owns_open_feature(mesh, triangle))
@@ -39,7 +40,7 @@ SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index
   return RowKind::smooth;
 }
 
-// Whether c is on one side of all planes of a row, wherever it moves by no more than `past` [m].
+// Whether c stays on one side of all planes of a row while it moves by no more than `past` [m].
 SCREE_HD bool is_one_sided(const MeshView& mesh, const Index* triangles, Index count, Vec3 c, Real past) {
   const Real margin = past + mesh.flatness + mesh.round_off;
   bool above = true, below = true;
@@ -51,8 +52,8 @@ SCREE_HD bool is_one_sided(const MeshView& mesh, const Index* triangles, Index c
   return above || below;
 }
 
-// How many contacts there can be at a time with the triangles of a row, at most kMeshSlots. one_sided: as
-// above, of a smooth one.
+// The largest number of simultaneous contacts with the triangles of a row, at most kMeshSlots. one_sided:
+// is_one_sided() of a smooth row.
 SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, bool one_sided, const Index* triangles,
                           Index count) {
   const int most = kind == RowKind::any ? kMeshSlots : mesh.sheet && !one_sided ? 2 : 1;
@@ -68,18 +69,19 @@ SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, bool one_sided, co
   return needed < most ? needed : most;
 }
 
-// Of a search: no contact, one, or a case for find_mesh_contacts().
+// Result of a search: no contact, one, or a case for find_mesh_contacts().
 enum class Nearest { none, one, unclear };
 
-// What find_mesh_contacts() finds of smooth rows: as all that is touched from one side is one contact the
-// nearest is all, and needs no room for others. Unclear: touched from both sides, or where round-off decides.
+// Search equivalent to find_mesh_contacts() for smooth rows: contacts from one side are one contact, so that
+// the nearest suffices, and no slots are needed for others. Unclear: contacts from both sides, or a result
+// that depends on round-off.
 class NearestContact : TriangleLook<NearestContact> {
   friend TriangleLook<NearestContact>;
 
  public:
   SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real reach) : TriangleLook(mesh, c, reach) {}
 
-  // likely: as there. All of the team get the same.
+  // likely: as for find_mesh_contacts(). All lanes of the team get the same result.
   SCREE_HD_CALLER template <class Team>
   SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const Team& team,
                         MeshContact& out) {
@@ -90,7 +92,8 @@ class NearestContact : TriangleLook<NearestContact> {
       take(a), join(b);
       return Found{best_, beside_, both_sides_};
     }));
-    // A vertex that holds but for round-off is one contact with the nearest, if it is on the same side.
+    // A vertex that counts but for round-off is one contact with the nearest feature, if it is on the same
+    // side.
     const bool is_found = best_.feature >= 0;
     const Real weak = beside_.nearest_weak;
     if (both_sides_ != 0 || (weak < reach_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
@@ -114,7 +117,7 @@ class NearestContact : TriangleLook<NearestContact> {
     beside_.add(found.beside), both_sides_ |= found.both_sides;
   }
   SCREE_HD bool known(Index part, Index t) const { return best_.feature == part && best_.triangle <= t; }
-  // What lies on the side that is touched is the same contact, and counts if it is nearer.
+  // Features on the side of the contact belong to the same contact, and count only if they are nearer.
   SCREE_HD Real reach_at(const MeshPart& part, Real height) const {
     if (best_.feature < 0 || (mesh_.sheet && (height < 0) != (dot(best_.normal, part.normal) < 0)))
       return reach_;
@@ -134,7 +137,7 @@ class NearestContact : TriangleLook<NearestContact> {
   }
 
   MeshContact best_{-1, -1, 0, {}, {}};
-  std::int64_t both_sides_ = 0;  // or 1
+  std::int64_t both_sides_ = 0;  // 0 or 1
 };
 
 }  // namespace scree

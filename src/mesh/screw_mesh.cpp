@@ -13,10 +13,10 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// A left-handed one. Its section at one height: the free core, and the flight as a fan of `radial_segments`
-// by `sector_segments` patches, whose edges on the flight's faces are so short that a face's patches, which
-// are twisted, are flat to second order. Strips split the core's patches along z where the sections turn this
-// way; the other way they would cut off a chord of two segments.
+// A left-handed screw. Its section at one height consists of the free core and of the flight, a fan of
+// `radial_segments` by `sector_segments` patches. Their edges on the flight's faces are so short that the
+// patches of a face, which are twisted, are flat to second order. Strips split the core's patches along z in
+// the direction in which the sections rotate; the other diagonal would cut off a chord of two segments.
 class Screw {
  public:
   explicit Screw(const ScrewShape& shape)
@@ -49,7 +49,7 @@ class Screw {
   Index vertex_at(Real radius, Real angle, Real z) {
     return builder_.vertex({radius * std::cos(angle), radius * std::sin(angle), z});
   }
-  // So many segments, both ends included.
+  // An arc of so many segments, both ends included.
   Ring arc(Real radius, Real first, Real last, Index segments, Real z) {
     Ring ring;
     for (Index k = 0; k <= segments; ++k)
@@ -74,7 +74,8 @@ class Screw {
       ring.insert(ring.end(), part->begin(), part->end());
     return ring;
   }
-  // Across the flight at radius(r), 0 <= r < parts_.radial_segments: new vertices between those of the faces.
+  // Vertices across the flight at radius(r), 0 <= r < parts_.radial_segments: new ones between those of the
+  // faces.
   Ring across(const Layer& layer, Index r) {
     const Index last = parts_.radial_segments - 1;
     Ring ring{r == 0 ? layer.core.back() : layer.first_face[r - 1]};
@@ -114,8 +115,8 @@ class Screw {
   }
 
   const ScrewShape& shape_;
-  Real rise_;         // of a turn
-  Real half_sector_;  // [rad], of the flight's section
+  Real rise_;         // of the flight per revolution [m]
+  Real half_sector_;  // half angle of the flight's section [rad]
   ScrewParts parts_;
   MeshBuilder builder_;
 };

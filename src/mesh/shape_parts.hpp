@@ -1,16 +1,16 @@
-// Into how many parts the circles of drums and screws are cut.
+// Subdivision of the circles of drums and screws.
 #pragma once
 
 #include "mesh/primitives.hpp"
 
 namespace scree {
 
-// Around a drum, arcs from lifter to lifter and those under the lifters, each cut into equal parts; without
+// Arcs around a drum, from lifter to lifter and under the lifters, each cut into equal parts; without
 // lifters there is one arc, all around.
 struct DrumArcs {
   Index segments, below;    // of an arc, and under a lifter
   Real angle, angle_below;  // of one part [rad]
-  Real foot_angle;          // half of what a lifter takes [rad]
+  Real foot_angle;          // half the angle of a lifter [rad]
 };
 DrumArcs drum_arcs(const DrumShape& shape);
 

@@ -9,12 +9,12 @@ namespace scree {
 
 namespace {
 
-// So that no shape has more than some 1e8 triangles.
+// Keeps every shape below some 1e8 triangles.
 constexpr Index kMostSegments = 10'000;
 constexpr int kMostLevels = 10;
 constexpr Real kMostTriangles = 1e8;
 
-// The first demand that is not met.
+// Collects conditions and reports the first violated one.
 struct Demand {
   bool met;
   std::string text;

@@ -16,8 +16,8 @@ namespace {
 
 using Corners = TriangleCorners;
 
-// The line along which a triangle cuts a plane that it lies on both sides of: the range of its points there
-// along `direction`, and its ends [m]. height: of the triangle's corners over the plane.
+// The intersection of a triangle with a plane: its range along `direction`, and its ends [m]. height: of the
+// triangle's corners over the plane.
 struct Cut {
   Real low = kInfinity, high = -kInfinity;
   Vec3 at_low, at_high;
@@ -40,7 +40,8 @@ Cut cut_of(const Corners& corners, const std::array<Real, 3>& height, Vec3 direc
   return cut;
 }
 
-// The middle of the line that two triangles have in common, where they cross by more than the tolerance [m].
+// The middle of the segment that two triangles have in common, where they intersect by more than the
+// tolerance [m].
 std::optional<Vec3> crossing_of(const Corners& a, const Corners& b, Real tolerance) {
   const auto unit_normal = [](const Corners& t) {
     const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);

@@ -1,4 +1,4 @@
-// Shells, and other parts, of one mesh that cut through each other.
+// Intersections of shells, and of other parts, of one mesh.
 #pragma once
 
 #include <optional>
@@ -9,30 +9,30 @@
 
 namespace scree {
 
-// The first crossing of two shells: the lowest triangle of the lower shell that crosses one of the other
-// shell, and the lowest of these.
+// The first intersection of two shells: the lowest triangle of the lower shell that intersects the other
+// shell, and the lowest triangle that it intersects.
 struct ShellCrossing {
   Index shell[2], triangle[2];  // the lower shell first
-  Vec3 position;                // middle of the line along which the two triangles cross [m]
+  Vec3 position;                // middle of the intersection of the two triangles [m]
 };
 
-// The first crossing of every two shells that cross, in the order of the shells. Two triangles cross where
-// the corners of each lie on both sides of the other one's plane and the two have a line in common; all three
-// by more than kCrossingTolerance of the mesh's extent, so that shells which touch, as boxes that stand on
-// each other, do not cross, whatever the round-off of a file's coordinates. shell_of_triangle: as shells_of()
-// has them.
+// The first intersection of every pair of intersecting shells, in the order of the shells. Two triangles
+// intersect where the corners of each lie on both sides of the other one's plane and the two have a segment
+// in common; all three by more than kCrossingTolerance of the mesh's extent. Shells in touch, as boxes that
+// stand on each other, therefore do not intersect, whatever the round-off of a file's coordinates.
+// shell_of_triangle: from shells_of().
 std::vector<ShellCrossing> shell_crossings(const TriangleMesh& mesh,
                                            const std::vector<Index>& shell_of_triangle);
 inline constexpr Real kCrossingTolerance = 1e-6;
 
-// The first two triangles without a common vertex that cross, be they of one shell or of two.
+// The first intersection of two triangles without a common vertex, of one shell or of two.
 struct OwnCrossing {
   Index triangle[2];  // the lower one first
-  Vec3 position;      // as of a ShellCrossing [m]
+  Vec3 position;      // as in ShellCrossing [m]
 };
 std::optional<OwnCrossing> own_crossing(const TriangleMesh& mesh);
 
-// The shells that cut through others, increasing.
+// The shells that intersect others, increasing.
 std::vector<Index> crossing_shells(const TriangleMesh& mesh, const std::vector<Index>& shell_of_triangle);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// How far a sphere may move on a mesh before anything but the face that it is over needs a look. Host and
-// device.
+// The safe displacement of a cached contact: how far a sphere may move on a mesh before a narrow-phase query
+// can find anything but the face that it is over. Host and device.
 #pragma once
 
 #include "mesh/mesh_contacts.hpp"
@@ -8,12 +8,12 @@
 
 namespace scree {
 
-// As long as the centre is nearer than `room` to `from`, it is over this triangle, and a contact there is all
-// that a search would find; -1: it would find none.
+// A cached contact. While the centre is within `room` of `from`, it is over this triangle, and a query would
+// find the contact with it only; triangle -1: a query would find none.
 struct Standing {
   Vec3 from;             // in the frame of the mesh [m]
   Real room;             // [m]
-  Index triangle, part;  // the latter that of the triangle
+  Index triangle, part;  // part: that of the triangle
 
   SCREE_HD bool holds(Vec3 c) const {
     const Vec3 moved = c - from;
@@ -29,13 +29,13 @@ SCREE_HD Real distance_to(const MeshView& mesh, const MeshTriangle& triangle, Ve
   return std::sqrt(squared_distance(v[triangle.vertex[0]], v[triangle.vertex[1]], v[triangle.vertex[2]], c));
 }
 
-// What round-off and vertices beside their plane make of a distance, with some to spare.
+// Bound of the distance errors due to round-off and to vertices off their plane, with a margin.
 SCREE_HD Real uncertainty(const MeshView& mesh) { return 2 * mesh.flatness + 4 * mesh.round_off; }
 
 }  // namespace mesh_detail
 
-// The row of a sphere whose contacts are looked for within `reach` of its centre c. All of the team get the
-// same.
+// The row of a sphere whose contacts are searched within `reach` of its centre c. All lanes of the team get
+// the same result.
 template <class Team>
 struct StandingRow {
   const MeshView& mesh;
@@ -46,7 +46,8 @@ struct StandingRow {
   Real reach;
   Team team{};
 
-  // Over triangle t, from outside. Others must stay beyond reach or, on a smooth row, farther than its plane.
+  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `reach` or, on a
+  // smooth row, farther away than the plane of t.
   SCREE_HD Standing over(Index t) const {
     const MeshTriangle& triangle = mesh.triangles[t];
     const MeshPart& part = mesh.parts[triangle.part];
@@ -62,14 +63,14 @@ struct StandingRow {
     for (const Edge& edge : below.edges) shrink(room, edge.inside);
     for (Index i = team.first(); i < count && room > 0; i += team.stride()) {
       const MeshTriangle& other = mesh.triangles[triangles[i]];
-      // Of the same plane it is the same contact.
+      // In the same plane it is the same contact.
       if (triangles[i] == t || (other.part == triangle.part && other.features == 0)) continue;
-      shrink(room, beside(other, below, room));
+      shrink(room, permitted_by(other, below, room));
     }
-    return standing(team.agree(room, [](Real a, Real b) { return b < a ? b : a; }), t);
+    return cached(team.agree(room, [](Real a, Real b) { return b < a ? b : a; }), t);
   }
 
-  // Beyond reach of all; or over the nearest of them, where that lasts longer.
+  // Safe displacement beyond the reach of all triangles, or over the nearest one, where that is larger.
   SCREE_HD Standing clear() const {
     NearestTriangle nearest{kInfinity, -1};
     for (Index i = team.first(); i < count; i += team.stride()) {
@@ -77,14 +78,14 @@ struct StandingRow {
       nearest = NearestTriangle::of(nearest, {distance, triangles[i]});
     }
     nearest = team.agree(nearest, NearestTriangle::of);
-    const Standing off = standing(nearest.distance - reach, -1);
+    const Standing off = cached(nearest.distance - reach, -1);
     if (nearest.triangle < 0 || off.room > kLongLasting * reach) return off;
     const Standing on = over(static_cast<Index>(nearest.triangle));
     return on.room > off.room ? on : off;
   }
 
  private:
-  static constexpr Real kLongLasting = 0.1;  // part of the reach
+  static constexpr Real kLongLasting = 0.1;  // fraction of the reach
   struct NearestTriangle {
     Real distance;
     std::int64_t triangle;
@@ -96,19 +97,19 @@ struct StandingRow {
   SCREE_HD static void shrink(Real& room, Real to) {
     if (!(room < to)) room = to;
   }
-  SCREE_HD Standing standing(Real room, Index t) const {
+  SCREE_HD Standing cached(Real room, Index t) const {
     const Real sure = room - mesh_detail::uncertainty(mesh);
     return {c, sure > 0 ? sure : 0, t, t < 0 ? -1 : mesh.triangles[t].part};
   }
-  // An edge of the triangle that c is over: a vertex, the direction in the plane from the edge to the inside,
-  // and how far inside c is [m].
+  // An edge of the triangle that c is over: a vertex, the direction in the plane from the edge to the
+  // inside, and the distance of c from the edge inwards [m].
   struct Edge {
     Vec3 from, inward;
     Real inside;
   };
-  // That triangle as seen from c.
+  // The triangle that c is over, relative to c.
   struct Below {
-    Vec3 point, up;  // of its plane; unit, towards c
+    Vec3 point, up;  // point of its plane; unit normal towards c
     Real distance;   // of c from the plane [m]
     Edge edges[3];
   };
@@ -118,8 +119,8 @@ struct StandingRow {
     const Vec3 inward = (1 / std::sqrt(dot(e, e))) * cross(normal, e);
     return {from, inward, dot(c - from, inward)};
   }
-  // What another triangle leaves; or at least `enough`, if it leaves that.
-  SCREE_HD Real beside(const MeshTriangle& other, const Below& below, Real enough) const {
+  // The displacement that another triangle permits; or at least `enough`, if it permits that.
+  SCREE_HD Real permitted_by(const MeshTriangle& other, const Below& below, Real enough) const {
     Real farther = 0, same_side = kInfinity;
     if (kind == RowKind::smooth) {
       if (mesh.sheet) {
@@ -127,7 +128,7 @@ struct StandingRow {
         const Real height = dot(c - part.point, part.normal);
         same_side = dot(part.normal, below.up) < 0 ? -height : height;
       }
-      farther = past_an_edge(other, below);
+      farther = permitted_beyond_edge(other, below);
       if (!(farther < enough) && !(same_side < enough)) return farther;
     }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - reach;
@@ -137,9 +138,9 @@ struct StandingRow {
     shrink(farther, same_side);
     return farther > beyond_reach ? farther : beyond_reach;
   }
-  // How far c may move so that a triangle that lies past an edge stays farther than the plane below; 0: it
-  // lies past none. Derived in src/mesh/README.md, "Looks that can be spared".
-  SCREE_HD Real past_an_edge(const MeshTriangle& other, const Below& below) const {
+  // Displacement of c for which a triangle beyond an edge stays farther away than the plane below; 0: it is
+  // beyond no edge. Derived in src/mesh/README.md, "Looks that can be spared".
+  SCREE_HD Real permitted_beyond_edge(const MeshTriangle& other, const Below& below) const {
     const Real u = mesh_detail::uncertainty(mesh);
     const Vec3 corners[] = {mesh.vertices[other.vertex[0]], mesh.vertices[other.vertex[1]],
                             mesh.vertices[other.vertex[2]]};

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers of STL files have their low byte first");
 
-// Binary: 80 bytes of any text, the number of triangles, and 50 bytes of each: normal, three corners, two
+// Binary: 80 bytes of any text, the number of triangles, and 50 bytes for each: normal, three corners, two
 // bytes.
 constexpr std::size_t kHeader = 80, kStart = 84, kTriangle = 50, kNormal = 12;
 
@@ -54,7 +54,7 @@ class AsciiStl {
   TriangleMesh mesh() {
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
       if (lower(word) != "solid") words_.fail(fmt::format("{}: must be solid", quoted(word)));
-      words_.skip_line();  // its name
+      words_.skip_line();  // name of the solid
       while (facet()) {
       }
       words_.skip_line();
@@ -63,13 +63,13 @@ class AsciiStl {
   }
 
  private:
-  // False: the solid ends instead.
+  // False where the solid ends instead.
   bool facet() {
     const std::string_view word = words_.next();
     if (lower(word) == "endsolid") return false;
     check(word, "facet", "facet or endsolid");
     expect("normal");
-    for (int k = 0; k < 3; ++k) words_.next();  // follow from the corners
+    for (int k = 0; k < 3; ++k) words_.next();  // normals follow from the corners
     expect("outer");
     expect("loop");
     for (int k = 0; k < 3; ++k) {
@@ -92,7 +92,8 @@ class AsciiStl {
   TriangleMesh mesh_;
 };
 
-// Text, which has no zero byte, that begins with the word "solid", as the headers of some binary files do.
+// Whether a file is text, which has no zero byte and begins with the word "solid", as the headers of some
+// binary files do.
 bool is_ascii(std::string_view bytes) {
   const std::string_view word = Words(bytes, "").next();
   return lower(word) == "solid" && bytes.find('\0') == std::string_view::npos;

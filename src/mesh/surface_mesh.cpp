@@ -14,7 +14,7 @@ namespace scree {
 namespace {
 
 constexpr Real kFlatness = 1e-12;  // of a part, relative to the extent of the mesh
-constexpr Real kUnits = 8;         // in the last place of the largest coordinate, that count as round-off
+constexpr Real kUnits = 8;  // units in the last place of the largest coordinate that count as round-off
 
 const MeshBox kNoBox{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
@@ -25,7 +25,7 @@ void extend(MeshBox& box, const MeshBox& other) {
              std::max(box.max.z, other.max.z)};
 }
 
-// Boxes of groups of kTreeWidth, in their order.
+// Boxes of groups of kTreeWidth consecutive boxes.
 std::vector<MeshBox> grouped(const std::vector<MeshBox>& boxes) {
   std::vector<MeshBox> groups;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -52,8 +52,8 @@ void build_tree(SurfaceMesh& mesh) {
 
 Real largest(Vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
-// Of a vertex from the plane of its part [m]. The plane of a triangle alone is only as good as its normal,
-// and that of a sliver may be off by more than parts are given.
+// Largest distance of a vertex from the plane of its part [m]. The plane of a single triangle is only as
+// good as its normal; with a sliver it may be off by more than the tolerance of parts.
 Real farthest_from_plane(const TriangleMesh& mesh, const MeshParts& parts) {
   Real farthest = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

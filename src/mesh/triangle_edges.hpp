@@ -1,4 +1,4 @@
-// Where a point lies to the edges of a triangle. Host and device.
+// Position of a point relative to the edges of a triangle. Host and device.
 #pragma once
 
 #include <cmath>
@@ -9,20 +9,20 @@
 
 namespace scree {
 
-// Twice the area between an edge e and a point d from its lower vertex, seen along the normal of a face:
-// above 0 to the left of the edge, where the face is that runs along it [m^2]. Faces and edges ask this
-// function alone, so that each place belongs to one of them.
+// Twice the area between an edge e and a point d from its lower vertex, along the normal of a face: positive
+// to the left of the edge, where the face lies that runs along it [m^2]. Faces and edges use this one
+// function, so that each position belongs to exactly one of them.
 SCREE_HD Real left_of_edge(Vec3 d, Vec3 e, Vec3 normal) { return dot(d, cross(normal, e)); }
 
-// |x| + |y| + |z|: not less than the length, without a root.
+// |x| + |y| + |z|: an upper bound of the length, without a root.
 SCREE_HD Real rough_length(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
 
 namespace mesh_detail {
 
 inline constexpr Real kSideRoundOff = 0x1p-49;  // of left_of_edge, relative to rough lengths
 
-// How far c lies to the inside of edge k of a triangle, seen along the normal of its part, times the length
-// of the edge; and what its round-off can be [m^2].
+// Distance of c to the inside of edge k of a triangle, along the normal of its part, times the length of the
+// edge; and a bound of its round-off [m^2].
 struct EdgeSide {
   Real inside, round_off;
 };
@@ -37,8 +37,8 @@ SCREE_HD EdgeSide side_of_edge(const MeshView& mesh, const MeshTriangle& triangl
   return {reversed ? -left : left, kSideRoundOff * rough_length(d) * rough_length(e)};
 }
 
-// Past which edges of a triangle c lies: bit k for edge k; 0: c is over the triangle. Across an edge to the
-// same plane round-off counts for both sides: it is the same contact.
+// The edges of a triangle beyond which c lies: bit k for edge k; 0: c is over the triangle. At an edge
+// between coplanar triangles round-off counts in favour of both: it is the same contact.
 SCREE_HD unsigned edges_passed(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
   unsigned passed = 0;
   for (int k = 0; k < 3; ++k)
@@ -52,7 +52,8 @@ SCREE_HD unsigned edges_passed(const MeshView& mesh, const MeshTriangle& triangl
   return passed;
 }
 
-// Whether it lies past none, so that c is over the triangle; most that it is not over fail at the first edge.
+// Whether c lies beyond no edge, so that it is over the triangle; most other triangles fail at the first
+// edge.
 SCREE_HD bool is_over(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
   for (int k = 0; k < 3; ++k) {
     const EdgeSide side = side_of_edge(mesh, triangle, k, normal, c);
@@ -62,7 +63,7 @@ SCREE_HD bool is_over(const MeshView& mesh, const MeshTriangle& triangle, Vec3 n
   return true;
 }
 
-// Whether c is over the triangle and, even with round-off, over no other of its plane.
+// Whether c is over the triangle and, even with round-off, over no other triangle of its plane.
 SCREE_HD bool is_well_over(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
   for (int k = 0; k < 3; ++k) {
     const EdgeSide side = side_of_edge(mesh, triangle, k, normal, c);

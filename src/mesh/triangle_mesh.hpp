@@ -1,5 +1,4 @@
-// A surface as triangles: what is read from a file or made from a few numbers, before anything is known of
-// it.
+// A surface as triangles, as read from a file or made from a few numbers, without derived data.
 #pragma once
 
 #include <array>

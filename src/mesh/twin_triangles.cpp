@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-// Of each triangle the first with its corners.
+// For each triangle the first one with its corners.
 std::vector<Index> firsts_of(const TriangleMesh& mesh) {
   std::vector<std::array<Index, 4>> rows;
   rows.reserve(mesh.triangles.size());
@@ -28,7 +28,7 @@ std::vector<Index> firsts_of(const TriangleMesh& mesh) {
   return firsts;
 }
 
-// Leaves out all triangles for which is_gone(triangle).
+// Removes all triangles for which is_gone(triangle).
 template <class IsGone>
 std::vector<Index> leave_out(NumberedMesh& mesh, const IsGone& is_gone) {
   std::vector<Index> numbers;
@@ -44,17 +44,17 @@ std::vector<Index> leave_out(NumberedMesh& mesh, const IsGone& is_gone) {
   return numbers;
 }
 
-// Which of the triangles that had twins a closed mesh keeps: at each edge there are two triangles or none. It
-// is decided where an edge leaves one choice, and from there on; where none does, all stay.
+// Selects the triangles with duplicates that a closed mesh keeps: each edge then has two triangles or none.
+// Selection starts at edges that leave one choice and propagates from there; where no edge does, all stay.
 class ClosedChoice {
  public:
-  // mesh: with one triangle of each kind. had_twin: of each triangle.
-  ClosedChoice(const TriangleMesh& mesh, const std::vector<char>& had_twin)
+  // mesh: without duplicates. had_duplicate: per triangle, whether it had some.
+  ClosedChoice(const TriangleMesh& mesh, const std::vector<char>& had_duplicate)
       : kept_(mesh.triangles.size()), edges_of_(mesh.triangles.size()) {
     for_each_edge(sides_of(mesh), [&](const Side* first, const Side* last) {
       Edge edge;
       for (const Side* side = first; side != last; ++side) {
-        if (!had_twin[side->triangle]) {
+        if (!had_duplicate[side->triangle]) {
           ++edge.others;
           continue;
         }
@@ -71,8 +71,8 @@ class ClosedChoice {
 
  private:
   struct Edge {
-    int others = 0;           // triangles that are there anyway
-    std::vector<Index> open;  // those that had twins
+    int others = 0;           // triangles without duplicates
+    std::vector<Index> open;  // triangles with duplicates
   };
 
   void decide_at(std::size_t number) {
@@ -86,7 +86,7 @@ class ClosedChoice {
         ++there;
       }
     }
-    // A border of a leaf that hangs on nothing tells nothing.
+    // The border of a leaf that is connected to nothing decides nothing.
     const bool is_border = edge.others == 0 && edge.open.size() == 1;
     if (unknown != 1 || is_border || there > 2) return;
     kept_[triangle] = there == 1;
@@ -94,7 +94,7 @@ class ClosedChoice {
   }
 
   std::vector<std::optional<bool>> kept_;
-  std::vector<std::vector<std::size_t>> edges_of_;  // of those that had twins
+  std::vector<std::vector<std::size_t>> edges_of_;  // of the triangles with duplicates
   std::vector<Edge> edges_;
   std::deque<Index> decided_;
 };
@@ -103,16 +103,16 @@ class ClosedChoice {
 
 std::vector<Index> leave_out_twins(NumberedMesh& mesh, bool sheet) {
   const std::vector<Index> firsts = firsts_of(mesh.mesh);
-  std::vector<char> has_twin(firsts.size(), false);
+  std::vector<char> has_duplicate(firsts.size(), false);
   for (std::size_t t = 0; t < firsts.size(); ++t)
-    if (firsts[t] != static_cast<Index>(t)) has_twin[firsts[t]] = true;
-  if (std::ranges::find(has_twin, char(true)) == has_twin.end()) return {};
-  std::vector<char> had_twin;  // of those that stay
+    if (firsts[t] != static_cast<Index>(t)) has_duplicate[firsts[t]] = true;
+  if (std::ranges::find(has_duplicate, char(true)) == has_duplicate.end()) return {};
+  std::vector<char> had_duplicate;  // of the remaining triangles
   for (std::size_t t = 0; t < firsts.size(); ++t)
-    if (firsts[t] == static_cast<Index>(t)) had_twin.push_back(has_twin[t]);
+    if (firsts[t] == static_cast<Index>(t)) had_duplicate.push_back(has_duplicate[t]);
   std::vector<Index> numbers = leave_out(mesh, [&](Index t) { return firsts[t] != t; });
   if (sheet) return numbers;
-  const ClosedChoice choice(mesh.mesh, had_twin);
+  const ClosedChoice choice(mesh.mesh, had_duplicate);
   const std::vector<Index> too = leave_out(mesh, [&](Index t) { return !choice.is_kept(t); });
   numbers.insert(numbers.end(), too.begin(), too.end());
   std::ranges::sort(numbers);

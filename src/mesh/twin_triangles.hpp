@@ -1,4 +1,4 @@
-// Triangles that stand more than once in a mesh: with the same three corners, run through either way.
+// Duplicate triangles: with the same three corners, in either winding.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace scree {
 
-// Of triangles with the same corners the first stays. In a closed mesh none does where the others leave two
-// triangles at each of the edges without it: a leaf on a surface, a wall between two solids with a face in
-// common. mesh: welded, all triangles have areas. Returns the numbers of those left out, increasing.
+// Removes duplicates; the first of the triangles with the same corners stays. In a closed mesh none stays
+// where the others leave two triangles at each of its edges: a leaf on a surface, or a wall between two
+// solids with a common face. mesh: welded, without degenerate triangles. Returns the numbers of the removed
+// triangles, increasing.
 std::vector<Index> leave_out_twins(NumberedMesh& mesh, bool sheet);
 
 }  // namespace scree

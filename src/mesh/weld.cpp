@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// Bits order all numbers, also those that are none; the sum makes -0 a +0.
+// Bit patterns order all values, including NaN; adding 0 makes -0 a +0.
 using Bits = std::array<std::uint64_t, 3>;
 Vec3 without_minus_zero(Vec3 v) { return {v.x + 0, v.y + 0, v.z + 0}; }
 Bits bits_of(Vec3 v) {
@@ -20,8 +20,8 @@ Bits bits_of(Vec3 v) {
           std::bit_cast<std::uint64_t>(v.z)};
 }
 
-// Of each vertex the lowest number of those with its coordinates.
-std::vector<Index> first_twins(const std::vector<Vec3>& vertices) {
+// For each vertex the lowest number of the vertices with its coordinates.
+std::vector<Index> first_equal(const std::vector<Vec3>& vertices) {
   struct Entry {
     Bits bits;
     Index vertex;
@@ -39,12 +39,12 @@ std::vector<Index> first_twins(const std::vector<Vec3>& vertices) {
   return twin;
 }
 
-// Points in cells as wide as the distance within which they are searched.
+// Points in cells as wide as the search distance.
 class NearPoints {
  public:
   NearPoints(const std::vector<Vec3>& points, Real distance) : points_(points), distance_(distance) {}
   void add(Index point) { cells_[bits_of(cell_of(points_[point], {}))].push_back(point); }
-  // The lowest of those added that is within the distance; -1: none.
+  // The lowest of the added points within the distance; -1: none.
   Index first_near(Vec3 v) const {
     Index first = -1;
     for (int k = 0; k < 27; ++k) {
@@ -65,7 +65,7 @@ class NearPoints {
       return hash;
     }
   };
-  // Real: no cell is too far out for it.
+  // Real: cells at any distance are representable.
   Vec3 cell_of(Vec3 v, Vec3 step) const {
     return without_minus_zero({std::floor(v.x / distance_) + step.x, std::floor(v.y / distance_) + step.y,
                                std::floor(v.z / distance_) + step.z});
@@ -81,7 +81,7 @@ class NearPoints {
 TriangleMesh welded(const TriangleMesh& mesh) {
   std::vector<Vec3> vertices(mesh.vertices.size());
   std::transform(mesh.vertices.begin(), mesh.vertices.end(), vertices.begin(), without_minus_zero);
-  const std::vector<Index> twin = first_twins(vertices);
+  const std::vector<Index> twin = first_equal(vertices);
   TriangleMesh result;
   result.triangles.reserve(mesh.triangles.size());
   std::vector<Index> number(vertices.size(), -1);

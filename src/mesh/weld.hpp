@@ -1,4 +1,4 @@
-// Vertices of triangles that only have equal coordinates become one.
+// Welding: vertices with equal coordinates become one.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace scree {
 
-// The mesh with one vertex for all of equal coordinates (-0 is +0), numbered as the triangles first use them;
-// those that no triangle uses are left out. The triangles keep their order.
+// The mesh with one vertex for all of equal coordinates (-0 is +0), numbered in the order of their first
+// use; unused vertices are removed. The triangles keep their order.
 TriangleMesh welded(const TriangleMesh& mesh);
 
-// Triangles with the numbers that they had before some of them were left out.
+// Triangles with their numbers in the original mesh.
 struct NumberedMesh {
   TriangleMesh mesh;
-  std::vector<Index> numbers;  // of each triangle
+  std::vector<Index> numbers;  // per triangle
 };
 NumberedMesh numbered(TriangleMesh mesh);
 
-// welded(), also for vertices at most `tolerance` [m] apart: each joins the first of those before it, in the
-// order above, that is near enough and kept. Triangles that shrink to an edge by this are left out.
+// As welded(), also for vertices at most `tolerance` [m] apart: each joins the first earlier vertex, in that
+// order, that is near enough and itself kept. Triangles that collapse to an edge are removed.
 NumberedMesh welded_within(const TriangleMesh& mesh, Real tolerance);
 
 }  // namespace scree

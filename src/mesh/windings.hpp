@@ -1,4 +1,4 @@
-// The ways in which the triangles of a mesh run through their corners.
+// Consistent windings of the triangles of a mesh.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace scree {
 
-// Turns triangles of a sheet so that two at an edge run alike, as few as that takes of each piece; a sheet
-// with one side alone, as a Moebius strip is, keeps edges where they do not. Returns the numbers of those
-// turned, increasing.
+// Reorients as few triangles as possible of each piece of an open surface so that the two triangles at an
+// edge have consistent windings; a one-sided surface, as a Moebius strip, keeps edges where they do not.
+// Returns the numbers of the reoriented triangles, increasing.
 std::vector<Index> turn_alike(NumberedMesh& sheet);
 
-// The same of a mesh with two triangles at each edge, and then whole shells, so that the mesh has its solid
-// inside: a shell that lies in no solid is turned outward; in one, its windings say whether it bounds a
-// cavity. Those within a shell that was turned are turned with it where that makes cavities. Without a change
-// where a shell has one side alone, where a shell lies in a solid in any case (mesh_checks.hpp names it), and
-// where an edge has not two triangles.
+// Reorients a mesh with two triangles at each edge as turn_alike(), and then whole shells, so that the solid
+// is inside. A shell outside all solids is turned outward; inside a solid its windings decide whether it
+// bounds a cavity. Shells within a reoriented shell are inverted with it where that makes cavities. Nothing
+// changes where a shell is one-sided, where a shell lies in a solid in any case (mesh_checks.hpp reports
+// it), and where an edge does not have two triangles.
 std::vector<Index> turn_outward(NumberedMesh& closed);
 
 }  // namespace scree

@@ -12,7 +12,8 @@ namespace scree {
 
 namespace {
 
-constexpr Real kLeastHeight = 1e-12;  // over the longest side; and of a side, below which its ends are one
+constexpr Real kLeastHeight =
+    1e-12;  // height over the longest side; length of a side, below which its ends are merged
 constexpr Index kGone = -1;
 
 using Corners = std::array<Index, 3>;
@@ -34,7 +35,7 @@ class Joiner {
   }
 
   void leave_out() {
-    // A split of a triangle that is hardly higher than those left out may leave another one of these.
+    // The split of a triangle that is hardly higher than the removed ones may leave another degenerate one.
     constexpr int kMostRounds = 20;
     for (int round = 0; round < kMostRounds; ++round) {
       merge_needles();
@@ -66,7 +67,7 @@ class Joiner {
       if (std::ranges::find(at_[v], t) == at_[v].end()) at_[v].push_back(t);
   }
 
-  // Corners that lie on each other, in needles, become one; what has a corner twice then is left out.
+  // Merges coincident corners of needles; triangles with a repeated corner are then removed.
   void merge_needles() {
     std::vector<Index> found = without_area();
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -77,7 +78,7 @@ class Joiner {
         remove(t);
         continue;
       }
-      std::array<Real, 3> length{};  // of the side from corner k on [m]
+      std::array<Real, 3> length{};  // of the side that starts at corner k [m]
       for (int k = 0; k < 3; ++k) length[k] = norm(vertices_[c[(k + 1) % 3]] - vertices_[c[k]]);
       const auto k = static_cast<int>(std::ranges::min_element(length) - length.begin());
       if (!(length[k] <= kLeastHeight * std::ranges::max(length))) continue;
@@ -86,7 +87,7 @@ class Joiner {
       found.insert(found.end(), around.begin(), around.end());
     }
   }
-  // The vertex that is gone stands in no triangle any more.
+  // Afterwards no triangle uses the removed vertex.
   void merge(Index kept, Index gone) {
     const std::vector<Index> around = std::move(at_[gone]);
     at_[gone].clear();
@@ -97,7 +98,7 @@ class Joiner {
     }
   }
 
-  // Those that hang together over edges, and so lie on one line.
+  // Groups of triangles that are connected over edges, and so lie on one line.
   std::vector<std::vector<Index>> rows_of(const std::vector<Index>& found) const {
     std::map<Edge, std::vector<Index>> at_edge;
     for (const Index t : found)
@@ -119,8 +120,8 @@ class Joiner {
     return {std::minmax(t[0], t[1]), std::minmax(t[1], t[2]), std::minmax(t[2], t[0])};
   }
 
-  // The row is left out, and what has one of its edges is split at all its points there: at every piece of
-  // the line are as many triangles then as there are over and under it.
+  // Removes the row and splits all triangles at its edges at all its points there: every piece of the line
+  // then has as many triangles as there are over and under it.
   void join_across(const std::vector<Index>& row) {
     std::set<Edge> edges;
     std::vector<Index> points;
@@ -149,7 +150,7 @@ class Joiner {
     }
   }
 
-  // All triangles at the edge from a to b, at the points between them, from a on.
+  // Splits all triangles at the edge from a to b at the points between them, in order from a.
   void split_at(Index a, Index b, const std::vector<Index>& between) {
     const std::vector<Index> around = at_[a];
     for (const Index t : around) {

@@ -1,4 +1,4 @@
-// Triangles without area: three corners on one line, or one corner twice.
+// Degenerate triangles: three collinear corners, or a repeated corner.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,15 @@
 
 namespace scree {
 
-// Whether it spans a plane: less high over its longest side than 1e-12 of that, round-off alone turns its
+// Whether the corners span a plane. Below a height of 1e-12 of the longest side, round-off determines the
 // normal.
 bool has_area(const TriangleCorners& corners);
 
-// Leaves out the triangles without area, none of which adds a point to the surface, and keeps together what
-// they join: where the middle one of three corners on a line splits the edge between the other two, the
-// triangles across that edge are split there, too; of corners that lie on each other but for round-off the
-// second becomes the first. mesh: welded, coordinates are finite. Returns their numbers, increasing.
+// Removes the degenerate triangles, none of which adds a point to the surface, and keeps their neighbours
+// connected: where the middle of three collinear corners splits the edge between the other two, the
+// triangles across that edge are split there, too; of corners that coincide but for round-off the second
+// becomes the first. mesh: welded, with finite coordinates. Returns the numbers of the removed triangles,
+// increasing.
 std::vector<Index> leave_out_without_area(NumberedMesh& mesh);
 
 }  // namespace scree

@@ -15,7 +15,7 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// from_chars() without a sign that it does not know.
+// from_chars() does not accept a plus sign.
 std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
@@ -36,7 +36,7 @@ std::string lower(std::string_view word) {
 }
 
 Words::Words(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text begins with it
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text files begin with it
   if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
 }
 
@@ -86,7 +86,7 @@ Real Words::number(const char* what) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
     fail(fmt::format("{} {}: must be a number", what, quoted(word)));
-  // Too small for a number other than 0, or too large for any.
+  // The number is too small or too large for a Real.
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
   if (!std::isfinite(value)) fail(fmt::format("{} {}: must be a finite number", what, quoted(word)));
   return value;

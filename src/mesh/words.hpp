@@ -1,4 +1,4 @@
-// The words of a text file, one after the other, with the place for messages.
+// Tokens of a text file in order, with the position for messages.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,28 @@
 
 namespace scree {
 
-// Words stand between blanks. A backslash that ends a line makes the next one part of it, but in skip_line():
-// comments end with what they like.
+// Tokens are separated by blanks. A backslash at the end of a line continues it, except in skip_line(), as
+// comments may end with one.
 class Words {
  public:
-  // file: its name in messages. text lives longer than this.
+  // file: its name in messages. text must outlive this object.
   Words(std::string_view text, std::string file);
 
-  // Empty at the end of the file.
+  // The next token; empty at the end of the file.
   std::string_view next();
-  // Empty at the end of the line.
+  // The next token of the line; empty at the end of the line.
   std::string_view next_in_line();
-  // The rest of the line.
+  // Skips to the next line and returns the rest of the present one.
   std::string_view skip_line();
   void skip_blank_lines() { skip_blanks(true); }
   std::size_t position() const { return at_; }
 
-  // The line's next word as a number. Throws InputError, as fail() does, for others, and what is not finite;
-  // what: "coordinate".
+  // The line's next token as a number. Throws InputError, as fail() does, where it is not a finite number;
+  // what: e.g. "coordinate".
   Real number(const char* what);
-  // The word as a whole number of any sign that has 64 bits.
+  // The token as a whole number with sign, of 64 bits.
   std::int64_t to_integer(std::string_view word, const char* what) const;
-  // "file:line: trouble", of the line of the last word.
+  // Throws InputError with "file:line: trouble", of the line of the last token.
   [[noreturn]] void fail(const std::string& trouble) const;
 
  private:
@@ -43,9 +43,9 @@ class Words {
   std::int64_t line_ = 1, word_line_ = 1;
 };
 
-// A word of any length, for a message.
+// A token of any length, abbreviated for a message.
 std::string quoted(std::string_view word);
-// In small letters.
+// The token in lower case.
 std::string lower(std::string_view word);
 
 }  // namespace scree

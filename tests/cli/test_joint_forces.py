@@ -117,11 +117,11 @@ class ServoTest(CommandLineTest):
     def test_a_servo_that_its_first_step_throws_off(self):
         """Its period of 1.8 ms is not resolved by steps of 10 ms: they take it 0.38 rad off, 0.3 rad being the way."""
         deck = self.write("servo.toml", SERVO)
-        warned = "servo 'servo' starts 0.3 rad beside its position"
+        warned = "servo 'servo' starts 0.3 rad off its position"
         self.assertIn(warned, self.expect(DONE, "check", deck).stderr)
         out = self.folder / "out"
         run = self.expect(DONE, "run", deck, "--output", out, "--set", "time.end=0.01")
-        self.assertIn("may throw joint 'hinge' 0.375 rad off", run.stderr)
+        self.assertIn("joint 'hinge' may overshoot by 0.375 rad", run.stderr)
         self.assertAlmostEqual(0.3 - results.columns(out)["efforts/servo/coordinate"][-1], 0.375, delta=0.05)
         for remedy in ("motors.servo.limit=50.0", "motors.servo.position=0.0", "time.control=adaptive",
                        "time.step=1e-3", "motors.servo.position_gain=1e4"):

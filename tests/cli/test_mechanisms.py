@@ -117,14 +117,14 @@ class ContradictionTest(CommandLineTest):
         return max(i for i in range(1, lines.index(f'name = "{name}"') + 1) if lines[i - 1].startswith("[["))
 
     def test_two_drivers_of_one_joint(self):
-        for second, what in (((0.1, TURN), "positions that they ask for at t = 0 are 0.1 rad apart"),
-                             ((0.0, 6.0), "velocities that they ask for at t = 0 are 0.283185 rad/s apart")):
+        for second, what in (((0.1, TURN), "positions that they require at t = 0 differ by 0.1 rad"),
+                             ((0.0, 6.0), "velocities that they require at t = 0 differ by 0.283185 rad/s")):
             deck = FIRST + DRIVEN.format("second", RAMP.format(*second))
             place = f"{self.folder / 'bad.toml'}:{self.line(deck, 'second')}:1: drivers.second: "
             for redundant in ("error", "share"):
                 for text in self.refusals(deck, f"integrator.redundant={redundant}"):
                     self.assertEqual(text, f"{place}driver 'first', driver 'second' contradict each other: the {what}, "
-                                           "and no motion has them all. Change or remove one\n")
+                                           "and no motion satisfies them all. Change or remove one\n")
 
     def test_two_drivers_that_agree_are_redundant_and_may_share(self):
         deck = FIRST + DRIVEN.format("second", RAMP.format(0.0, TURN))
@@ -138,7 +138,7 @@ class ContradictionTest(CommandLineTest):
         weld = '\n[[joints]]\nname = "weld"\ntype = "fixed"\nbodies = ["ground", "crank"]\npoint = [0.0, 0.0, 0.0]\n'
         for text in self.refusals(CRANK + weld + DRIVEN.format("drive", RAMP.format(0.0, TURN))):
             self.assertIn(": drivers.drive: joint 'weld', driver 'drive' contradict each other: the velocities", text)
-            self.assertIn("6.28319 rad/s apart", text)
+            self.assertIn("differ by 6.28319 rad/s", text)
 
     def test_start_velocities_and_where_a_driver_starts(self):
         deck = CRANK + DRIVEN.format("drive", RAMP.format(0.0, 6.0))
@@ -149,13 +149,13 @@ class ContradictionTest(CommandLineTest):
             self.assertIn(f"bad.toml:{self.line(CRANK, 'hinge')}:1: joints.hinge: joint 'hinge': the velocities", text)
         for text in self.refusals(CRANK + DRIVEN.format("drive", RAMP.format(0.2, TURN))):
             self.assertIn(": drivers.drive: driver 'drive': its motion and the joint's coordinate at t = 0 "
-                          "are apart by 0.2 rad",
+                          "differ by 0.2 rad",
                           text)
 
     def test_a_linkage_that_lies_flat(self):
         deck = four_bar(0.0, 0.0)
         for text in self.refusals(deck):
-            self.assertIn("as a linkage that lies flat, it is singular: share, or start elsewhere", text)
+            self.assertIn("as in a flat linkage, the position is singular: permit it, or start elsewhere", text)
         share = ("--set", "integrator.redundant=share")
         self.expect(DONE, "check", self.write("flat.toml", deck), *share)
         # The velocities with the least energy: the rocker's are not the crank's, and no motion goes on from there.
@@ -168,7 +168,7 @@ class ContradictionTest(CommandLineTest):
         text = self.expect(FAILED, "run", deck, "--output", self.folder / "out").stderr
         self.assertIn("no convergence in 50 iterations", text)
         self.assertIn('it is singular; integrator.redundant = "share" passes it', text)
-        self.assertIn("driver 'drive' repeat each other in this position", text)
+        self.assertIn("driver 'drive' are redundant in this position", text)
         self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=share")
 
 
@@ -307,16 +307,16 @@ class StartTest(CommandLineTest):
     def test_a_stop_that_holds_more_than_can_be_meant_is_refused(self):
         for side, words in (("lower = 0.5", "below lower = 0.5"), ("upper = -0.5", "above upper = -0.5")):
             for text in self.both(BAD_INPUT, self.resting(STOP.format(side, 1e6))):
-                self.assertIn("joint limit 'stop': passed at t = 0: joint 'hinge' stands at 0 rad, 0.5 rad " + words,
+                self.assertIn("joint limit 'stop': violated at t = 0: joint 'hinge' is at 0 rad, 0.5 rad " + words,
                               text)
-                self.assertIn("holds 1.25e+05 J", text)
+                self.assertIn("stores 1.25e+05 J", text)
                 self.assertIn("start the joint within its limits, or move this one", text)
                 self.assertNotIn("step", text)
 
     def test_one_that_is_passed_by_little_is_warned_of(self):
         for text in self.both(DONE, self.resting(STOP.format("lower = 1e-3", 1e5))):
-            self.assertIn("warning: joint limit 'stop': passed at t = 0: joint 'hinge' stands at 0 rad, 0.001 rad "
-                          "below lower = 0.001. The stop begins with 100 N m, holds 0.05 J and throws the joint out",
+            self.assertIn("warning: joint limit 'stop': violated at t = 0: joint 'hinge' is at 0 rad, 0.001 rad "
+                          "below lower = 0.001. The limit starts with 100 N m, stores 0.05 J and accelerates the joint",
                           text)
 
     def test_one_that_a_weight_rests_on_is_not(self):

@@ -46,7 +46,7 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
   CHECK(contains(refusal(model),
                  "driver 'first', driver 'second' fix the same motion more than once, 4 rows "
                  "have rank 3; the motion is unique, the reactions of these are not. Remove or "
-                 "change one; or set integrator.redundant = \"share\" for the least reactions"));
+                 "change one; or set integrator.redundant = \"minimum-norm\" for minimum-norm reactions"));
   CHECK(!contains(refusal(model), "spherical"));
   model.integrator.redundant = RedundantRows::share;
   CHECK(refusal(model) == "nothing was refused");
@@ -61,21 +61,21 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     for (const RedundantRows rows : {RedundantRows::share, RedundantRows::error}) {
       model.integrator.redundant = rows;
       CHECK(contains(refusal(model), "driver 'first', driver 'second' contradict each other: the " + what +
-                                         " apart, and no motion has them all. Change or remove one"));
+                                         ", and no motion satisfies them all. Change or remove one"));
     }
   };
   SECTION("positions") {
     model.drivers[1].motion.value = 0.1;
-    contradict("positions that they ask for at t = 0 are 0.1 rad");
+    contradict("positions that they require at t = 0 differ by 0.1 rad");
     model.drivers[0].motion.value = 0.1;  // both say the same, but the bodies stand elsewhere
     CHECK(contains(refusal(model),
-                   "driver 'first': its motion and the joint's coordinate at t = 0 are apart by 0.1 rad"));
+                   "driver 'first': its motion and the joint's coordinate at t = 0 differ by 0.1 rad"));
   }
   SECTION("velocities") {
     model.drivers[1].motion.rate = 2.5;
     for (const bool consistent : {false, true}) {
       model.consistent_velocities = consistent;
-      contradict("velocities that they ask for at t = 0 are 0.5 rad/s");
+      contradict("velocities that they require at t = 0 differ by 0.5 rad/s");
     }
     model.drivers.push_back({"third", 0, ramp(2)});
     model.drivers.push_back({"fourth", 0, ramp(4)});
@@ -88,14 +88,14 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     motion.times = {0, 1, 2}, motion.values = {0, 2.5, 6};
     motion.interpolation = Interpolation::clamped;
     motion.end_rates = {2, 4};
-    contradict("accelerations that they ask for at t = 0 are 1 rad/s^2");
+    contradict("accelerations that they require at t = 0 differ by 1 rad/s^2");
   }
   SECTION("later") {
     TimeFunction& motion = model.drivers[1].motion;
     motion.kind = TimeFunction::Kind::sine;
     motion.amplitude = 0.5, motion.frequency = 2 / M_PI;
     model.time.end = 1;
-    contradict("velocities that they ask for at t = 0.005 s are 0.000399987 rad/s");
+    contradict("velocities that they require at t = 0.005 s differ by 0.000399987 rad/s");
   }
   SECTION("a driver and a joint") {
     model.drivers.pop_back();
@@ -105,7 +105,7 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     model.drivers[0].deck_label = "deck.toml:9:1: drivers.first";
     CHECK(refusal(model) ==
           "deck.toml:9:1: drivers.first: joint 'weld', driver 'first' contradict each other: the velocities "
-          "that they ask for at t = 0 are 2 rad/s apart, and no motion has them all. Change or remove one");
+          "that they require at t = 0 differ by 2 rad/s, and no motion satisfies them all. Change or remove one");
   }
   SECTION("that begin to contradict each other on the way") {  // the rows of two joints
     model.drivers.pop_back();
@@ -125,7 +125,7 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     const std::string trouble = multibody.trouble();
     CAPTURE(trouble);
     CHECK(contains(trouble, "; the largest gaps are those of joint "));
-    CHECK(contains(trouble, " m: constraints that share their reactions must not contradict each other"));
+    CHECK(contains(trouble, " m: redundant constraints must not contradict each other"));
   }
   SECTION("a joint from ground to ground") {
     model.drivers.pop_back();
@@ -147,8 +147,8 @@ TEST_CASE("a matrix that is singular for its constraints alone says that the pos
   method.acceleration_system(state, 0, values, rhs);
   CHECK(contains(
       matrix_failure(system, method.pattern(), values),
-      "is singular: joint 'middle', joint 'again' repeat each other in this position, or nearly so: it "
-      "is singular; integrator.redundant = \"share\" passes it"));
+      "is singular: joint 'middle', joint 'again' are redundant in this position, or nearly so: it "
+      "is singular; integrator.redundant = \"minimum-norm\" passes it"));
 }
 
 TEST_CASE("a rod of a tenth of a micrometre shares as one of a tenth of a metre does") {

@@ -28,7 +28,7 @@ TEST_CASE("joints whose sides do not meet are named with their gap") {
   CHECK(contains(refusal(model), "joint 'pivot'"));
   CHECK(contains(refusal(model), "0.03 m"));
   model.joints[0].point[0] = {0, 3e-9, 0};
-  CHECK(contains(refusal(model), "miss by 3e-09 m, allowed is 1e-09 m"));
+  CHECK(contains(refusal(model), "their distance is 3e-09 m, allowed is 1e-09 m"));
   model.joints[0].point[0] = {0, 9e-10, 0};  // what a deck is refused for is refused here, and nothing else
   CHECK(refusal(model) == "nothing was refused");
   model = hanging_disc();
@@ -210,11 +210,11 @@ TEST_CASE("a hinge in space whose axes point against each other is refused") {
   model.bodies = {spatial_body("flap", 1, {1, 1, 1}, {})};
   model.joints = {joint_at(JointKind::revolute, "hinge", kGround, 0, {}, {})};
   model.joints[0].marker[1] = exponential({M_PI, 0, 0});
-  CHECK(contains(refusal(model), "joint 'hinge': its axes on the two bodies point against each other"));
+  CHECK(contains(refusal(model), "joint 'hinge': its axes on the two bodies are opposite"));
   model.joints[0].marker[1] = exponential({0, 0, 3});
   model.drivers = {{"drive", 0, {}}};
   CHECK(contains(refusal(model),
-                 "driver 'drive': its motion and the joint's coordinate at t = 0 are apart by"));
+                 "driver 'drive': its motion and the joint's coordinate at t = 0 differ by"));
   model.drivers[0].motion.value = 3;
   CHECK(refusal(model) == "nothing was refused");
 }

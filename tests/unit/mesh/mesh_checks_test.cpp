@@ -83,7 +83,7 @@ TEST_CASE("a hole is named by its edges") {
   TriangleMesh mesh = cube();
   mesh.triangles.erase(mesh.triangles.begin() + 1);
   CHECK(mesh_troubles(mesh, false) ==
-        Texts{"3 edges have one triangle; a closed mesh has two at each (one that is meant to be open is a "
+        Texts{"3 edges have one triangle; a closed mesh has two at each (an open surface needs "
               "sheet): "
               "(-1, -1, -1) to (1, -1, -1) of triangle 1; (-1, -1, -1) to (1, 1, -1) of triangle 0; "
               "(1, -1, -1) to (1, 1, -1) of triangle 3"});

@@ -202,7 +202,7 @@ TEST_CASE("a bushing that nears half a turn ends the run with its name") {
   } catch (const SimulationError& error) {
     message = error.what();
   }
-  CHECK(message.find("bushing 'bushing' has turned by 2.") != std::string::npos);
+  CHECK(message.find("bushing 'bushing' is rotated by 2.") != std::string::npos);
 }
 
 TEST_CASE("at rest K x + preload carries the load") {
