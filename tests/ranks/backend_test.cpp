@@ -174,7 +174,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
     }
 }
 
-TEST_CASE("what leaves while it touches others, and what it leaves, has the bits of one rank") {
+TEST_CASE("escaped particles in contact, and their former partners, have the bits of one rank") {
   petsc();
   const Ranks world = Ranks::world();
   for (const BoxCase& c : kBoxes)

@@ -34,7 +34,7 @@ void check_equal(const RememberingBox& one, const RememberingBox& many) {
 
 }  // namespace
 
-TEST_CASE("contacts remember over ranks, lists and cuts what they do on one rank") {
+TEST_CASE("contact histories over ranks, lists and cuts are those of one rank") {
   petsc();
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
@@ -53,7 +53,7 @@ TEST_CASE("contacts remember over ranks, lists and cuts what they do on one rank
     }
 }
 
-TEST_CASE("what contacts remember goes through a checkpoint to any number of ranks") {
+TEST_CASE("contact histories pass through a checkpoint to any number of ranks") {
   petsc();
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);

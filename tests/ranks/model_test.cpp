@@ -138,7 +138,7 @@ TEST_CASE("the ranks' parts of a model are the whole model") {
   CHECK(warnings == alone_warnings);
 }
 
-TEST_CASE("ranks fill a region with the same positions, and refuse it alike") {
+TEST_CASE("ranks fill a region with the same positions, and refuse it with the same message") {
   const Ranks ranks = world();
   const RanksShare share(ranks);
   const GroupsDeck deck(ranks);

@@ -148,7 +148,7 @@ TEST_CASE("values find the ranks that write them, in the order of the ids") {
   for (std::size_t i = 0; i < moved.size(); ++i) REQUIRE(moved[i].x == static_cast<Real>(expected[i]));
 }
 
-TEST_CASE("what one rank throws, every rank throws") {
+TEST_CASE("an exception of one rank is thrown on every rank") {
   const Ranks ranks = world();
   const int last = ranks.size() - 1;
   CHECK(common_failure(ranks, [&] { ranks.together([] {}); }).empty());

@@ -106,7 +106,7 @@ TEST_CASE("contents find their ranks") {
   CHECK(ranks.gather(own) == (r == 0 ? all : std::vector<int>{}));
 }
 
-TEST_CASE("what rank 0 throws, every rank throws, with its kind and message") {
+TEST_CASE("an exception of rank 0 is thrown on every rank, with its type and message") {
   const Ranks ranks = world();
   int runs = 0;
   ranks.on_root([&] { ++runs; });

@@ -25,7 +25,7 @@ void check_equal(const RubbingKind& kind, const RememberingBox& one, const Remem
 
 }  // namespace
 
-TEST_CASE("rubbing particles move on any number of ranks as on one") {
+TEST_CASE("particles with friction move on any number of ranks as on one") {
   petsc();
   for (const RubbingKind& kind : kRubbingKinds)
     for (const auto& [c, leaving] : moving_cases()) {
@@ -41,7 +41,7 @@ TEST_CASE("rubbing particles move on any number of ranks as on one") {
     }
 }
 
-TEST_CASE("rubbing particles move in implicit steps on any number of ranks as on one") {
+TEST_CASE("particles with friction move in implicit steps on any number of ranks as on one") {
   petsc();
   for (const BoxCase& c : kRubbingBoxes)
     for (const int freeze_after : {0, 2}) {
@@ -56,7 +56,7 @@ TEST_CASE("rubbing particles move in implicit steps on any number of ranks as on
     }
 }
 
-TEST_CASE("rubbing particles go on from any number of ranks on any other") {
+TEST_CASE("particles with friction continue from any number of ranks on any other") {
   petsc();
   for (const RubbingKind& kind : kRubbingKinds) {
     const BoxCase& c = kRubbingBoxes[7];

@@ -7,7 +7,7 @@ namespace scree {
 
 using namespace std::string_view_literals;
 
-TEST_CASE("files tell their kind by their first bytes, text that may be anything does not") {
+TEST_CASE("files are recognised by their first bytes, ambiguous text is not") {
   CHECK(kind_of_file("\x89HDF\r\n\x1a\n\0"sv) == "an HDF5 file");
   CHECK(is_hdf5("\x89HDF\r\n\x1a\n"sv));
   CHECK(kind_of_file("PK\x03\x04zip"sv).starts_with("a ZIP archive"));

@@ -68,7 +68,7 @@ TEST_CASE("a fixed sum is right to 2^-96 of each term and to the rounding of its
   }
 }
 
-TEST_CASE("terms whose last place is above the lowest are their own fixed sums, and cancel") {
+TEST_CASE("terms whose last bit is above the lowest limb are summed exactly, and cancel") {
   std::mt19937_64 engine(3);
   for (const Real term : random_terms(engine, 500, -40, 31)) {
     CHECK(same_bits(sum_of({term}).value(), term));

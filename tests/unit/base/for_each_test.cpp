@@ -35,7 +35,7 @@ TEST_CASE("max_over gives the largest value, at least 0") {
   CHECK(largest_of({1, infinity, 2}) == infinity);
 }
 
-TEST_CASE("a NaN makes max_over a NaN wherever it stands") {
+TEST_CASE("a NaN at any position makes max_over a NaN") {
   for (std::size_t place = 0; place < 4; ++place) {
     std::vector<Real> values{1, 7, 3, std::numeric_limits<Real>::infinity()};
     values[place] = std::numeric_limits<Real>::quiet_NaN();

@@ -5,7 +5,7 @@
 
 namespace scree {
 
-TEST_CASE("of warnings of one kind ten are kept, and the others counted") {
+TEST_CASE("ten warnings of a kind are kept, further ones are counted") {
   Log log(true);
   for (int i = 0; i < 67; ++i)
     log.warning("mesh \"link " + std::to_string(i) +

@@ -5,12 +5,12 @@
 
 namespace scree {
 
-TEST_CASE("what is printable stays") {
+TEST_CASE("printable text is unchanged") {
   for (const std::string text : {"", "a b/c \"\\", "\u00e4 \u7c92\u5b50 \U0001f4a5", "\u00a0"})
     CHECK(printable(text) == text);
 }
 
-TEST_CASE("control characters, other encodings and turned writing are escaped") {
+TEST_CASE("control characters, other encodings and bidirectional controls are escaped") {
   CHECK(printable("a\nb\tc") == "a\\nb\\tc");
   CHECK(printable(std::string_view("\x1b[31m\x7f\0", 7)) == "\\x1b[31m\\x7f\\x00");
   CHECK(printable("\xe4 \xc3") == "\\xe4 \\xc3");                  // Latin-1; cut off

@@ -91,7 +91,7 @@ TEST_CASE("the largest and the smallest numbers do no harm") {
   CHECK(std::abs(sum_of({smallest, smallest})) <= 2 * smallest);
 }
 
-TEST_CASE("a term that is not finite makes the sum not a number, wherever it stands") {
+TEST_CASE("a term that is not finite makes the sum a NaN, at any position") {
   for (const Real bad : {kNan, kInfinity, -kInfinity}) {
     CAPTURE(bad);
     for (std::size_t place = 0; place < 5; ++place) {
@@ -103,7 +103,7 @@ TEST_CASE("a term that is not finite makes the sum not a number, wherever it sta
   CHECK(std::isnan(sum_of({kInfinity, -kInfinity, kNan, 1})));
 }
 
-TEST_CASE("terms that come from several places add up to the same bits") {
+TEST_CASE("terms that come from several sums add up to the same bits") {
   std::mt19937_64 random(3);
   const std::vector<Real> terms = mixed_terms(500, 60, random);
   const Real sum = sum_of(terms);

@@ -178,7 +178,7 @@ void take_steps(Coupled& coupled, int count) {
 
 }  // namespace
 
-TEST_CASE("a step that does not converge leaves both sides as they were and says why") {
+TEST_CASE("a step that does not converge leaves both sides unchanged and names the reason") {
   Coupled tight({"integrator.max_iterations=1"}), same_start({"integrator.max_iterations=1"});
   const StepOutcome outcome = tight.step->implicit_step(tight.bodies, 0, kStep);
   CHECK(outcome.verdict == Verdict::not_converged);
@@ -206,7 +206,7 @@ TEST_CASE("a step that does not converge names the side that is at fault") {
       contains(bodies, "stage mbs_correct: no convergence in 1 iterations; the bodies' scaled residual is "));
 }
 
-TEST_CASE("a step too long for the pair search says so, and only where something can touch") {
+TEST_CASE("a step too long for the pair search is refused, but only where contacts are possible") {
   const std::vector<std::string> fast{"gravity=[0, 0]", "particles.falling.velocity=[100.0, 0.0]",
                                       "particles.falling.origin=[-0.03, 0.4]",
                                       "particles.falling.size=[1, 1]"};
@@ -292,7 +292,7 @@ TEST_CASE("explicit steps do not depend on how many are asked for at once, nor o
   CHECK(differing(*narrow, *together) == "");
 }
 
-TEST_CASE("Newton's matrix knows that bodies touch each other") {
+TEST_CASE("Newton's matrix has the blocks of contacts between bodies") {
   for (const auto& [name, bodies] : {std::pair{"stack", kStack}, {"plate", kPlate}, {"board", kBoard}})
     for (const Real step : {1e-3, 3e-3})
       for (const std::string friction : {"0.0", "0.5"}) {
@@ -307,7 +307,7 @@ TEST_CASE("Newton's matrix knows that bodies touch each other") {
       }
 }
 
-TEST_CASE("a run resumed from its state goes on with the same bits") {
+TEST_CASE("a run resumed from its state continues with the same bits") {
   for (const std::string particles : {"hht", "velocity-verlet"}) {
     CAPTURE(particles);
     std::vector<std::string> choice{"integrator.particles=" + particles};

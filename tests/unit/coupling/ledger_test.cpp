@@ -14,7 +14,7 @@ const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, {{
 
 }  // namespace
 
-TEST_CASE("removed particles take their energies along, drifting ones that of their contacts") {
+TEST_CASE("removed particles take all their energy along, ballistic ones the energy of their contacts") {
   CarriedOut removed, drifting;
   for (int twice = 0; twice < 2; ++twice) {
     book_leavers(kLeavers, Leaving::remove, removed);
@@ -55,7 +55,7 @@ TEST_CASE("every entry is accounted for once; the drivers' work counts against t
     CHECK(std::count(entries.begin(), entries.end(), entry) == 1);
 }
 
-TEST_CASE("inside the space the ledger is that of a run which removes what drifts in this one") {
+TEST_CASE("inside the domain the ledger is that of a run which removes the ballistic particles") {
   ParticleLedger before;
   before.kinetic = 30, before.gravitational = -7, before.contact_elastic = 2, before.contact_loss = 4;
   before.integrator_loss = 1, before.inside = {30, -7, 1};

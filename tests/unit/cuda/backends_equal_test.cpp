@@ -164,7 +164,7 @@ std::array<Real, 2> leave(Backend& backend) {
   return taken;
 }
 
-TEST_CASE("what leaves after an implicit step, and what it leaves, is the same on both backends") {
+TEST_CASE("particles that escape after an implicit step, and the remaining ones, are the same on both backends") {
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
       if (c.periodic_axes == c.dimension) continue;

@@ -20,7 +20,7 @@ void check_equal(const RememberingBox& cpu, const RememberingBox& cuda) {
 
 }  // namespace
 
-TEST_CASE("contacts remember the same on both backends") {
+TEST_CASE("contact histories are the same on both backends") {
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
       CAPTURE(c.name, static_cast<int>(leaving));
@@ -44,7 +44,7 @@ TEST_CASE("contacts remember the same on both backends") {
 }
 
 // Steps so short that rows are pruned several times between two lists.
-TEST_CASE("contacts of many particles remember the same on both backends") {
+TEST_CASE("contact histories of many particles are the same on both backends") {
   const Launches before = launches();
   for (const BoxCase& c : {kBoxes[1], kBoxes[5]})
     for (const bool several_at_once : {false, true}) {
@@ -61,7 +61,7 @@ TEST_CASE("contacts of many particles remember the same on both backends") {
   launches() = before;
 }
 
-TEST_CASE("contacts of more particles than leave the device at a time are the same on both backends") {
+TEST_CASE("contacts of more particles than are transferred at a time are the same on both backends") {
   Model model = dense_box(kBoxes[6], ParticleIntegrator::velocity_verlet, kRowsAtOnce + 20000);
   model.contact.skin = 0.02;
   RememberingBox cpu(model, {}, make_remembering_cpu_backend<kRemembered>),
@@ -70,7 +70,7 @@ TEST_CASE("contacts of more particles than leave the device at a time are the sa
   check_equal(cpu, cuda);
 }
 
-TEST_CASE("contacts remember in mixed precision") {
+TEST_CASE("contact histories in mixed precision") {
   Model model = dense_box(kBoxes[4], ParticleIntegrator::velocity_verlet, 20000);
   for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
   model.contact.skin = 0.02, model.integrator.precision = Precision::mixed;

@@ -58,7 +58,7 @@ Model rubbing_bed() {
 
 }  // namespace
 
-TEST_CASE("what is said about device memory before a run is what the run takes") {
+TEST_CASE("the predicted device memory is what the run takes") {
   for (const auto& [c, squares] : {std::pair{kBoxes[0], 0}, {kBoxes[4], 0}, {kBoxes[6], 0}, {kBoxes[6], 600}})
     for (const auto& [integrator, precision] : {std::pair{ParticleIntegrator::hht, Precision::full},
                                                 {ParticleIntegrator::velocity_verlet, Precision::full},
@@ -75,7 +75,7 @@ TEST_CASE("what is said about device memory before a run is what the run takes")
     }
 }
 
-TEST_CASE("the same of settled spheres that rub") {
+TEST_CASE("the predicted device memory of settled spheres with friction is what the run takes") {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     CAPTURE(static_cast<int>(precision));
     Model model = rubbing_bed();
@@ -85,7 +85,7 @@ TEST_CASE("the same of settled spheres that rub") {
 }
 
 // But for the rooms through which records leave the device, which do not grow with the particles.
-TEST_CASE("settled spheres that rub take at most 800 bytes each, in steps and while lists are built") {
+TEST_CASE("settled spheres with friction take at most 800 bytes each, in steps and while lists are built") {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     CAPTURE(static_cast<int>(precision));
     Model model = rubbing_bed();

@@ -136,7 +136,7 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") 
   std::printf("momentum of the gas: changed by %.1e of the sum of sizes in 20000 steps\n", drift);
 }
 
-TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins of double") {
+TEST_CASE("mixed precision: spheres with friction rebound with the velocities and spins of double precision") {
   Model model = box_model(1000, Precision::mixed);
   const bool hertz = GENERATE(false, true);
   if (hertz) {
@@ -181,7 +181,7 @@ TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins
 }
 
 TEST_CASE(
-    "mixed precision: what attracts or resists rolling is in double all the same, and the run says so") {
+    "mixed precision: cohesion and rolling resistance run in double precision, with a message") {
   Model model = box_model(10, Precision::mixed);
   const bool attracts = GENERATE(true, false);
   if (attracts)
@@ -228,7 +228,7 @@ TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[lon
   std::printf("pile held by friction after 1e6 steps: moved by %.1e diameters\n", moved);
 }
 
-TEST_CASE("mixed precision: what drifts outside keeps its place however far it goes") {
+TEST_CASE("mixed precision: ballistic particles keep their exact positions at any distance") {
   Model model = box_model(100, Precision::mixed);
   model.gravity = {0, -9.81, 0};
   model.space.leaving = Leaving::drift;

@@ -57,7 +57,7 @@ Model sliding_box(const BoxCase& c) {
 
 }  // namespace
 
-TEST_CASE("particles rub the same on both backends, and each goes on from what the other has") {
+TEST_CASE("friction is the same on both backends, and each continues from the other's state") {
   for (const RubbingKind& kind : kRubbingKinds)
     for (const auto& [c, leaving] : moving_cases()) {
       CAPTURE(kind.name, c.name, static_cast<int>(leaving));
@@ -78,7 +78,7 @@ TEST_CASE("particles rub the same on both backends, and each goes on from what t
 }
 
 // Without limits that are frozen, and with.
-TEST_CASE("particles rub the same on both backends in implicit steps") {
+TEST_CASE("friction is the same on both backends in implicit steps") {
   for (const BoxCase& c : kRubbingBoxes)
     for (const int freeze_after : {0, 2}) {
       CAPTURE(c.name, freeze_after);
@@ -122,7 +122,7 @@ TEST_CASE(
 }
 
 // Steps so short that rows are pruned several times between two lists.
-TEST_CASE("many particles rub the same on both backends") {
+TEST_CASE("friction of many particles is the same on both backends") {
   const Launches before = launches();
   for (const RubbingKind& kind : kRubbingKinds)
     for (const bool several_at_once : {false, true}) {

@@ -220,7 +220,7 @@ TEST_CASE("dots in texts, comments and numbers are no keys") {
   CHECK(contains(deck_error(kSmallDeck + "x = [" + numbers + "]\n"), "unknown key"));
 }
 
-TEST_CASE("values within a quantity are told in the quantity's unit") {
+TEST_CASE("values within a quantity are reported in the quantity's unit") {
   const std::string particles = kSmallDeck + "[[particles]]\nkind = \"list\"\npositions = []\n";
   CHECK(contains(deck_error(particles + "radius = -1\n"),
                  "particles.0.radius.value = -1: must be a number above 0 [m]"));

@@ -56,7 +56,7 @@ TEST_CASE("tables that were not there are made") {
   CHECK(load({"integrator.hht_alpha=-0.1"}).table("integrator").real("hht_alpha") == -0.1);
 }
 
-TEST_CASE("errors name the override in place of a line") {
+TEST_CASE("errors name the override instead of a line") {
   CHECK(deck_error(kDeck, {"time.step=-1"}) == "--set time.step=-1: time.step must be a number above 0 [s]");
   CHECK(deck_error(kDeck, {"time.stp=1"}) ==
         "--set time.stp=1: time.stp = 1: unknown key; did you mean \"step\"?");

@@ -50,7 +50,7 @@ TEST_CASE("the resolved deck holds the defaults and loads to itself") {
   CHECK(again.root.tables("bodies")[0].tables("shapes")[1].vector("offset").x == 0.1);
 }
 
-TEST_CASE("the step control follows the particles' integrator where the deck does not say it") {
+TEST_CASE("the default step control follows the particles' integrator") {
   const std::string head = "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\n[time]\nend = 1.0\n";
   const auto resolved = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
     return parse_deck(text, "deck.toml", overrides).resolved_text();

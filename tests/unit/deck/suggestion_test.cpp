@@ -37,7 +37,7 @@ TEST_CASE("of several names the nearest is suggested, and none where there are n
   CHECK(suggestion("a", {}).empty());
 }
 
-TEST_CASE("what others call a key is known, by its path where it is a key of another table") {
+TEST_CASE("synonyms of keys are known, by the path where the key is in another table") {
   const std::vector<std::string> pair{"stiffness", "friction", "restitution"};
   CHECK(key_suggestion("mu", pair) == "; did you mean \"friction\"?");
   CHECK(key_suggestion("COR", pair) == "; did you mean \"restitution\"?");
@@ -51,7 +51,7 @@ TEST_CASE("what others call a key is known, by its path where it is a key of ano
   CHECK(key_suggestion("rh", {"rho", "mass"}) == "; did you mean \"rho\"?");
 }
 
-TEST_CASE("what others call a word is known, and a word that is nearly right") {
+TEST_CASE("synonyms of words of choices are known, and misspelt ones") {
   CHECK(word_suggestion("hinge", {"fixed", "revolute"}) == "; did you mean \"revolute\"?");
   CHECK(word_suggestion("ball", {"sphere", "box"}) == "; did you mean \"sphere\"?");
   CHECK(word_suggestion("ball", {"revolute", "spherical"}) == "; did you mean \"spherical\"?");

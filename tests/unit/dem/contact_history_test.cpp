@@ -41,7 +41,7 @@ bool leave(LoadedBox& box) {
 
 }  // namespace
 
-TEST_CASE("contacts remember what a book kept by brute force does") {
+TEST_CASE("contact histories are those of a record kept by brute force") {
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
       CAPTURE(c.name, static_cast<int>(leaving));
@@ -73,7 +73,7 @@ TEST_CASE("contacts remember what a book kept by brute force does") {
 }
 
 TEST_CASE(
-    "what looks at contacts between steps, and steps taken together, leave what they remember as it was") {
+    "reports between steps, and batches of steps, do not change contact histories") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
     LoadedBox one(moving_box(c), kSkin, make_remembering_backend<3>),
@@ -107,7 +107,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("where the law remembers nothing, nothing is kept") {
+TEST_CASE("a law without history stores none") {
   LoadedBox box(moving_box(kBoxes[4]), kSkin);
   box.backend->particles().load_contacts(no_contacts(3, 150));
   verlet_steps(box, kStep, 3);

@@ -34,7 +34,7 @@ TEST_CASE("device memory has meshes with their trees, and the rows of those that
   CHECK(close - away > 500 * 0.1 / 1.3 * sizeof(SurfaceLoad));  // those whose centres are half a radius away
 }
 
-TEST_CASE("device memory has meshes that nothing touches, too, and says how much they are") {
+TEST_CASE("device memory counts meshes without contacts, and reports their part") {
   Model model = random_box(kBoxes[6], 100, 5);
   const std::size_t without = device_memory(model);
   CHECK(device_memory_of_meshes(model) == 0);

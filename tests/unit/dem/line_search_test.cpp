@@ -67,11 +67,11 @@ TEST_CASE("the minimum of a parabola is found at once") {
   }
 }
 
-TEST_CASE("a minimum past two thirds of the correction is not looked for") {
+TEST_CASE("a minimum beyond two thirds of the correction is not searched") {
   CHECK(search_along([](Real share) { return share - 0.7; }).looks == 0);
 }
 
-TEST_CASE("at a kink the search ends, at a share that lies before it or is too small to be shortened") {
+TEST_CASE("at a kink the search ends, at a fraction before it or too small to be shortened") {
   for (const Real kink : {0.02, 0.07, 0.2, 0.5, 0.9})
     for (const Real stiffness : {0.6, 3.0, 1e6}) {
       CAPTURE(kink, stiffness);

@@ -145,7 +145,7 @@ TEST_CASE("the boxes of these tests have ghosts") {
   CHECK(ghosts > 100);
 }
 
-TEST_CASE("particles that drift outside the space are in no row") {
+TEST_CASE("ballistic particles are in no row") {
   for (const BoxCase& box : kBoxes) {
     const BuiltList built(box, 4);
     CAPTURE(box.name);
@@ -156,7 +156,7 @@ TEST_CASE("particles that drift outside the space are in no row") {
   }
 }
 
-TEST_CASE("what pairs remember comes back to both slots, and what a slot has of the last step stays") {
+TEST_CASE("pair histories return to both slots, and a slot's previous history stays") {
   using Law = ContactLaw<LinearLaw, LinearSlider>;
   for (const BoxCase& box : kBoxes) {
     CAPTURE(box.name);

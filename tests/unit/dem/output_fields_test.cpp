@@ -60,7 +60,7 @@ TEST_CASE("each output field has a name of its own, a unit and a sentence") {
   CHECK(!names.contains("global_id"));
 }
 
-TEST_CASE("a deck that wants an output field that there is not, or one twice, is refused") {
+TEST_CASE("a deck with an unknown or repeated output field is refused") {
   const auto error = [](const std::string& fields) {
     return input_error(
         [&] { check_output_fields(parse_deck(kSmallDeck, "deck.toml", {"output.fields=" + fields})); });

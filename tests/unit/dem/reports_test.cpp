@@ -57,7 +57,7 @@ void check_same(const Told& a, const Told& b) {
 
 }  // namespace
 
-TEST_CASE("reports look at the contacts with bodies once per instant, without one each time") {
+TEST_CASE("reports query the contacts with bodies once per instant") {
   CountedReports reports;
   reports.ledger(0), reports.pack_shapes();
   CHECK(reports.looks == 2);
@@ -78,7 +78,7 @@ TEST_CASE("reports look at the contacts with bodies once per instant, without on
   CHECK(reports.looks == 6);
 }
 
-TEST_CASE("reports of one instant say what they say one by one, also after steps") {
+TEST_CASE("reports of one instant are those taken one by one, also after steps") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 120, 17), 0.2);

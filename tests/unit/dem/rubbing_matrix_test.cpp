@@ -131,7 +131,7 @@ TEST_CASE("a contact's block is what it does to its own particle") {
 }
 
 TEST_CASE(
-    "what a body's correction does through a contact's matrix is in double: accelerations of any size") {
+    "a body's correction through a contact's matrix is in double precision: accelerations of any size") {
   RandomNumbers random(5);
   const RubbingEntry entry = random_entry(random, true).from_i;
   const Twist v{vector(random), vector(random)}, expected = entry.pull(v.move, v.turn, true);

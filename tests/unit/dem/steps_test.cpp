@@ -78,7 +78,7 @@ TEST_CASE("fused explicit steps give the bits of single ones") {
   }
 }
 
-TEST_CASE("steps go on without a particle or a shape") {
+TEST_CASE("steps without particles or shapes") {
   for (const auto integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
     Model model = random_box(kBoxes[0], 0, 1);
     model.integrator.particles = integrator;
@@ -130,7 +130,7 @@ TEST_CASE("the list expires when an item has moved by half the skin") {
   CHECK(near(box.backend->list().displacement(), 1.2, {.relative = kRoundOff}));
 }
 
-TEST_CASE("particles outside leave once, ordered by global id, and drift or are removed") {
+TEST_CASE("particles escape once, ordered by global id, and become ballistic or are removed") {
   for (const Leaving leaving : {Leaving::error, Leaving::remove, Leaving::drift}) {
     CAPTURE(static_cast<int>(leaving));
     Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
@@ -164,7 +164,7 @@ TEST_CASE("particles outside leave once, ordered by global id, and drift or are 
   }
 }
 
-TEST_CASE("an explicit step across the whole periodic space is refused, but to those that drift") {
+TEST_CASE("an explicit step across the whole periodic domain is refused, except for ballistic particles") {
   const auto failure = [](const BoxCase& c, Real speed, bool drifting) -> std::string {
     LoadedBox box(soft_box(c, ParticleIntegrator::velocity_verlet), 0.2);
     box.records[23].velocity = {0, speed, 0};
@@ -189,7 +189,7 @@ TEST_CASE("an explicit step across the whole periodic space is refused, but to t
   }
 }
 
-TEST_CASE("a particle that drifts feels gravity alone") {
+TEST_CASE("gravity alone acts on a ballistic particle") {
   Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
   LoadedBox box(model);
   // Three of a kind at one place outside.

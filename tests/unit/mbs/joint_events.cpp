@@ -104,7 +104,7 @@ TEST_CASE("the mean of a line between limits is that of many points") {
   }
 }
 
-TEST_CASE("a motor's integral goes on over the part of a step that is free of the limit") {
+TEST_CASE("a motor's integral grows over the part of a step in which the limit does not act") {
   const Real h = 0.1;
   // c'' = 2 while the motor is at its limit: e falls from e_0 to e_0 - 0.2. P = 1, T <= 3.
   const auto after = [&](Real integral_gain, Real error, Real memory) {

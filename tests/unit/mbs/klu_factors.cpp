@@ -83,7 +83,7 @@ std::vector<Real> solution_anew(const SparsePattern& pattern, const std::vector<
 
 }  // namespace
 
-TEST_CASE("kept pivots give the bits of pivots chosen anew, and are given up where KLU would choose others") {
+TEST_CASE("reused pivots give the bits of pivots chosen anew, and are given up where KLU would choose others") {
   constexpr int kLinks = 30;
   const SparsePattern pattern = chain_pattern(kLinks);
   std::mt19937 random(7);

@@ -61,7 +61,7 @@ std::string outcome(const Model& model, int steps, Real h) {
 
 }  // namespace
 
-TEST_CASE("reactions of a four-bar at alpha = 0: the run ends and says what to set") {
+TEST_CASE("reactions of a four-bar at alpha = 0: the run ends and names the remedy") {
   const std::string text = outcome(four_bar(0), 30000, 1e-3);
   CAPTURE(text);
   CHECK(text.find("the reactions of joints and drivers, not those recorded, change sign") !=
@@ -82,7 +82,7 @@ TEST_CASE("reactions that a stiff spring makes alternate are its own") {
 }
 
 TEST_CASE(
-    "the watch: fifty steps that alternate and a tenfold growth, of reactions and velocity gaps alike") {
+    "the watch: fifty alternating steps and a tenfold growth, of reactions and of velocity gaps") {
   const std::vector<Real> scale{1}, constraint_scale{1};
   const auto watched = [&](Real growth, Real applied, bool gap_turns, int steps) {
     ReactionWatch watch(scale, constraint_scale);

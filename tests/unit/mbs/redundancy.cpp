@@ -39,7 +39,7 @@ TEST_CASE("redundant constraints are named") {
   }
 }
 
-TEST_CASE("constraints that share the load may repeat each other, but not contradict") {
+TEST_CASE("with minimum-norm reactions constraints may be redundant, but not contradictory") {
   Model model = hanging_disc();
   model.bodies[0].velocity = {0, 1, 0}, model.bodies[0].angular_velocity = 2;
   model.drivers = {{"first", 0, ramp(2)}, {"second", 0, ramp(2)}};
@@ -134,7 +134,7 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
   }
 }
 
-TEST_CASE("a matrix that is singular for its constraints alone says that the position is") {
+TEST_CASE("a matrix that is singular due to constraints alone is reported as a singular position") {
   Model model = closed_chain();
   model.joints.push_back(model.joints[1]);
   model.joints[3].name = "again";
@@ -151,7 +151,7 @@ TEST_CASE("a matrix that is singular for its constraints alone says that the pos
       "is singular; integrator.redundant = \"minimum-norm\" passes it"));
 }
 
-TEST_CASE("a rod of a tenth of a micrometre shares as one of a tenth of a metre does") {
+TEST_CASE("minimum-norm reactions of a rod of 0.1 um are those of a rod of 0.1 m, scaled") {
   petsc();
   // Lengths, masses and times by these powers of two: the numbers have the same digits.
   const auto start_of = [](int length, int mass, int time) {

@@ -57,7 +57,7 @@ TEST_CASE("start velocities that contradict a joint or driver are refused") {
   CHECK(contains(refusal(model), "0.1 rad"));
 }
 
-TEST_CASE("the refusal of start velocities says which keys to set to what, with all digits") {
+TEST_CASE("the refusal of start velocities names the keys and values to set, with all digits") {
   Model model = hanging_disc();
   model.space.dimension = 2;
   model.drivers.push_back({"motor", 0, ramp(1.85)});
@@ -205,7 +205,7 @@ TEST_CASE(
 }
 
 // The rows of parallel axes hold there, too.
-TEST_CASE("a hinge in space whose axes point against each other is refused") {
+TEST_CASE("a spatial revolute joint with opposite axes is refused") {
   Model model = spatial_model(-0.1);
   model.bodies = {spatial_body("flap", 1, {1, 1, 1}, {})};
   model.joints = {joint_at(JointKind::revolute, "hinge", kGround, 0, {}, {})};

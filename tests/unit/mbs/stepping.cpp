@@ -154,7 +154,7 @@ TEST_CASE("a rejected step leaves no trace") {
   CHECK(same_bits(plain.state.integrator_loss, restarted.state.integrator_loss));
 }
 
-TEST_CASE("what is reported of a state depends on the state alone, and leaves no trace in the steps") {
+TEST_CASE("reports of a state depend on the state alone, and leave no trace in the steps") {
   Model model = empty_model();
   model.integrator.hht_alpha = -0.05;
   model.bodies = {paper_disc("arm", 0.5, 0), paper_disc("block", 0.8, 0)};

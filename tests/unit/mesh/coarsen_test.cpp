@@ -51,7 +51,7 @@ TriangleMesh shuffled(TriangleMesh mesh) {
 
 }  // namespace
 
-TEST_CASE("a cube stays a cube of 12 triangles, a sheet one of 2, to the bit") {
+TEST_CASE("a cube stays a cube of 12 triangles, an open rectangle one of 2, to the bit") {
   for (const Real length : {0.3, 0.07}) {
     const CoarseMesh cube = sound(refined(box_mesh({{1, 1, 1}}), length), 1e-9);
     CHECK(cube.mesh.triangles.size() == 12);
@@ -77,7 +77,7 @@ TEST_CASE("a sphere's volume errs by the square of its edges") {
   }
 }
 
-TEST_CASE("no vertex given is farther than said, of anything") {
+TEST_CASE("no original vertex is farther away than reported, on any mesh") {
   const TriangleMesh drum = refined(drum_mesh({1, 0.1, 2, 0.1, 5, 0.2, 0.1, 48}), 0.2);
   const TriangleMesh screw = screw_mesh({0.1, 0.4, 0.5, 0.05, 1, 1.2, 24});
   for (const TriangleMesh& mesh : {drum, screw, refined(cone_mesh({1, 0, 2, 64}), 0.2)}) {
@@ -118,7 +118,7 @@ TEST_CASE("the order of triangles and vertices does not matter") {
   }
 }
 
-TEST_CASE("three sheets at an edge stay joined; what cannot be coarser is left") {
+TEST_CASE("three open surfaces at an edge stay joined; irreducible meshes are unchanged") {
   TriangleMesh sheets = unit_grid(6, 6);
   append(sheets, mapped(unit_grid(6, 6), [](Vec3 v) { return Vec3{v.x, 0, v.y}; }));
   append(sheets, mapped(unit_grid(6, 6), [](Vec3 v) { return Vec3{v.x, -v.y, 0}; }));

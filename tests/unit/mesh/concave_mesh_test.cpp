@@ -110,7 +110,7 @@ TEST_CASE("in a valley both walls are touched where both are near") {
   }
 }
 
-TEST_CASE("a valley that turns by less than the feature angle is a curve") {
+TEST_CASE("a valley with an angle below the feature angle is a curve") {
   const SurfaceMesh mesh = sheet_mesh(valley(155 * kDegree));
   CHECK(contacts_at(mesh, {0, 2, 0.95 / std::sin(77.5 * kDegree)}, kRadius).size() == 1);
 }

@@ -72,7 +72,7 @@ std::vector<MeshContact> contacts_by_rule(const SurfaceMesh& mesh, Vec3 c, Real 
 
 }  // namespace
 
-TEST_CASE("the nearest point of a sheet is a contact, also where regions meet") {
+TEST_CASE("the nearest point of an open surface is a contact, also where regions meet") {
   MeshRandom random(41);
   for (const TriangleMesh& mesh :
        {hills(6, 0.02, 1), hills(6, 0.3, 2), hills(6, 2, 3), hills(1, 1, 4), drum_shell(12, 0.5, 1, 3),
@@ -119,7 +119,7 @@ TEST_CASE("where a face was touched last changes no contact") {
 }
 
 // What reaches beyond touch must leave what is touched as it is.
-TEST_CASE("a wider look finds what a narrower one does, and what lies farther after it") {
+TEST_CASE("a query with a larger range finds the contacts of a smaller one first, then farther ones") {
   constexpr Real kRadius = 0.2;
   MeshRandom random(43);
   for (const SurfaceMesh& surface :
@@ -144,7 +144,7 @@ TEST_CASE("a wider look finds what a narrower one does, and what lies farther af
 }
 
 // More nearer facets than there are slots, which are one contact, crowd the floor out of the first look.
-TEST_CASE("where a face was touched last changes no contact beside many that are nearer") {
+TEST_CASE("the last touched triangle changes no contact, also with many nearer ones") {
   constexpr int kFacets = 64;
   constexpr Real kHalf = 0.45 * M_PI, kReach = 0.95;
   TriangleMesh mesh;  // a concave wall beside a fine floor
@@ -199,7 +199,7 @@ TEST_CASE("the nearest point of a closed mesh is a contact from outside, from in
   }
 }
 
-TEST_CASE("a convex body is touched in one place, wherever the sphere is") {
+TEST_CASE("a convex body has one contact, wherever the sphere is") {
   MeshRandom random(49);
   for (const TriangleMesh& mesh :
        {icosphere(0, 1), icosphere(3, 1), tetrahedron(), block({0, 0, 0}, {1, 1, 1}, 3)}) {
@@ -304,7 +304,7 @@ TEST_CASE("a row needs at least as many slots as contacts come of it") {
   CHECK(needed(mesh, triangles_near(mesh, {0.5, 0.5, 0}, 2)) == kMeshSlots);
 }
 
-TEST_CASE("a feature is seen from another place as from its own") {
+TEST_CASE("a feature evaluated elsewhere agrees with its own contact") {
   MeshRandom random(47);
   const SurfaceMesh mesh = sheet_mesh(hills(6, 0.3, 8));
   bool same = true;

@@ -115,7 +115,7 @@ TEST_CASE("clouds, lattices and near-planes: closed, and no point is outside") {
   }
 }
 
-TEST_CASE("points in a plane, on a line, or in one place have no hull") {
+TEST_CASE("points in a plane, on a line, or at one position have no hull") {
   MeshRandom random(6);
   const Mat3 turn = random.turn();
   std::vector<Vec3> line, plane;

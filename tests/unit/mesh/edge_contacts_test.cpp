@@ -89,7 +89,7 @@ TEST_CASE("around a block the force is k times the overlap, over sides, edges an
   }
 }
 
-TEST_CASE("around a sheet's free border the force is k times the overlap") {
+TEST_CASE("around an open surface's free border the force is k times the overlap") {
   MeshRandom random(12);
   for (const int n : {1, 5}) {
     const TriangleMesh sheet = plate({0, 0, 0}, {3, 0, 0}, {0, 4, 0}, n, n);
@@ -143,7 +143,7 @@ TEST_CASE("inside a block the nearest side alone pushes outwards") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a thin plate pushes to the side of the centre, never pulls from behind") {
+TEST_CASE("a thin plate pushes to the side of the centre, never from behind") {
   constexpr Real kThickness = 0.01;
   const SurfaceMesh mesh = closed_mesh(block({0, 0, 0}, {5, 5, kThickness}, 2));
   MeshRandom random(15);

@@ -77,7 +77,7 @@ Real measured(const TriangleMesh& mesh, const std::vector<Surface>& surfaces, in
 
 }  // namespace
 
-TEST_CASE("facets of shapes of revolution lie as far from the true surface as is said") {
+TEST_CASE("facets of shapes of revolution have the stated deviation from the true surface") {
   for (const Index n : {4, 8, 12, 16, 48}) {
     CAPTURE(n);
     const auto check = [](const auto& shape, const TriangleMesh& mesh, const std::vector<Surface>& surfaces) {
@@ -106,7 +106,7 @@ TEST_CASE("facets of shapes of revolution lie as far from the true surface as is
   }
 }
 
-TEST_CASE("facets of spheres and drums lie as far from the true surface as is said; flat shapes have none") {
+TEST_CASE("facets of spheres and drums have the stated deviation; flat shapes have none") {
   for (const int levels : {0, 1, 2, 3, 4}) {
     const SphereShape sphere{0.7, levels};
     CHECK(facet_deviation(sphere) == Approx(measured(sphere_mesh(sphere), {ball(0.7)}, 24)).epsilon(0.01));
@@ -129,7 +129,7 @@ TEST_CASE("facets of spheres and drums lie as far from the true surface as is sa
   CHECK(facet_deviation(HopperShape{{1, 1, 0}, {2, 2, 0}, 1, 0}) == 0);
 }
 
-TEST_CASE("facets of screws lie as far from core, rim and faces as is said") {
+TEST_CASE("facets of screws have the stated deviation from core, rim and faces") {
   for (const ScrewShape& base :
        {ScrewShape{0.012, 0.045, -0.07, 0.005, 0.14, 0.14, 0},
         ScrewShape{0.044, 0.045, -0.5, 0.3, 0.5, 0.6, 0}, ScrewShape{0.01, 0.045, -0.4, 0.001, 0.2, 0.2, 0}})

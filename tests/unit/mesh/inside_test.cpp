@@ -63,7 +63,7 @@ TEST_CASE("points inside closed meshes and outside, those in line with edges and
   }
 }
 
-TEST_CASE("a sheet has no inside; a closed line has") {
+TEST_CASE("an open surface has no inside; a closed line has") {
   const SurfaceMesh sheet = build_surface_mesh(rectangle_mesh(2, 2), kFeatureAngle, true);
   CHECK_FALSE(is_inside(sheet.view(), {0, 0, -0.1}));
   const std::vector<Vec3> corners = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 0.5, 0}, {0, 1, 0}};

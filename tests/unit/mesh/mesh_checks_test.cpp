@@ -66,7 +66,7 @@ TEST_CASE("vertices within a tolerance become one") {
   const Texts troubles = mesh_troubles(welded(mesh), false);
   REQUIRE(troubles.size() == 1);
   CHECK(troubles[0].find(
-            "is a sheet); two of their ends are 1e-07 m apart, which welding within a tolerance joins: ") !=
+            "sheet = true); two of their ends are 1e-07 m apart, which welding within a tolerance joins: ") !=
         std::string::npos);
   const NumberedMesh loose = welded_within(mesh, 1e-6);
   CHECK(loose.mesh.vertices.size() == 8);
@@ -84,7 +84,7 @@ TEST_CASE("a hole is named by its edges") {
   mesh.triangles.erase(mesh.triangles.begin() + 1);
   CHECK(mesh_troubles(mesh, false) ==
         Texts{"3 edges have one triangle; a closed mesh has two at each (an open surface needs "
-              "sheet): "
+              "sheet = true): "
               "(-1, -1, -1) to (1, -1, -1) of triangle 1; (-1, -1, -1) to (1, 1, -1) of triangle 0; "
               "(1, -1, -1) to (1, 1, -1) of triangle 3"});
   CHECK(mesh_troubles(mesh, true) == Texts{});

@@ -22,7 +22,7 @@ TriangleMesh inside_out(TriangleMesh mesh) {
 
 }  // namespace
 
-TEST_CASE("the inside of a pipe is as curved as its radius says; convex shapes are not concave") {
+TEST_CASE("the inside of a pipe has the curvature of its radius; convex shapes are not concave") {
   for (const Index n : {16, 48, 144}) {
     const MeshCurvature pipe = curvature_of(pipe_mesh({2, 3, 1, n}));
     CHECK(pipe.concave_radius == Approx(2).epsilon(2.0 / (n * n)));
@@ -34,7 +34,7 @@ TEST_CASE("the inside of a pipe is as curved as its radius says; convex shapes a
   CHECK(curvature_of(box_mesh({{1, 1, 1}})).sag == 0);
 }
 
-TEST_CASE("spheres from inside, sheets from either side, fillets beside planes") {
+TEST_CASE("curvature: spheres from inside, open surfaces from either side, fillets beside planes") {
   CHECK(curvature_of(inside_out(sphere_mesh({1, 3}))).concave_radius == Approx(1).margin(0.25));
   CHECK(curvature_of(sphere_mesh({1, 3}), true).concave_radius == Approx(1).margin(0.25));
   std::vector<Vec3> trough = {{-3, 0, 0}};

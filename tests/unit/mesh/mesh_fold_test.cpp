@@ -25,7 +25,7 @@ TriangleMesh bent(const std::vector<Vec3>& points, bool closed = false) {
 
 }  // namespace
 
-TEST_CASE("the fold that turns the least is found, on sheets from either side") {
+TEST_CASE("the fold of the smallest angle is found, on open surfaces from either side") {
   for (const Real sign : {1.0, -1.0}) {
     const MeshFold fold =
         fold_of(bent({{-1, 0, 0}, {0, 0, 0}, {1, sign, 0}, {0.5, 5 * sign, 0}, {-3, 5 * sign, 0}}), true);

@@ -83,7 +83,7 @@ TEST_CASE("mass of a cube, a box, a tetrahedron and a prism") {
              8 * kUlp, 3);
 }
 
-TEST_CASE("a mass does not depend on how fine, turned or far away its mesh is") {
+TEST_CASE("mass properties depend neither on a mesh's fineness nor on its orientation or distance") {
   const TriangleMesh mesh = wedge();
   const MassProperties mass = solid_mesh_mass(mesh, 3);
   check_near(solid_mesh_mass(refined(mesh, 0.05), 3), mass, 1e-14, 3);

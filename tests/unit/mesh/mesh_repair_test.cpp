@@ -120,7 +120,7 @@ TEST_CASE("corners that lie on each other but for round-off become one") {
   CHECK(near(volume_of(repair), 8, {.relative = 1e-13}));
 }
 
-TEST_CASE("twins: which stay follows from the edges") {
+TEST_CASE("duplicate triangles: the edges decide which stay") {
   TriangleMesh twice = cube();
   twice.triangles.push_back({twice.triangles[4][1], twice.triangles[4][0], twice.triangles[4][2]});
   CHECK(repair_of(twice).twins.count == 1);
@@ -153,7 +153,7 @@ TEST_CASE("twins: which stay follows from the edges") {
   CHECK(mesh_troubles(both.mesh.mesh, false)[0].starts_with("4 edges have one triangle"));
 }
 
-TEST_CASE("shells are turned outward, and cavities stay") {
+TEST_CASE("shells are oriented outward, and cavities stay") {
   const TriangleMesh ball = sphere_mesh({0.5, 2}), small = sphere_mesh({0.2, 1});
   const Real of_ball = mesh_volume(ball), of_small = mesh_volume(small);
   const auto check = [&](const TriangleMesh& mesh, std::size_t turned, Real volume) {
@@ -181,7 +181,7 @@ TEST_CASE("shells are turned outward, and cavities stay") {
   CHECK(mesh_troubles(inner.mesh.mesh, false)[0].starts_with("a shell lies inside another"));
 }
 
-TEST_CASE("a sheet may be wound anyhow, and have one side alone") {
+TEST_CASE("an open surface may have any windings, and be one-sided") {
   TriangleMesh sheet = rectangle_mesh(2, 1);
   std::swap(sheet.triangles[1][1], sheet.triangles[1][2]);
   CHECK(mesh_troubles(sheet, true) == Texts{});

@@ -43,7 +43,7 @@ TEST_CASE("a smooth body has one patch and a part per triangle") {
   CHECK(counts_of(closed_mesh(icosphere(0, 1))) == Counts{20, 20, 30, 12});
 }
 
-TEST_CASE("concave edges of a closed mesh are never touched, those of a sheet are") {
+TEST_CASE("concave edges of a closed mesh are never touched, those of an open surface are") {
   CHECK(counts_of(closed_mesh(flipped(icosphere(2, 1)))) == Counts{320, 1, 0, 0});
   CHECK(counts_of(sheet_mesh(flipped(icosphere(2, 1)))) == Counts{320, 1, 480, 162});
 }
@@ -71,7 +71,7 @@ TEST_CASE("an edge with three faces is touched in every corner between them") {
   CHECK(near(below[0].normal, {0, 0, -1}, {.absolute = kUlp}));
 }
 
-TEST_CASE("a step of any height parts two flats, what round-off makes does not") {
+TEST_CASE("a step of any height separates two flats, round-off does not") {
   // Up a riser from z = 0 to z = step, along x = 1.
   const auto stairs = [](Real step) {
     return strip({{0, 0, 0}, {1, 0, 0}, {1, 0, step}, {2, 0, step}}, 1, 3);
@@ -102,7 +102,7 @@ TEST_CASE("slivers join the plane of their neighbours, whatever their own normal
 }
 
 // What a search and all bounds on it take for the plane of a triangle is that of its part.
-TEST_CASE("vertices lie as near to the plane of their part as the mesh says, slivers' own, too") {
+TEST_CASE("vertices lie within the stated flatness of their part's plane, slivers included") {
   MeshRandom random(53);
   int off = 0;
   for (int i = 0; i < 100; ++i) {
@@ -126,7 +126,7 @@ TEST_CASE("a flat that folds back on itself is two parts") {
   CHECK(sheet_mesh(second_corner_at({0.2, 0.2, 0})).parts.size() == 2);
 }
 
-TEST_CASE("a drum whose facets turn by the feature angle itself has a patch per facet") {
+TEST_CASE("a drum whose facets differ by the feature angle itself has a patch per facet") {
   for (const int facets : {3, 4, 6, 12}) {
     const SurfaceMesh drum = sheet_mesh(drum_shell(facets, 1, 1, 2));
     CHECK(drum.first_neighbour.size() == static_cast<std::size_t>(facets) + 1);

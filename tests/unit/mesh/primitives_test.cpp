@@ -142,7 +142,7 @@ TEST_CASE("a hopper has the area of its sides, a funnel in the limit, and both a
   CHECK(high.z == 4);
 }
 
-TEST_CASE("primitives are closed, and sheets sound") {
+TEST_CASE("primitives are closed, and open ones sound") {
   check_sound(cylinder_mesh({0.5, 2, 3}));
   check_sound(cylinder_mesh({0.5, 2, 24}));
   check_sound(cone_mesh({1, 0, 2, 17}));

@@ -151,7 +151,7 @@ TEST_CASE("polygons are cut into triangles of their winding") {
     CHECK(comb(form) == area);
 }
 
-TEST_CASE("what is said of files that cannot be read") {
+TEST_CASE("messages for files that cannot be read") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("scree_meshes_" + std::to_string(::getpid()));
   fs::create_directory(folder);
@@ -182,7 +182,7 @@ TEST_CASE("what is said of files that cannot be read") {
   fs::remove_all(folder);
 }
 
-TEST_CASE("what is said of broken STL") {
+TEST_CASE("messages for broken STL") {
   const std::string text = ascii_stl(), binary = binary_stl();
   CHECK(refusal("solid a\nendsolid a\n", "a.stl") == "a.stl: has no triangles");
   CHECK(refusal(binary_stl().replace(80, 4, bytes_of(std::uint32_t(0))).substr(0, 84), "a.stl") ==
@@ -217,7 +217,7 @@ TEST_CASE("what is said of broken STL") {
   CHECK(refusal(infinite, "a.stl") == "a.stl: triangle 1 (from 0): coordinates must be finite numbers");
 }
 
-TEST_CASE("what is said of broken OBJ") {
+TEST_CASE("messages for broken OBJ") {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
   const auto said = [&](const std::string& rest) { return refusal(corners + rest, "a.obj"); };
   CHECK(said("") == "a.obj: has no triangles");
@@ -249,7 +249,7 @@ TEST_CASE("what is said of broken OBJ") {
         "at most 1000 then");
 }
 
-TEST_CASE("what is said of broken PLY") {
+TEST_CASE("messages for broken PLY") {
   const std::string text = ascii_ply(), binary = binary_ply<float>("float", false);
   const auto changed = [](std::string bytes, const std::string& from, const std::string& to) {
     return refusal(bytes.replace(bytes.find(from), from.size(), to), "a.ply");

@@ -60,7 +60,7 @@ TEST_CASE("angles stay bounded, and the number of triangles near the least") {
   CHECK(Real(fine.triangles.size()) < 4 * least);
 }
 
-TEST_CASE("parts stand where their triangle stood") {
+TEST_CASE("parts take the position of their triangle") {
   const TriangleMesh mesh = box_mesh({{1, 1, 1}}), fine = refined(mesh, 0.3);
   const std::size_t parts = fine.triangles.size() / 12;
   for (std::size_t i = 0; i < fine.triangles.size(); ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("parts stand where their triangle stood") {
   }
 }
 
-TEST_CASE("a sheet with three triangles at an edge is refined, too") {
+TEST_CASE("an open surface with three triangles at an edge is refined, too") {
   const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
                            {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}};
   const TriangleMesh fine = refined(sheet, 0.2);

@@ -59,7 +59,7 @@ SurfaceMesh dome(Real radius, bool inwards) {
 
 }  // namespace
 
-TEST_CASE("past a flat sheet the distance goes on below zero, from either side, down to a radius") {
+TEST_CASE("beyond a flat open surface the distance becomes negative, from either side, down to a radius") {
   const SurfaceMesh plane = half_plane();
   for (const Real side : {1, -1}) {
     Passage passage(plane);
@@ -75,7 +75,7 @@ TEST_CASE("past a flat sheet the distance goes on below zero, from either side, 
   }
 }
 
-TEST_CASE("past facets, edges and corners of a smooth sheet the force has a potential") {
+TEST_CASE("beyond facets, edges and corners of a smooth open surface the force has a potential") {
   constexpr Real kDome = 4, kSag = 0.02;
   MeshRandom random(7);
   for (const bool inwards : {false, true}) {

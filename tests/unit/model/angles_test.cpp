@@ -45,7 +45,7 @@ std::ptrdiff_t found(const std::vector<std::string>& overrides,
 
 }  // namespace
 
-TEST_CASE("angles of more than a turn that say how something stands are warned of") {
+TEST_CASE("constant angles of more than a revolution are warned of") {
   const auto turned = [](const char* angle) {
     return std::vector<std::string>{"bodies.arm.rotation_axis=[1,0,0]",
                                     std::string("bodies.arm.rotation_angle=") + angle};
@@ -66,7 +66,7 @@ TEST_CASE("limits of joints are warned of where they are angles and whole number
   CHECK(found({kStop + "lower=-90.0,upper=90.0}]", kSlide}) == 0);       // in metres
 }
 
-TEST_CASE("motions of drivers may be of many turns") {
+TEST_CASE("motions of drivers may be of many revolutions") {
   const std::string driver = "drivers=[{name=\"d\",joint=\"hinge\",motion=";
   CHECK(found({driver + "{kind=\"step\",value=0,end_value=90.0,start=0,end=1}}]"}) == 0);
   CHECK(found({driver + "{kind=\"sine\",amplitude=1.0,frequency=1.0,phase=90.0}}]"},

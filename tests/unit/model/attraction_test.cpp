@@ -46,7 +46,7 @@ std::string linear(const std::string& keys) { return kBare + kGrains + pair_of("
 
 }  // namespace
 
-TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with a neck or without") {
+TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with JKR or DMT") {
   const Model neck = model_of(hertz("work_of_adhesion = 0.5\nrestitution = 0.6\n"));
   const KelvinVoigt& law = neck.contact.law(0, 0);
   CHECK((law.adhesion_work == 0.5 && law.neck));
@@ -66,7 +66,7 @@ TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with a 
         pair_limits(model_of(hertz("friction = 0.0\n")))[0].explicit_step);
 }
 
-TEST_CASE("a constant attraction stands beside a linear law or Hertz's") {
+TEST_CASE("a constant attraction adds to a linear law or Hertz's") {
   const Model near_only = model_of(linear("attraction = 2.0\n"));
   CHECK((near_only.contact.law(0, 0).attraction == 2 && near_only.contact.reach == 0));
   const Model far = model_of(linear("attraction = 2.0\nattraction_range = 1e-6\n"));
@@ -87,7 +87,7 @@ TEST_CASE("an attraction that reaches farther than a radius is warned of") {
   CHECK(warned("0.019") == 0);
 }
 
-TEST_CASE("what attraction does not go with is told with its remedy") {
+TEST_CASE("incompatible keys beside attraction are refused with a remedy") {
   CHECK(contains(model_error(linear("work_of_adhesion = 0.1\n")),
                  "contact.pairs.0.work_of_adhesion = 0.1: needs Hertz's law: young_modulus"));
   CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nsurface_energy = 0.05\n")),

@@ -80,7 +80,7 @@ TEST_CASE("names of what a history records the contacts of") {
                  "\"a\" is the name of body \"a\" and of wall \"a\"; it must be that of one"));
 }
 
-TEST_CASE("planes do not stand across periodic axes, nor turn there") {
+TEST_CASE("planes across periodic axes are refused, and so are their rotations there") {
   const std::vector<std::string> periodic{"space.x_min=periodic", "space.x_max=periodic"};
   const auto deck = [](const std::string& normal, const std::string& motions) {
     return kSmallDeck + "[[walls]]\nname = \"floor\"\npoint = [0, 0]\nnormal = " + normal + "\n" + motions +
@@ -96,7 +96,7 @@ TEST_CASE("planes do not stand across periodic axes, nor turn there") {
   CHECK(model_of(deck(slope, turns)).walls.size() == 1);
 }
 
-TEST_CASE("a row's bodies are told where one is not there") {
+TEST_CASE("an unknown body of a row is refused with the bodies that there are") {
   const auto error = [](const std::string& body) {
     return model_error(kSmallDeck + kBodies +
                        joint_with("type = \"fixed\"\nbodies = [\"ground\", \"" + body + "\"]\n"));
@@ -106,7 +106,7 @@ TEST_CASE("a row's bodies are told where one is not there") {
   CHECK(contains(error("rwo.1"), "did you mean \"row.1\"?"));
 }
 
-TEST_CASE("entries of the history's lists stand there once") {
+TEST_CASE("repeated entries of the history's lists are refused") {
   const auto error = [](const std::string& entries) {
     return model_error(kSmallDeck + kPair + kBodies + particles_at("[[0.5, 0], [-0.5, 0]]") + "[output]\n" +
                        entries);
@@ -131,7 +131,7 @@ TEST_CASE("a shape that a body has twice") {
   CHECK(error(shape + ", { radius = 0.1 }, { radius = 0.2 }").empty());
 }
 
-TEST_CASE("names that joints and drivers, or walls and sides, share") {
+TEST_CASE("names shared by joints and drivers, or by walls and sides, are refused") {
   const std::string joint = joint_with("type = \"revolute\"\nbodies = [\"ground\", \"a\"]\n");
   const std::string driver = "[[drivers]]\njoint = \"pin\"\nmotion = 0.0\nname = ";
   CHECK(contains(model_error(kSmallDeck + kBodies + joint + driver + "\"pin\"\n"),
@@ -143,7 +143,7 @@ TEST_CASE("names that joints and drivers, or walls and sides, share") {
   CHECK(model_error(wall).empty());
 }
 
-TEST_CASE("names that a row repeats") {
+TEST_CASE("names repeated by a row are refused") {
   const std::string clash = "[[bodies]]\nname = \"row.1\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
   CHECK(contains(model_error(kSmallDeck + kBodies + clash), "the name \"row.1\" is repeated"));
 }

@@ -109,7 +109,7 @@ TEST_CASE("a bushing between markers is the one at their point and axes") {
   CHECK(near(a.point[1], Vec3{0, -0.2, 0.5}, {.absolute = 1e-15}));  // from the centre of mass
 }
 
-TEST_CASE("markers of a bushing that are turned by more than it holds are refused") {
+TEST_CASE("markers of a bushing that differ by more than its valid rotation are refused") {
   const auto deck = [](Real angle, const std::string& stiffness) {
     return kDeck +
            fmt::format(
@@ -139,7 +139,7 @@ TEST_CASE("a row of bushings is counted and keeps its bodies from touching") {
   CHECK(bodies_and_links(parse_deck(row, "deck.toml", {}).root).links == 3);  // at most: one for each body
 }
 
-TEST_CASE("what a bushing must not be is refused with the key and what is allowed") {
+TEST_CASE("invalid bushings are refused with the key and the allowed values") {
   const auto refused = [](const std::string& rest, const std::string& key, const std::string& text) {
     INFO(rest);
     const std::string message = refusal(rest);

@@ -80,7 +80,7 @@ TEST_CASE("a cylinder is a joint without rows, a motor on its length, and a stop
   CHECK(held_bodies(model) == std::vector{true, false});
 }
 
-TEST_CASE("cylinders stand between the bodies of a row, and take springs and friction") {
+TEST_CASE("cylinders connect the bodies of a row, and take springs and friction") {
   const std::string row =
       "[[cylinders]]\nname = \"c\"\neach = \"boom\"\nlocal_points = [[0.0, -1.0], [0.0, 0.0]]\n" + kForce;
   const Model model =
@@ -95,7 +95,7 @@ TEST_CASE("cylinders stand between the bodies of a row, and take springs and fri
   CHECK(bodies_and_links(deck.root).links == 4);
 }
 
-TEST_CASE("what a cylinder must not say") {
+TEST_CASE("keys that a cylinder must not have") {
   CHECK(contains(refusal(kOne + kForce + "min_length = 0.3\n"), "cylinders.c.stop_stiffness: missing"));
   CHECK(
       contains(refusal(kOne + kForce + "stop_damping = 0.3\n"), "not used without min_length or max_length"));

@@ -105,7 +105,7 @@ TEST_CASE("a thin cylinder on an oblique axis is filled as one along x is") {
   CHECK(filled("[[-1.5, 0.0, 0.0], [1.5, 0.0, 0.0]]").particles.size() == 2500);
 }
 
-TEST_CASE("the inside of a mesh that stands nowhere, up to a level") {
+TEST_CASE("filling: the inside of a mesh without a body or wall, up to a level") {
   const std::string ball = "[[meshes]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.5\nlevels = 3\n";
   const Model tank = model_of(kSpace + ball + group(600, "mesh = \"ball\"\nmax = [2.0, 2.0, 0.1]\n"));
   for (const Vec3 p : tank.particles.position) {
@@ -115,7 +115,7 @@ TEST_CASE("the inside of a mesh that stands nowhere, up to a level") {
   check_free(tank);
 }
 
-TEST_CASE("the inside of a shell on a body, as that is turned, and of a mesh that does not collide") {
+TEST_CASE("filling: the inside of a shell on a rotated body, and of a mesh without contacts") {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "scree_fill_region_test.obj";
   std::ofstream(file) << "v -0.4 -0.2 -0.3\nv 0.4 -0.2 -0.3\nv 0.4 0.2 -0.3\nv -0.4 0.2 -0.3\n"
                          "v -0.4 -0.2 0.3\nv 0.4 -0.2 0.3\nv 0.4 0.2 0.3\nv -0.4 0.2 0.3\n"
@@ -197,7 +197,7 @@ TEST_CASE("random groups keep clear of planes, and a box alone has the positions
     CHECK(same_bits(bare.particles.position[i], within.particles.position[i]));
 }
 
-TEST_CASE("regions that hold too little, or nothing, say so") {
+TEST_CASE("regions with too little room, or none, are refused") {
   const auto error = [](const std::string& tables) { return model_error(kSpace + tables); };
   const std::string cylinder = "cylinder_radius = 0.2\nends = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.5]]\n";
   CHECK(contains(error(group(5000, cylinder)), "of the volume of their region (cylinder_radius)"));

@@ -63,7 +63,7 @@ TEST_CASE("segments that are left out follow the smallest particle") {
   CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0") + grains("0.02"), "levels") == 5);
 }
 
-TEST_CASE("the mesh has the segments that the resolved deck names, and says how far its facets lie") {
+TEST_CASE("the mesh has the segments of the resolved deck, and reports its facets' deviation") {
   const std::string deck = kSpace + kRod + grains("0.02");
   const ModelMesh made = model_of(deck).meshes.front();
   CHECK(made.is_fitted);

@@ -137,7 +137,7 @@ TEST_CASE("a solid's density may be its material's") {
                  "bodies.a.solids.0.density: missing; the material has none, either"));
 }
 
-TEST_CASE("what solids say is not said again, and something must say it") {
+TEST_CASE("mass properties come from solids or from keys, not from both and not from neither") {
   const std::string solids = "solids = [{ kind = \"sphere\", radius = 1.0, density = 1.0 }]\n";
   CHECK(
       contains(model_error(kSpace + body("a", solids + "mass = 1.0\n")), "mass = 1.0: follows from solids"));
@@ -168,7 +168,7 @@ TEST_CASE("a joint's ends are its markers") {
           kRoundOff);
 }
 
-TEST_CASE("markers that do not meet are refused with their gap") {
+TEST_CASE("markers that do not coincide are refused with their distance") {
   const std::string along_x = "z_axis = [1, 0, 0]\n", same = "z_axis = [0, -1, 0]\n";
   CHECK(contains(model_error(marked(along_x + "local_point = [0, 0, 0.5]\n", same) + joint("revolute")),
                  "joints.j.markers = [\"m\", \"n\"]: the two sides of joint \"j\" do not meet"));
@@ -230,7 +230,7 @@ TEST_CASE("markers on rows, and where they cannot be") {
   CHECK(contains(model_error(links + marker("x", "Ground", "")), "did you mean \"ground\"?"));
 }
 
-TEST_CASE("keys that say the same as markers are refused beside them") {
+TEST_CASE("keys redundant to markers are refused beside them") {
   const std::string deck = marked("", "");
   CHECK(contains(model_error(deck + joint("spherical", "markers = [\"m\", \"n\"]\npoint = [0, 0, 0]\n")),
                  "point = [0, 0, 0]: not used together with markers"));

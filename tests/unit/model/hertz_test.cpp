@@ -107,7 +107,7 @@ TEST_CASE("a restitution below that of critical damping is no slip") {
             .empty());
 }
 
-TEST_CASE("what is wrong with Hertz's law in a deck is told with its remedy") {
+TEST_CASE("errors of Hertz's law in a deck are refused with a remedy") {
   const std::string deck = kSteel + kGrains;
   CHECK(contains(
       error_of(kSteel + "[[materials]]\nname = \"clay\"\n" + kGrains +

@@ -117,7 +117,7 @@ TEST_CASE("couplers of every type have their coefficients") {
         std::vector<Real>{2, -0.5});
 }
 
-TEST_CASE("what has no coordinate is refused with the joint's name and kind") {
+TEST_CASE("a joint without a coordinate is refused with its name and kind") {
   CHECK(contains(refusal("[[motors]]\nname = \"m\"\njoint = \"weld\"\ntype = \"effort\"\neffort = 1.0\n"),
                  "joint \"weld\" is a fixed joint; it must be revolute or translational"));
   CHECK(contains(refusal("[[joint_limits]]\nname = \"m\"\njoint = \"rail\"\nstiffness = 1.0\n"),

@@ -49,7 +49,7 @@ stiffness = 1.0
   CHECK(size.links == 1 + 7 + 7);  // a chain of 7 counted as 7
 }
 
-TEST_CASE("what snapshots show takes memory, and what is built already is not counted again") {
+TEST_CASE("snapshots take memory, and existing objects are not counted again") {
   const std::string deck = R"([space]
 dimension = 3
 min = [-1, -1, -1]

@@ -92,7 +92,7 @@ TEST_CASE(
   CHECK(warnings(disc + hinge, "1.5e-4") == 0);
 }
 
-TEST_CASE("corners past a plane at t = 0 count by the mesh's radius on planes") {
+TEST_CASE("corners beyond a plane at t = 0 count by the mesh's radius on planes") {
   const std::string error = model_error(deck(kCube), {"bodies.b.position=[0, 0, -0.45]"});
   CHECK(error.find("body \"b\" and wall \"floor\" overlap at t = 0 by 0.36") != std::string::npos);
   CHECK(error.find("of the radius that the mesh counts with on planes") != std::string::npos);

@@ -105,7 +105,7 @@ TEST_CASE("a mesh that is far longer than the space may want a scale") {
   CHECK_FALSE(is_told("[[0, 0], [0.3, 0], [0, 0.4]]"));
 }
 
-TEST_CASE("a solid is what its mesh encloses, what the hull of that encloses, or a skin") {
+TEST_CASE("a solid is the inside of its mesh, of the mesh's hull, or a shell") {
   const std::string open = "kind = \"rectangle\"\nsize = [0.2, 0.3]";
   const auto of = [](const std::string& keys) {
     return "{ kind = \"mesh\", mesh = \"made\", density = 800.0, " + keys + " }";
@@ -236,7 +236,7 @@ TEST_CASE("bodies of closed lines weigh what is inside times a depth, or their o
                  "is for lines, in 2D; this mesh has its own"));
 }
 
-TEST_CASE("with meshes no more surfaces than contacts can tell apart") {
+TEST_CASE("with meshes the number of surfaces is limited by contact keys") {
   const std::string row = body_of("kind = \"box\"\nsize = [0.1, 0.1, 0.1]", kOfMesh);
   const std::string message =
       model_error(row, {"bodies.b.count=524289", "bodies.b.shapes=[{radius=0.01},{radius=0.02}]"});

@@ -69,7 +69,7 @@ std::string line(Real degrees) {
 
 }  // namespace
 
-TEST_CASE("how many triangles are near is what is counted at random places") {
+TEST_CASE("the estimated number of nearby triangles is that counted at random positions") {
   for (const char* keys :
        {"kind = \"rectangle\"\nsize = [1.0, 1.0]\nrefine = 0.03",
         "kind = \"rectangle\"\nsize = [1.0, 1.0]\nrefine = 0.01",
@@ -111,7 +111,7 @@ TEST_CASE("triangles that are small beside the particles get a warning with what
   CHECK(fine("kind = \"rectangle\"\nsize = [1.0, 1.0]").empty());
 }
 
-TEST_CASE("a fold past the feature angle wants contacts that overlap by less than r (1 - cos of its angle)") {
+TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of its angle)") {
   for (const Real degrees : {33.0, 45.0, 60.0}) {
     CAPTURE(degrees);
     // An impact of 1 kg at 1 m/s overlaps by sqrt(1 / K).

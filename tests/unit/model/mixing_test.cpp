@@ -154,7 +154,7 @@ TEST_CASE("of materials with moduli the exact effective ones, whatever the rule"
                 kMetals);
 }
 
-TEST_CASE("what was made stands in the model as keys, in the order of the materials") {
+TEST_CASE("derived pairs are listed in the model as keys, in the order of the materials") {
   const Model made = model_of(deck_of("geometric", "stiffness = 1e5\nfriction = 0.2\nrestitution = 0.9\n",
                                       "stiffness = 1e5\nfriction = 0.8\n"));
   REQUIRE(made.contact.combined.size() == 1);

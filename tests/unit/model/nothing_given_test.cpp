@@ -48,7 +48,7 @@ TEST_CASE("keys of 0 are as if they were left out") {
       }
 }
 
-TEST_CASE("what acts is refused in implicit steps whatever stands beside it as 0") {
+TEST_CASE("unsupported laws are refused in implicit steps whatever keys beside them are 0") {
   const auto refused = [](const std::string& pair, bool hertz = false) {
     return model_error(deck_of(pair, "", hertz));
   };

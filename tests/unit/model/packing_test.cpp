@@ -50,7 +50,7 @@ Real tried_chance(const Packing& p, Real radius) {
 
 }  // namespace
 
-TEST_CASE("the chance of a random place") {
+TEST_CASE("the probability of a free random position") {
   struct Case {
     int dimension;
     Real fraction, smallest, length;

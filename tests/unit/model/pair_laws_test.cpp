@@ -119,7 +119,7 @@ TEST_CASE("stiff rolling springs shorten the explicit step, soft ones do not") {
   CHECK(step("rolling_damping = 1.0\n") < step(""));
 }
 
-TEST_CASE("what is wrong with a pair's keys is told with its remedy") {
+TEST_CASE("errors of a pair's keys are refused with a remedy") {
   struct Case {
     std::string keys, message;
   };

@@ -46,7 +46,7 @@ void write_hdf5(const std::string& path, const std::map<std::string, std::vector
 
 }  // namespace
 
-TEST_CASE("cells of CSV may stand in quotes, with commas and quotes in them") {
+TEST_CASE("cells of CSV may be quoted, with commas and quotes in them") {
   const Folder folder;
   const std::string path = folder.write("q.csv", "\"x\", \"y\" ,\"radius\"\r\n\"+0.1\",\"-2e-1\",0.05\r\n");
   const ParticleColumns columns = read_particle_file(path, 2);
@@ -56,7 +56,7 @@ TEST_CASE("cells of CSV may stand in quotes, with commas and quotes in them") {
                     Catch::Contains("unknown column \"a,\"b\"\""));
 }
 
-TEST_CASE("tables of another kind are told what they are and what CSV is") {
+TEST_CASE("tables in other formats are refused with their format and that of CSV") {
   const Folder folder;
   const auto trouble = [&](const std::string& name, const std::string& text) {
     try {
@@ -84,7 +84,7 @@ TEST_CASE("tables of another kind are told what they are and what CSV is") {
         ": its lines end in a carriage return alone; they must end in a line feed");
 }
 
-TEST_CASE("HDF5 is known by its contents, and files of the program's own say what to do") {
+TEST_CASE("HDF5 is recognised by its contents, and the program's own files are refused with a remedy") {
   const Folder folder;
   write_hdf5(folder.file("rows.dat"), {{"x", {1, 2}}, {"y", {3, 4}}});
   CHECK(read_particle_file(folder.file("rows.dat"), 2).at("y") == std::vector<Real>{3, 4});
@@ -183,7 +183,7 @@ TEST_CASE("a byte order mark and ends of lines of other systems") {
   CHECK(columns.at("y") == std::vector<Real>{0.2});
 }
 
-TEST_CASE("what is no file") {
+TEST_CASE("paths that are not files") {
   const Folder folder;
   const auto error = [&](const std::string& path) {
     return model_error(kSmallDeck + "[[particles]]\nkind = \"file\"\nmass = 1.0\nfile = \"" + path + "\"\n");

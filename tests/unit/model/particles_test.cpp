@@ -152,7 +152,7 @@ mass = 1.0
   CHECK(contains(message, "particles found a place in 100 tries each"));
 }
 
-TEST_CASE("random groups that cannot find room are refused before a place is tried") {
+TEST_CASE("random groups without room are refused before a position is tried") {
   // Trying would take 10^9 places for the last of them.
   const auto error = [](const std::string& count, const std::string& radius) {
     return model_error(deck_3d(kRandom3d),
@@ -173,7 +173,7 @@ TEST_CASE("random groups that cannot find room are refused before a place is tri
                  "fills more than 0.74 of it; a larger box"));
 }
 
-TEST_CASE("random groups below what random places can fill are placed") {
+TEST_CASE("random groups below the limit of random packing are placed") {
   // Reached with seed 1 to 3 and 10^4 tries each: 0.506 of the plane, 0.304 of space.
   const std::string discs =
       "[[particles]]\nname = \"d\"\nkind = \"random\"\ncount = 2400\nmin = [-1, -1]\nmax = [1, 1]\nradius = "
@@ -227,7 +227,7 @@ TEST_CASE("masses: given, from density, from the material") {
   CHECK(contains(model_error(deck_2d(list + "mass = 1.0\ndensity = 1.0\n")), "not used together with mass"));
 }
 
-TEST_CASE("groups are told by the ids of their particles") {
+TEST_CASE("groups are identified by the ids of their particles") {
   const std::string keys = "radius = 0.01\nmass = 1.0\n";
   const ParticleSet p =
       model_of(deck_2d("[[particles]]\nname = \"pair\"\nkind = \"list\"\npositions = [[0, 0], [0.1, 0]]\n" +

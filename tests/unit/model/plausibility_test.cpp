@@ -224,7 +224,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
   }
 }
 
-TEST_CASE("nothing is said of loose meshes that planes stop, or are told to let through") {
+TEST_CASE("no warning for loose meshes that planes stop, or must let through") {
   const std::string deck = kSpheres + kTwoMetals;
   const auto warned = [&](const std::string& more, const std::vector<std::string>& overrides) {
     return std::ranges::any_of(model_warnings(deck + more, overrides),

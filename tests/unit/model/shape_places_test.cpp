@@ -83,7 +83,7 @@ TEST_CASE("of any sides the count is right, and all shapes lie between the corne
   }
 }
 
-TEST_CASE("keys of shapes that do not go together are refused by name and place") {
+TEST_CASE("incompatible keys of shapes are refused by name and line") {
   CHECK(contains(error_of("count = 2"), "deck.toml:"));
   CHECK(contains(error_of("count = 2"), "bodies.bin.shapes.0.spacing: missing"));
   CHECK(contains(error_of("spacing = [0.1, 0.0]"), "give count for a row or size for an array"));
@@ -103,7 +103,7 @@ TEST_CASE("keys of shapes that do not go together are refused by name and place"
   CHECK(contains(error_of("count = 30, spacing = [0.1, 0.0]"), "body \"bin\" starts at (2.9"));
 }
 
-TEST_CASE("what does not collide is no contact's, wherever it is") {
+TEST_CASE("shapes without contacts touch nothing, wherever they are") {
   const Model model = model_of(with_shape("offset = [5.0, 0.0], collides = false"));
   CHECK(model.bodies.front().shapes.empty());
   REQUIRE(model.bodies.front().drawn_shapes.size() == 1);

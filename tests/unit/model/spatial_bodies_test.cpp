@@ -51,7 +51,7 @@ TEST_CASE("a spatial body's orientation and angular velocity by either keys") {
   CHECK(quaternion.bodies[0].inertia < 0.2);  // the least principal moment
 }
 
-TEST_CASE("what is wrong with a spatial body is said") {
+TEST_CASE("errors of spatial bodies are refused with the reason") {
   const auto error = [](const std::string& from, const std::string& to) {
     std::string deck = two_bodies();
     deck.replace(deck.find(from), from.size(), to);

@@ -54,7 +54,7 @@ TEST_CASE("overlapping particles: a warning, past the limit an error") {
                "allowed: at most 0.05; of 4 overlaps 2 are above it; particle 0: of particles.0 at (0, 0)"));
 }
 
-TEST_CASE("what does not interact may overlap at the start") {
+TEST_CASE("particles and shapes without a law may overlap at the start") {
   const std::string deck =
       kDeck +
       "[[materials]]\nname = \"air\"\n[[materials]]\nname = \"solid\"\n[[meshes]]\nname = \"line\"\n" +
@@ -271,7 +271,7 @@ TEST_CASE("beside explicit particles the bodies' step must be short against thei
   CHECK(contains(warnings[0], fmt::format("oscillates with {:.4g} rad/s", frequency)));
 }
 
-TEST_CASE("a particle may start periods outside a periodic space, but not where its place is lost") {
+TEST_CASE("a particle may start periods outside a periodic domain, unless its position loses digits") {
   const std::string deck = kSmallDeck +
                            "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"list\"\n" +
                            "radius = 0.05\nmass = 1.0\npositions = [[0, 0]]\n";

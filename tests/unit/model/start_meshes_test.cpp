@@ -85,7 +85,7 @@ TEST_CASE("overlaps with meshes of walls: face, edge, corner, and any depth insi
   CHECK(finding("[[0.3, 0, -0.9]]").empty());
 }
 
-TEST_CASE("overlaps with meshes of bodies that are turned, moved, and across periodic sides") {
+TEST_CASE("overlaps with meshes of bodies that are rotated, moved, and across periodic sides") {
   const auto finding = [&](const std::string& positions) {
     return overlap(kSpace + kTurned + at(positions));
   };
@@ -106,7 +106,7 @@ TEST_CASE("overlaps with meshes of bodies that are turned, moved, and across per
       contains(model_error(moved, across), "particle 0 and body \"crate\" overlap at t = 0 by 0.656854 of"));
 }
 
-TEST_CASE("a mesh as long as the periodic space goes on past its sides") {
+TEST_CASE("a mesh as long as the periodic domain continues beyond its sides") {
   const std::vector<std::string> overrides{"space.x_min=periodic", "space.x_max=periodic",
                                            "meshes.floor.size=[2, 1]", "meshes.floor.offset=[0.7, 0, -0.8]"};
   for (const char* x : {"-0.99", "-0.3", "0.7", "0.99"}) {

@@ -91,7 +91,7 @@ TEST_CASE("walls count with the fastest that they move along their normals") {
   is(kPlate + about(z, "[-0.1, -0.2, 0]", ramp) + along(x, ramp), 8.4, 0.01);
 }
 
-TEST_CASE("what turns about its own axis hits nothing, what stands off it does") {
+TEST_CASE("rotation about its own axis has no impact speed, an eccentric one has") {
   const auto drum = [](const std::string& lifters) {
     return "[[meshes]]\nname = \"m\"\nkind = \"drum\"\nradius = 0.2\nwall = 0.01\nlength = 0.3\nsegments = "
            "96\n" +
@@ -166,7 +166,7 @@ TEST_CASE("a stiffness too low for a wall's speed is warned of, and a step in wh
 }
 
 // Whatever its mass, a body that a driver moves gives way to no contact.
-TEST_CASE("the mass of a body that a driver or a fixed joint holds has no say in steps and warnings") {
+TEST_CASE("the mass of a body held by a driver or a fixed joint affects neither steps nor warnings") {
   const auto paddle = [](Real mass, const std::string& joint) {
     return kSpheres +
            fmt::format(

@@ -24,7 +24,7 @@ Model five_bodies() {
 
 }  // namespace
 
-TEST_CASE("shapes of one body and of connected bodies may not touch unless the deck says so") {
+TEST_CASE("shapes of one body and of connected bodies have no contacts unless the deck asks for them") {
   Model model = five_bodies();
   const TouchRule rule(model);
   for (int a = 0; a < 5; ++a)

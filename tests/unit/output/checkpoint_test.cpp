@@ -53,7 +53,7 @@ TEST_CASE("a checkpoint returns bit for bit") {
   CHECK(!std::filesystem::exists(scratch / "c.h5.tmp"));
 }
 
-TEST_CASE("what a checkpoint lacks is named") {
+TEST_CASE("missing datasets of a checkpoint are named") {
   ScratchDirectory scratch;
   write_checkpoint(scratch / "c.h5", awkward_checkpoint());
   const Checkpoint checkpoint = read_checkpoint(scratch / "c.h5");

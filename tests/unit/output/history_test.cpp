@@ -67,7 +67,7 @@ TEST_CASE("the CSV reads back as the same numbers") {
   CHECK(std::stod(lines[1].substr(4)) == 1.0 / 3);
 }
 
-TEST_CASE("a restarted history cuts off later rows and goes on") {
+TEST_CASE("a restarted history cuts off later rows and continues") {
   ScratchDirectory scratch;
   {
     HistoryWriter writer(scratch.path(), kColumns, false, 0);

@@ -135,7 +135,7 @@ int points_of_step(int step) { return 40 + 20 * (step / 5 % 3); }
 
 }  // namespace
 
-TEST_CASE("a run killed at any moment leaves every snapshot readable, and goes on from there") {
+TEST_CASE("a run killed at any moment leaves every snapshot readable, and continues from there") {
   ScratchDirectory scratch;
   SharedCounter acknowledged;
   constexpr int kTrials = 60;

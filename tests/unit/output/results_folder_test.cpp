@@ -90,7 +90,7 @@ TEST_CASE("a folder belongs to one run at a time, and to the next one after a ki
   CHECK(read(scratch / "scree.lock").find("process " + std::to_string(getpid()) + "\n") != std::string::npos);
 }
 
-TEST_CASE("a run lets go of its folder, and leaves one that was never another's as it was") {
+TEST_CASE("a run releases its folder, and leaves a folder that was not used before unchanged") {
   ScratchDirectory scratch;
   write(scratch / "notes.txt", "mine");
   {
@@ -118,7 +118,7 @@ TEST_CASE("a lock that its writer had no time to fill, and one that a dead machi
   }
 }
 
-TEST_CASE("what has the lock's name and is no file is refused, and nobody's lock") {
+TEST_CASE("an entry with the lock's name that is not a file is refused, and is not a lock") {
   for (const bool is_folder : {true, false}) {
     ScratchDirectory scratch;
     const std::string path = scratch / "scree.lock";
@@ -143,7 +143,7 @@ TEST_CASE("what has the lock's name and is no file is refused, and nobody's lock
   }
 }
 
-TEST_CASE("where the system's lock does not tell, the text does") {
+TEST_CASE("where the system's lock is not available, the text of the file decides") {
   const LockOwner self = LockOwner::this_process();
   REQUIRE(!self.process_start.empty());
   LockOwner owner = self;
@@ -221,7 +221,7 @@ TEST_CASE("results of another run are refused, or removed as a whole when that i
   CHECK(fs::exists(scratch / "notes.txt"));
 }
 
-TEST_CASE("a restart goes on with its own folder, and spares others") {
+TEST_CASE("a restart continues in its own folder, and spares others") {
   ScratchDirectory scratch;
   fs::create_directory(scratch / "other");
   for (const char* name : {"history.h5", "checkpoint.h5", "checkpoint_end.h5", "other/checkpoint.h5"})

@@ -57,7 +57,7 @@ TEST_CASE("the run record holds what was run and with what") {
   CHECK(text.find("\"first\"") < text.find("\"second\""));
 }
 
-TEST_CASE("the run record is rewritten in place of the old one") {
+TEST_CASE("the run record replaces the old one") {
   ScratchDirectory scratch;
   RunRecord record;
   record.status = "running";

@@ -118,7 +118,7 @@ TEST_CASE("triangles are written once, and their corners and what acts on them a
   CHECK(file.rows("/VTKHDF/Points") == 12);
 }
 
-TEST_CASE("a restarted run goes on with the triangles that it has written, and with no others") {
+TEST_CASE("a restarted run continues with the triangles that it has written, and with no others") {
   ScratchDirectory scratch;
   const auto contents = [&] {
     const Hdf5File file(scratch / "surfaces.vtkhdf", Hdf5Access::read);
@@ -186,7 +186,7 @@ TEST_CASE("lines of changing number return as written, those of the same number 
         std::vector<Real>{0.25, 0.5, 1.25, 1.5, 2.25, 2.5, 3.25, 3.5});
 }
 
-TEST_CASE("a restarted run goes on with its lines, and with no others") {
+TEST_CASE("a restarted run continues with its lines, and with no others") {
   ScratchDirectory scratch;
   const auto contents = [&](const char* name) {
     const Hdf5File file(scratch / name, Hdf5Access::read);
@@ -222,7 +222,7 @@ TEST_CASE("a restarted run goes on with its lines, and with no others") {
   CHECK_THROWS_AS(line_writer(scratch, 5), IoError);
 }
 
-TEST_CASE("every dataset says its unit and what it is") {
+TEST_CASE("every dataset has its unit and a description") {
   ScratchDirectory scratch;
   SnapshotWriter writer(scratch.path(), {.title = "a title with an ü", .keep = 0, .triangles = kTriangles});
   write_surfaces(writer, 1);
@@ -240,7 +240,7 @@ TEST_CASE("every dataset says its unit and what it is") {
   }
 }
 
-TEST_CASE("a restarted run cuts off later snapshots and goes on") {
+TEST_CASE("a restarted run cuts off later snapshots and continues") {
   ScratchDirectory scratch;
   {
     SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});

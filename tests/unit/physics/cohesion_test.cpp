@@ -21,12 +21,12 @@ JkrPair jkr_pair(const ReferenceTable::Row& row) {
 
 }  // namespace
 
-TEST_CASE("the cube root is one to the last places") {
+TEST_CASE("the cube root is exact to the last places") {
   for (const Real x : {1e-30, 3e-7, 0.5, 1.0, 8.0, 27.0, 1e12})
     CHECK(near(cube_root(x), std::cbrt(x), {.relative = 4 * kUlp}));
 }
 
-TEST_CASE("a neck's characteristic points") {
+TEST_CASE("JKR: characteristic points") {
   const ReferenceTable table("contact/jkr_points.csv");
   for (const auto& row : table.rows()) {
     const JkrPair law = jkr_pair(row);
@@ -45,7 +45,7 @@ TEST_CASE("a neck's characteristic points") {
   }
 }
 
-TEST_CASE("a neck's curve: radius, force, stiffness, energy") {
+TEST_CASE("JKR: contact radius, force, stiffness, energy") {
   const ReferenceTable points("contact/jkr_points.csv"), table("contact/jkr_curve.csv");
   for (const auto& row : table.rows()) {
     const auto& head = points.rows().at(row.word("set") == "a" ? 0 : 1);
@@ -64,7 +64,7 @@ TEST_CASE("a neck's curve: radius, force, stiffness, energy") {
   }
 }
 
-TEST_CASE("a neck is made at touch and holds beyond it until it breaks") {
+TEST_CASE("JKR: the contact forms at touch and persists under tension until it breaks") {
   const ContactLaw<JkrLaw> law{{1e7, 0, 0.05}};
   static_assert(decltype(law)::kHistory == 1);
   const PairSize size{1e-4, kInfinity, 2e-9, kInfinity};
@@ -87,7 +87,7 @@ TEST_CASE("a neck is made at touch and holds beyond it until it breaks") {
   CHECK_FALSE(at(-1.001 * reach, true).history.touched);
 }
 
-TEST_CASE("a pull on top of another law, with and without range") {
+TEST_CASE("an attractive force on top of another law, with and without range") {
   const PairSize size{2, 2, 1, 1};
   const auto near_only = AttractedLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 4, 0}.of_pair(size);
   CHECK(near_only.elastic(0.5) == 100 * 0.5 - (3 + 4));
@@ -109,7 +109,7 @@ TEST_CASE("a pull on top of another law, with and without range") {
   CHECK(near(law.load({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
 }
 
-TEST_CASE("a pull without memory is a law of the instant, in double and single, and of implicit steps") {
+TEST_CASE("an attractive force without history is a law of the instant, in double and single, and of implicit steps") {
   const ContactLaw<AttractedLaw<HertzLaw>> law{{HertzLaw(100, 0.1, true), 0.5, 2, 0}};
   static_assert(!decltype(law)::kMoves);
   const PairSize size{2, 2, 1, 1};

@@ -76,7 +76,7 @@ bool holds(const BookedLaw& law, Real overlap, Real rate) {
 
 }  // namespace
 
-TEST_CASE("what a contact dissipates over a step is the law's loss along its way") {
+TEST_CASE("the dissipation of a contact over a step is the law's loss along its path") {
   for (const BookedLaw& law : kLaws) {
     for_each_step([&](const ContactStep& c) {
       CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
@@ -131,7 +131,7 @@ TEST_CASE("the integrator does nothing to an undamped linear contact that opens 
   }
 }
 
-TEST_CASE("a pair of materials without stiffness and damping has nothing in the books") {
+TEST_CASE("a pair of materials without stiffness and damping dissipates nothing") {
   for (const bool tension : {false, true})
     for_each_step([&](const ContactStep& c) {
       const ContactBooks books = contact_books(LinearLaw(0, 0, tension), c, 0);

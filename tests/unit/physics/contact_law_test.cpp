@@ -80,7 +80,7 @@ TEST_CASE("stiffness and damping are the derivatives of the force") {
     }
 }
 
-TEST_CASE("the force pulls only with tension, and only where damping wins") {
+TEST_CASE("the force is tensile only without limit_damping, and only where damping exceeds the spring") {
   for (const LawCase& c : kLaws)
     for (const Real rate : kRates) {
       CAPTURE(c.name, rate);
@@ -91,7 +91,7 @@ TEST_CASE("the force pulls only with tension, and only where damping wins") {
     }
 }
 
-TEST_CASE("what the law takes out is the work that the elastic force does not do") {
+TEST_CASE("the law's dissipation is the work beyond that of the elastic force") {
   for (const LawCase& c : kLaws)
     for (const Real rate : kRates) {
       CAPTURE(c.name, rate);

@@ -74,7 +74,7 @@ TEST_CASE("the power of force and torques is that of the spring over the slip") 
   }
 }
 
-TEST_CASE("what is remembered keeps its length, and its part along the normal") {
+TEST_CASE("a transported history keeps its length, and its part along the normal") {
   RandomNumbers random;
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, 0.05, false);
@@ -90,7 +90,7 @@ TEST_CASE("what is remembered keeps its length, and its part along the normal") 
   }
 }
 
-TEST_CASE("a pair that turns as one body takes its spring with it, to second order") {
+TEST_CASE("a pair that rotates rigidly takes its spring along, to second order") {
   const ReferenceTable table("contact/spring_turned_rigidly.csv");
   for (const auto& row : table.rows()) {
     const Vec3 omega = vector(row, "Om"), n = vector(row, "n"), xi = vector(row, "xi");
@@ -116,7 +116,7 @@ TEST_CASE("a pair that turns as one body takes its spring with it, to second ord
   }
 }
 
-TEST_CASE("a sphere that turns with the face it lies on keeps its spring, and does not slip") {
+TEST_CASE("a sphere that rotates with the face it lies on keeps its spring, and does not slip") {
   const Vec3 omega{0.4, -1.1, 0.7};
   const Real radius = 0.02;
   const auto error_after = [&](int steps) {

@@ -121,7 +121,7 @@ TEST_CASE("over a step Hertz's force is continuous at touch, and its work is tha
   }
 }
 
-TEST_CASE("what a Hertz contact dissipates over a straight step is its loss along the way") {
+TEST_CASE("the dissipation of a Hertz contact over a straight step is its loss along the path") {
   for (const auto& law : kLaws)
     for (const Real overlap0 : {-kReach, 0.0, 0.2 * kReach, kReach})
       for (const Real overlap1 : {-kReach, 0.0, 0.3 * kReach, kReach}) {

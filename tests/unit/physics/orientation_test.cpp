@@ -22,7 +22,7 @@ Real difference(Quaternion a, const Quaternion& b) {
 
 }  // namespace
 
-TEST_CASE("a quaternion turns vectors, and products turn one after the other") {
+TEST_CASE("a quaternion rotates vectors, and products rotate one after the other") {
   const Real half = std::sqrt(0.5);
   const Quaternion about_z{half, 0, 0, half}, about_x{half, half, 0, 0};  // by 90 degrees
   CHECK(near(turned(about_z, {1, 0, 0}), Vec3{0, 1, 0}, {.absolute = kRoundOff}));
@@ -30,7 +30,7 @@ TEST_CASE("a quaternion turns vectors, and products turn one after the other") {
   CHECK(turned({}, {1, 2, 3}) == Vec3{1, 2, 3});
 }
 
-TEST_CASE("an orientation follows a turning angular velocity to second order, at length 1") {
+TEST_CASE("an orientation follows a rotating angular velocity to second order, at length 1") {
   const ReferenceTable table("contact/orientation.csv");
   for (const auto& row : table.rows()) {
     const Real b = row["b"], c = row["c"], t = row["t"];

@@ -31,7 +31,7 @@ Real twist_of(Vec3 moment, const ContactMotion& c) { return dot(moment, c.normal
 
 }  // namespace
 
-TEST_CASE("what a law remembers, and in which order it is written") {
+TEST_CASE("the history of a law, and its order in files") {
   static_assert(ContactLaw<LinearLaw>::kHistory == 0 && !ContactLaw<LinearLaw>::kMoves);
   static_assert(ContactLaw<LinearLaw, LinearSlider>::kHistory == 3);
   static_assert(ContactLaw<LinearLaw, Frictionless, Roll>::kHistory == 3);
@@ -129,7 +129,7 @@ TEST_CASE("viscous rolling: a moment against the rolling rate that takes its pow
   }
 }
 
-TEST_CASE("a contact that begins within a step slips over its share of the step") {
+TEST_CASE("a contact that begins within a step slips over its part of the step") {
   RandomNumbers random;
   RandomContact c = contact_of(random, 1e-3, false);
   c.history = {};

@@ -77,7 +77,7 @@ TEST_CASE("half a box is a box and its other half") {
   check_near(whole.inertia, {13, 0, 0, 10, 0, 5});
 }
 
-TEST_CASE("a turned tensor") {
+TEST_CASE("a rotated tensor") {
   // By a quarter turn about z, x goes to y; products change with it.
   const Mat3 quarter = rotation_matrix(exponential({0, 0, kPi / 2}));
   check_near(turned_tensor(quarter, {1, 2, 3, 4, 5, 6}), {4, -2, -5, 1, 3, 6});

@@ -38,7 +38,7 @@ TEST_CASE("shortened: no longer than the limit, in the same direction") {
   CHECK(shortened({1e-150, 0, 0}, 0) == Vec3{});
 }
 
-TEST_CASE("what acts stays within the limit, and what is remembered, too") {
+TEST_CASE("force and history stay within the limit") {
   RandomNumbers random;
   for (int k = 0; k < kCases; ++k) {
     const RandomStep s = random_step(random);

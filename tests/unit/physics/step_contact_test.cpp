@@ -124,7 +124,7 @@ TEST_CASE("the force is continuous where a pulling contact releases at the end o
   }
 }
 
-TEST_CASE("the force is continuous where a contact that only pushes lets go") {
+TEST_CASE("the force is continuous where a contact without tension releases") {
   for (const StepLaw& law : kLaws) {
     if (law.law.tension) continue;
     for (const Real overlap1 : {0.3 * kReach, 0.0, -0.2 * kReach}) {
@@ -168,7 +168,7 @@ TEST_CASE("without damping, the step's work is the change of the elastic energy"
 
 // On a sphere between the faces of a plate the nearer face acts: the contact with one ends at the overlap at
 // which that with the other begins. The last two do not move along their normals while they act.
-TEST_CASE("contacts that change over do the work of their elastic energies, and what they damp is booked") {
+TEST_CASE("contacts that change over do the work of their elastic energies, and their dissipation is accounted for") {
   struct Change {
     Real gone0, gone1, come0, come1;  // overlaps
   };
@@ -213,7 +213,7 @@ TEST_CASE("derivatives of the step's force are not negative and exact") {
   }
 }
 
-TEST_CASE("a pair of materials without stiffness and damping feels nothing") {
+TEST_CASE("a pair of materials without stiffness and damping has no force") {
   for (const bool tension : {false, true}) {
     const KelvinVoigt nothing{0, 0, 1, tension};
     for (const ContactStep& c : {kTouching[0], kReleasing[0], step_between(kReach, 0.5 * kReach, 0.1)}) {

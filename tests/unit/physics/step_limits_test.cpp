@@ -94,7 +94,7 @@ ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 
 
 }  // namespace
 
-TEST_CASE("the highest modes of the densest lattices of particles that rub") {
+TEST_CASE("the highest modes of the densest lattices of particles with friction") {
   constexpr Real kSmall = 1e-6, kNearly = 5e-3;  // the overlap's share, and the way's
   for (const int dimension : {2, 3})
     for (const Real slip : {0.0, 0.2, 0.8}) {
@@ -132,7 +132,7 @@ TEST_CASE("steps of particles that rotate are stable below their limit and not a
              {.relative = kRoundOff}));
 }
 
-TEST_CASE("what friction adds to the stiffness of contacts") {
+TEST_CASE("the stiffness that friction adds to contacts") {
   constexpr Real kSphere = 0.4, kDisc = 0.5;  // I / (m R^2)
   CHECK(near(wall_rubbing_frequency(7, 2, 1, kSphere), std::sqrt(7), {.relative = kRoundOff}));
   CHECK(near(wall_rubbing_frequency(1, 1, 1, kSphere), std::sqrt(3.5), {.relative = kRoundOff}));

@@ -37,7 +37,7 @@ StepSpring step_of(const RandomStep& s) { return step_spring(s.slider, s.old, s.
 
 }  // namespace
 
-TEST_CASE("over an implicit step no spring with slider gives energy, and the books close") {
+TEST_CASE("over an implicit step no spring with slider gives energy, and the energy balance closes") {
   RandomNumbers random;
   int slid = 0;
   for (int k = 0; k < kCases; ++k) {
@@ -56,7 +56,7 @@ TEST_CASE("over an implicit step no spring with slider gives energy, and the boo
   CHECK((slid > kCases / 10 && slid < 9 * kCases / 10));
 }
 
-TEST_CASE("while it sticks the dashpot alone takes energy") {
+TEST_CASE("while a spring with slider sticks, the dashpot alone dissipates") {
   const StepSpring out = step_spring({2, 2, 0.3, 100}, {1, 0, 0}, {0.1, 0.2, 0}, 0.5, 100);
   CHECK(near(out.losses.sum(), 0.3 * 0.05 / 0.5, {.relative = kRoundOff}));
   CHECK(near(out.mean, Vec3{1 + 0.1 + 0.06, 0.2 + 0.12, 0}, {.relative = kRoundOff}));
@@ -135,7 +135,7 @@ TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones 
   CHECK(another > 5e-3 * exact);
 }
 
-TEST_CASE("while it sticks steps of half the size halve the error twice") {
+TEST_CASE("while a spring with slider sticks, steps of half the size quarter the error") {
   // A way that swings: T = sin(t) from 0 to 2, stiffness 1.
   const auto error = [](int steps) {
     const Real h = 2.0 / steps;

@@ -48,7 +48,7 @@ TEST_CASE("a step rises smoothly from one value to the other, and is constant be
   }
 }
 
-TEST_CASE("an eased ramp is at rest, speeds up smoothly, and goes on at its rate") {
+TEST_CASE("an eased ramp is constant, speeds up smoothly, and continues at its rate") {
   const auto f = [](Real t) { return eased_ramp_function(2, -3, 0.5, 0.75, t); };
   for (const Real t : {-1.0, 0.0, 0.5}) {
     CHECK(f(t).value == 2);

@@ -132,7 +132,7 @@ TEST_CASE("a trial impact on a plane finds the exact rebound, with friction") {
   }
 }
 
-TEST_CASE("a trial impact of two spheres, damped after Hertz; what sticks does not rebound") {
+TEST_CASE("a trial impact of two spheres, damped after Hertz; spheres that stick do not rebound") {
   const PairSize size{0.01, 0.02, 0.1, 0.8};
   const TrialImpact impact{size, size.effective_mass(), 4e-6, 1.3e-4, 1, 0};
   const Real touch = 1e-3;

@@ -35,7 +35,7 @@ Ledger moving(Real kinetic) {
 
 }  // namespace
 
-TEST_CASE("a run warns of more than 1 % of the energy exchanged, taken or given, booked or not") {
+TEST_CASE("a run warns of more than 1 % of the energy exchanged, taken or given, accounted for or not") {
   const Model hht = model_with(ParticleIntegrator::hht, StepControl::fixed);
   for (const Real sign : {1, -1}) {
     CHECK(balance_warning(balance_of(sign * 9.9, 0), {}, hht).empty());
@@ -45,7 +45,7 @@ TEST_CASE("a run warns of more than 1 % of the energy exchanged, taken or given,
   }
 }
 
-TEST_CASE("what was taken out of bodies that exchange little counts from 1 % of what they hold on") {
+TEST_CASE("losses of bodies that exchange little count from 1 % of their energy on") {
   const Model hht = model_with(ParticleIntegrator::hht, StepControl::fixed);
   for (const Real sign : {1, -1}) {
     CHECK(balance_warning(balance_of(sign * 49, 0), {5000, sign * 49, 0}, hht).empty());
@@ -65,7 +65,7 @@ TEST_CASE("in explicit steps the particles' entry of the integrator is a functio
   CHECK_FALSE(balance_warning(balance_of(51, 0), {5000, 51, 0}, verlet).empty());  // bodies' steps are HHT's
 }
 
-TEST_CASE("the warning says how much, of how much, and what fits the run") {
+TEST_CASE("the warning has the amount, its reference, and the remedy for the run") {
   const auto text = [](ParticleIntegrator particles, StepControl control, Real taken, Real missed) {
     return balance_warning(balance_of(taken, missed), {}, model_with(particles, control));
   };
@@ -81,7 +81,7 @@ TEST_CASE("the warning says how much, of how much, and what fits the run") {
   CHECK(!contains(verlet, "adaptive"));
 }
 
-TEST_CASE("explicit steps whose impacts are right are told from steps that are too long") {
+TEST_CASE("explicit steps with accurate impacts are distinguished from steps that are too long") {
   const std::string deck = kSmallDeck + R"(
 [integrator]
 particles = "velocity-verlet"
@@ -176,7 +176,7 @@ TEST_CASE("rows of the history do not change what was exchanged") {
   CHECK(exchanged == std::set<Real>{9});
 }
 
-TEST_CASE("with another deck the balance goes on from its last row, and what was exchanged stays") {
+TEST_CASE("with another deck the balance continues from its last row, and the energy exchanged stays") {
   BalanceState balance;
   const auto row = [&](Real kinetic) { add_row(balance, moving(kinetic), extremes_at(kinetic, 0, {}), {}); };
   row(40), row(39);

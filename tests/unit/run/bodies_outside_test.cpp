@@ -6,7 +6,7 @@
 
 namespace scree {
 
-TEST_CASE("bodies are outside where their centres are, beyond walls and open sides alike") {
+TEST_CASE("bodies are outside where their centres are, beyond walls and open sides") {
   const Model model = model_of(kSmallDeck + R"([[bodies]]
 name = "row"
 count = 4

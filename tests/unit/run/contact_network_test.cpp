@@ -103,7 +103,7 @@ TEST_CASE("lines of contacts add up to forces on particles and walls, and each c
 }
 
 TEST_CASE(
-    "lines of contacts that rub, roll and stick have the springs that these remember, and move nothing") {
+    "lines of frictional, rolling and adhesive contacts have their springs, and move nothing") {
   for (const RubbingKind& kind : kRubbingKinds)
     for (const BoxCase& c : kRubbingBoxes) {
       CAPTURE(kind.name, c.name);
@@ -125,7 +125,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("columns of contacts say what is at the end of each line") {
+TEST_CASE("columns of contacts identify the end of each line") {
   LoadedBox box(rubbing(random_box(kRubbingBoxes[5], 150, 17)), 0.2);
   Model& model = box.model;
   model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, 0});

@@ -57,7 +57,7 @@ std::string refusal(const State& state) {
 
 }  // namespace
 
-TEST_CASE("what contacts remember goes through a file bit for bit") {
+TEST_CASE("contact histories pass through a file bit for bit") {
   for (const int numbers : {1, 3, 4, 7}) {
     CAPTURE(numbers);
     const State state = remembering_state(numbers);
@@ -79,7 +79,7 @@ TEST_CASE("what contacts remember goes through a file bit for bit") {
   }
 }
 
-TEST_CASE("a checkpoint has rows of contacts only where these remember") {
+TEST_CASE("a checkpoint has rows of contacts only with a law with history") {
   const State state = remembering_state(0);
   for (const auto& [name, rows] : pack(state).real_rows) CHECK_FALSE(contains(name, "contacts"));
   for (const auto& [name, rows] : pack(state).integer_rows) CHECK_FALSE(contains(name, "contacts"));
@@ -107,7 +107,7 @@ TEST_CASE("a checkpoint has rows of contacts only where these remember") {
   CHECK(contains(trouble(partial), "is not known"));
 }
 
-TEST_CASE("the hash is of everything that contacts remember, and of nothing where they do not") {
+TEST_CASE("the hash covers contact histories, and nothing else where there are none") {
   const State state = remembering_state(7);
   const std::uint64_t hash = state_hash(state, true);
   for (std::size_t k = 0; k < state.contacts.keys.size(); ++k) {
@@ -163,7 +163,7 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
   CHECK(contains(unpacked("contacts/partner", -1), "image of a contact is not valid"));
 }
 
-TEST_CASE("what contacts with walls remember can be left out") {
+TEST_CASE("the histories of contacts with walls can be left out") {
   KeptContacts all;
   all.numbers = 1;
   const Real values[] = {1, 2, 3};

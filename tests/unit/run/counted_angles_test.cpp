@@ -43,7 +43,7 @@ struct Case : RestartCase {
 
 }  // namespace
 
-TEST_CASE("a checkpoint without counted angles goes on, and counts from its pose") {
+TEST_CASE("a restart without counted angles continues, and counts from its pose") {
   const ScratchDirectory folder;
   Case old;
   REQUIRE(old.run(folder.path()) == "");

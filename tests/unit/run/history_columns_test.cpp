@@ -187,7 +187,7 @@ TEST_CASE("runs whose particles rotate have columns of that, beside all others")
   CHECK(found == expected);
 }
 
-TEST_CASE("runs whose contacts attract have a column of what that holds") {
+TEST_CASE("runs with cohesion have a column of its energy") {
   Model model = recorded_model();
   HistorySample sample = distinct_sample();
   sample.particles.cohesion = -71;

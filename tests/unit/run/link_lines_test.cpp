@@ -88,7 +88,7 @@ free_angle = 0.5
   CHECK(near(shown.at.length[0], 0.5, {.relative = 1e-14}));
 }
 
-TEST_CASE("the line of a cylinder has its tension, which the history knows as a reaction") {
+TEST_CASE("the line of a cylinder has its tension, which is a reaction in the history") {
   for (const Real force : {25.0, -25.0}) {
     Shown shown(kSmallDeck + body("one", "[0.3, 0.4]") + body("two", "[0.3, 0.9]") +
                 R"([[spring_dampers]]

@@ -118,7 +118,7 @@ TEST_CASE("in 2D a segment has its load and its wear per length, however large t
   }
 }
 
-TEST_CASE("a snapshot has the works and the wear that the deck asks for, where something touches") {
+TEST_CASE("a snapshot has the dissipated work and the wear that the deck asks for, where there are contacts") {
   const Model model = model_of(kBall);
   SimulationRun run(model);
   run.run();

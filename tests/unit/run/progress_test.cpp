@@ -7,7 +7,7 @@
 
 namespace scree {
 
-TEST_CASE("durations are told in the two units that matter") {
+TEST_CASE("durations are given in the two largest units") {
   CHECK(duration_text(0) == "0 s");
   CHECK(duration_text(59.4) == "59 s");
   CHECK(duration_text(59.6) == "1 min 00 s");
@@ -19,7 +19,7 @@ TEST_CASE("durations are told in the two units that matter") {
   CHECK(duration_text(INFINITY) == "?");
 }
 
-TEST_CASE("the progress line has all that a run knows of itself, and no more") {
+TEST_CASE("the progress line has all known quantities, and no others") {
   Progress p;
   p.time = 0.25, p.end = 1, p.steps = 1000, p.step = 2.5e-4;
   CHECK(progress_line(p) == "t = 0.25 of 1 s (25 %), ? left, 1000 steps, h = 2.50e-04 s, ?, balance -");

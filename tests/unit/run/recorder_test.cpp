@@ -251,7 +251,7 @@ TEST_CASE("late and immediate snapshots give the same files") {
 }
 
 // Two balls on a body that turns, whose frame is beside its centre of mass, and one that touches nothing.
-TEST_CASE("shapes and centre of a spatial body stand in its frame, which the snapshots hold") {
+TEST_CASE("shapes and centre of a spatial body are fixed in its frame, which snapshots store") {
   Recording<CpuBackend> run(R"(
 [space]
 dimension = 3
@@ -317,7 +317,7 @@ shapes = [{ radius = 0.1 }, { radius = 0.07, offset = [0.0, 0.0, 2.0], collides 
 }
 
 // A ball lies on a box that a body carries up, off the box's edges and diagonals; another one beside it.
-TEST_CASE("what presses on a mesh is told triangle by triangle, where they are") {
+TEST_CASE("pressure on a mesh is stored per triangle, at its position") {
   Recording<CpuBackend> run(R"(
 [space]
 dimension = 3

@@ -256,7 +256,7 @@ TEST_CASE("a checkpoint file with flipped bits never leads to another state") {
   }
 }
 
-TEST_CASE("a refused restart names the keys that differ, a corrected title goes on") {
+TEST_CASE("a refused restart names the keys that differ, a corrected title is accepted") {
   const ScratchDirectory folder;
   Case other({"time.step=5e-4", "contact.pairs.0.damping=2.0", "bodies.arm.mass=1.5"});
   const std::string message = other.run(folder.path(), written().path);
@@ -268,7 +268,7 @@ TEST_CASE("a refused restart names the keys that differ, a corrected title goes 
   CHECK(contains(corrected.run(folder.path(), written().path), "applied_forces.push.fx.times"));
 }
 
-TEST_CASE("a table that is another one only after the checkpoint's time goes on bit for bit") {
+TEST_CASE("a table that differs only after the checkpoint's time continues bit for bit") {
   const ScratchDirectory whole, parts;
   const std::vector<std::string> later = {"time.end=0.04", "title=longer", "output.snapshot_interval=0.02",
                                           kLongerTable};
@@ -285,7 +285,7 @@ TEST_CASE("a table that is another one only after the checkpoint's time goes on 
         }()) == "");
 }
 
-TEST_CASE("--allow-changes goes on with other steps, forces and integrators, and says so") {
+TEST_CASE("--allow-changes continues with other steps, forces and integrators, and reports them") {
   const ScratchDirectory folder;
   const std::vector<std::vector<std::string>> changes = {
       {"time.step=5e-4"},
@@ -315,7 +315,7 @@ TEST_CASE("--allow-changes goes on with other steps, forces and integrators, and
 }
 
 TEST_CASE(
-    "a restart goes on with the checkpoint's radii and masses, one with another deck with that deck's") {
+    "a restart continues with the checkpoint's radii and masses, with another deck with that deck's") {
   const std::vector<std::string> spread = {
       "particles.discs.radius={ kind = \"uniform\", min = 0.09, max = 0.11 }",
       "particles.discs.mass={ kind = \"uniform\", min = 1.0, max = 2.0 }"};
@@ -345,7 +345,7 @@ TEST_CASE(
     CHECK(same_bits(rows_in(folder / "other/checkpoint_end.h5", name), rows_in(start, name)));
 }
 
-TEST_CASE("--allow-changes does not go on where the checkpoint's numbers have no meaning") {
+TEST_CASE("--allow-changes refuses decks for which the checkpoint's numbers have no meaning") {
   const ScratchDirectory folder;
   const auto message = [&](const std::vector<std::string>& overrides) {
     return Case(overrides).run(folder.path(), written().path, true);

@@ -82,7 +82,7 @@ TEST_CASE("the state returns from its packed form bit for bit") {
   CHECK(differing_arrays(pack(state), pack(returned)) == "");
 }
 
-TEST_CASE("what a checkpoint holds is the state") {
+TEST_CASE("a checkpoint contains the state") {
   const State before = awkward_state();
   const State after = unpack(pack(before));
   CHECK(same_bits(after.clock.time, before.clock.time));
@@ -112,7 +112,7 @@ TEST_CASE("the hash is of what was computed, not of what was written") {
   CHECK(state_hash(other, true) != state_hash(state, true));
 }
 
-TEST_CASE("works of triangles are hashed where there are some, and else no part of a checkpoint") {
+TEST_CASE("works of triangles are hashed where there are some, and are otherwise no part of a checkpoint") {
   const State state = awkward_state();
   State other = state;
   ++other.works[7];
@@ -122,7 +122,7 @@ TEST_CASE("works of triangles are hashed where there are some, and else no part 
   CHECK(unpack(pack(other)).works.empty());
 }
 
-TEST_CASE("what shapes' contacts remember and have lost is hashed where there is some, and else not stored") {
+TEST_CASE("histories and losses of shapes' contacts are hashed where there are some, and otherwise not stored") {
   const State state = awkward_state();
   State other = state;
   other.shape_contacts.values[4] += 1;
@@ -154,7 +154,7 @@ TEST_CASE("the hash is of every field that changes in time, and of no other") {
   });
 }
 
-TEST_CASE("angles of joints in space stand by themselves in a checkpoint, and their turns in the hash") {
+TEST_CASE("angles of spatial joints have a dataset of their own, and their revolutions are hashed") {
   State state = awkward_state();
   const State without = state;
   state.bodies.counted_angles = 2;

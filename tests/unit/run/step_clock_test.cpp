@@ -213,7 +213,7 @@ TEST_CASE("a step cut short to land on an output time does not make the next one
         0.3);  // the last stretch is halved, not crumbled
 }
 
-TEST_CASE("a step that cannot be shortened says why, when and which key") {
+TEST_CASE("a step that cannot be shortened fails with the reason, the time and the key") {
   for (const StepControl control : {StepControl::fixed, StepControl::adaptive}) {
     const Model model = timed_model(1, 0.25, control);
     StepClock clock(model);
@@ -235,7 +235,7 @@ TEST_CASE("an error that is not a number shortens the step like the largest erro
   CHECK(near(clock.begin_step(), 0.1, {.relative = kRoundOff}));
 }
 
-TEST_CASE("a clock made from a state goes on where it stood") {
+TEST_CASE("a clock made from a state continues from there") {
   for (const StepControl control : {StepControl::fixed, StepControl::adaptive}) {
     Model model = timed_model(1, 0.01, control);
     model.output.history_interval = 0.1 / 3;

@@ -186,7 +186,7 @@ TEST_CASE(
   CHECK(batches(false, 0.24).size() == 20000);
 }
 
-TEST_CASE("the loop pauses after the step that reaches a time, and goes on from there") {
+TEST_CASE("the loop pauses after the step that reaches a time, and continues from there") {
   SlowRun whole(false, 1e-6), parts(false, 1e-6);
   CHECK(whole.loop->run() == LoopEnd::done);
   for (const Real until : {5e-5, 0.1, 0.1 + 1e-9, 0.5}) {

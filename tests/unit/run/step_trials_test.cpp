@@ -72,7 +72,7 @@ std::vector<StepTrial> trials_of(const std::vector<std::string>& overrides = {})
 
 }  // namespace
 
-TEST_CASE("every pair of materials that can meet is tried, of its lightest partners") {
+TEST_CASE("trial impacts are made for every pair of materials with possible contacts, with its lightest partners") {
   const std::vector<StepTrial> trials = trials_of();
   REQUIRE(trials.size() == 4);  // the one heavy particle does not meet another
   const Real step = 0.5 * std::numbers::pi * std::sqrt(0.1 / 1e5);  // half of light's contact with the floor

@@ -52,7 +52,7 @@ TEST_CASE("shapes beyond open sides are warned of, those in periodic space and i
 }
 
 TEST_CASE(
-    "walls of triangles that reach beyond an open side on their way are warned of, however often they turn") {
+    "walls of triangles whose motion crosses an open side are warned of, whatever their rotation") {
   const std::string line = "meshes=[{name='line',kind='line',points=[[-0.1,0.0],[0.1,0.0]]}]";
   for (const char* frequency : {"0.75", "3", "50", "100", "400"}) {
     CAPTURE(frequency);

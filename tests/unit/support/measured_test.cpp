@@ -19,7 +19,7 @@ TEST_CASE("numbers may reach their bounds, and NaN is within none") {
     CHECK_FALSE(none);
 }
 
-TEST_CASE("errors are kept with the promise, differences with the bound that was given") {
+TEST_CASE("errors are recorded with the promise, differences with the bound given") {
   const Bounded kept = bounded(keeps(-2e-5, {.promise = 1e-3, .measured = 1e-5}));
   CHECK(kept.value == 2e-5);
   CHECK(kept.at_most == 1e-3);

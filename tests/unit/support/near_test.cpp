@@ -66,7 +66,7 @@ TEST_CASE("vectors are as near as their difference is short") {
   CHECK_FALSE(near(Vec3{0, 5, 0}, Vec3{3, 4, 0}, {.relative = 0.63}));
 }
 
-TEST_CASE("what is not near is told with all digits, the distance and the bounds") {
+TEST_CASE("values that are not near are reported with all digits, the distance and the bounds") {
   CHECK(
       text(near(0.1, 0.2, {.relative = 0.25, .absolute = 1e-3})) ==
       "0.10000000000000001, expected 0.20000000000000001: 0.1 apart, 0.5 of it; allowed: 0.001, 0.25 of it");

@@ -44,7 +44,7 @@ const ContactOutcome& contact_of(const Pack<Law>& pack, const ReferenceTable::Ro
 
 }  // namespace
 
-TEST_CASE("six spheres in a zigzag between rough walls: forces, places and rotations at rest") {
+TEST_CASE("six spheres in a zigzag between rough walls: static forces, positions and rotations") {
   const ReferenceTable contacts("contact/zigzag_contacts.csv"), spheres("contact/zigzag_spheres.csv");
   constexpr Real h = 2e-5, kDrag = 0.9;  // [s], per step
   Pack<Law> pack = zigzag(h);

@@ -57,7 +57,7 @@ void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {
 
 }  // namespace
 
-TEST_CASE("impacts of surfaces that form a neck: what rebounds and what sticks") {
+TEST_CASE("JKR impacts: rebound and sticking") {
   const ReferenceTable table("contact/jkr_impact.csv");
   NeckErrors coarse, fine;
   for (const auto& row : table.rows()) {
@@ -73,7 +73,7 @@ TEST_CASE("impacts of surfaces that form a neck: what rebounds and what sticks")
   CHECK(order_between(coarse.energy, fine.energy) > 0.9);
 }
 
-TEST_CASE("a pull after Derjaguin, Muller and Toporov: nothing is lost where it appears and ends") {
+TEST_CASE("DMT attraction: nothing is dissipated where it appears and ends") {
   const ReferenceTable table("contact/dmt.csv");
   const auto errors_at = [&](Real parts) {
     NeckErrors errors;

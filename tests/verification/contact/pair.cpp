@@ -121,7 +121,7 @@ struct OtherSide {
 
 }  // namespace
 
-TEST_CASE("both sides of a pair keep mirrored springs to the last bit, and its books close") {
+TEST_CASE("both sides of a pair keep mirrored springs to the last bit, and its energy balance closes") {
   const ReferenceTable table("contact/pair_oblique_3d.csv");
   const auto books_at = [&](Real parts) {
     Errors books;

@@ -155,7 +155,7 @@ void check(const Recorded& found, Vec3 force, Real torque, Real contacts) {
 
 }  // namespace
 
-TEST_CASE("a column at rest presses on the wall with its weight") {
+TEST_CASE("a static column presses on the wall with its weight") {
   for (const std::string& integrator : kIntegrators) {
     CAPTURE(integrator);
     SimulationRun run(model_of(kColumn, {integrator}));
@@ -167,7 +167,7 @@ TEST_CASE("a column at rest presses on the wall with its weight") {
   }
 }
 
-TEST_CASE("bodies at rest carry what lies on them, and press on walls with both weights") {
+TEST_CASE("static bodies carry the particles on them, and press on walls with both weights") {
   for (const std::string& integrator : kIntegrators) {
     CAPTURE(integrator);
     SimulationRun run(model_of(kBodies, {integrator}));
@@ -190,7 +190,7 @@ TEST_CASE("bodies at rest carry what lies on them, and press on walls with both 
   }
 }
 
-TEST_CASE("what lies on each mesh of a body is told from what lies on the others") {
+TEST_CASE("the contacts of each mesh of a body are counted separately") {
   for (const std::string& integrator : kIntegrators) {
     CAPTURE(integrator);
     SimulationRun run(model_of(kTrays, {integrator}));

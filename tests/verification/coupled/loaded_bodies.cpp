@@ -115,7 +115,7 @@ constexpr const char* kHinge =
 }  // namespace
 
 // With the force at the predicted position alone the first, the third and the fifth of these are thrown off.
-TEST_CASE("grains in a light bin weigh what they weigh at its hinge") {
+TEST_CASE("particles in a light bin have their weight at its revolute joint") {
   for (const Load& load : {Load{"40 grains of 0.5 kg", kHinge, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
                            Load{"40 grains that rub", kHinge, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
                            Load{"40 grains of 10 kg", kHinge, 40, 3, 0.015, 10, 0.3, 1.2e-4, 1, 2},

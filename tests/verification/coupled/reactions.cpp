@@ -134,7 +134,7 @@ TEST_CASE("reactions in the plane do not see that an impact elsewhere changes th
     CHECK(measured("reactions/driven", "", at_most(found.share(), 1e-12)));
 }
 
-TEST_CASE("nor do reactions in space, those that redundant hinges share included") {
+TEST_CASE("nor do spatial reactions, minimum-norm ones of redundant revolute joints included") {
   const Model model = model_of(spatial_deck());
   SimulationRun run(model);
   Largest multipliers, top, hinges;

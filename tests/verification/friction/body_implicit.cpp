@@ -49,7 +49,7 @@ TEST_CASE("in implicit steps a free body's disc and a particle part as two parti
 }
 
 // The impulse of a step is the same for both; where it acts moves within a step.
-TEST_CASE("in implicit steps a particle and a body that it rubs keep what they have together") {
+TEST_CASE("in implicit steps a particle and a body with friction conserve their momenta") {
   for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}})
     for (const Real phase : {0.0, 0.25, 0.5, 0.75}) {
       CAPTURE(offset.x, phase);

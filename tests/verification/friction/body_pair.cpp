@@ -47,7 +47,7 @@ TEST_CASE("a free body's disc and a particle part as two particles do, to the or
 }
 
 // A step of the particles sees the body where it was predicted, the next one begins at its corrected place.
-TEST_CASE("a particle and a free body that it rubs keep their momentum and angular momentum to that order") {
+TEST_CASE("a particle and a free body with friction keep momentum and angular momentum to the method's order") {
   for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}})
     for (const int substeps : {1, 5}) {
       CAPTURE(offset.x, substeps);
@@ -77,7 +77,7 @@ TEST_CASE("a particle and a free body that it rubs keep their momentum and angul
 }
 
 // Both go through the side while they touch.
-TEST_CASE("a particle rubs on a body across a periodic side as in open space") {
+TEST_CASE("friction on a body across a periodic side is that in an open domain") {
   Meeting meeting{2,
                   {.position = {1.6, 0.1499, 0},
                    .velocity = {2.5, -0.2, 0},

@@ -62,7 +62,7 @@ Real changes(const ParticleLedger& now, const ParticleLedger& start) {
 
 }  // namespace
 
-TEST_CASE("a free cluster that rubs keeps its momentum and its angular momentum with spins") {
+TEST_CASE("a free cluster with friction keeps its momentum and its angular momentum with spins") {
   for (const auto& [materials, law] :
        {std::pair{std::string(), kLinear + "damping = 20.0\ntangential_damping_ratio = 0.2"},
         {kSoft, std::string("restitution = 0.6\nfriction = 0.5\ntangential_damping_ratio = 0.1")}}) {
@@ -84,7 +84,7 @@ TEST_CASE("a free cluster that rubs keeps its momentum and its angular momentum 
   }
 }
 
-TEST_CASE("the energies of a rubbing gas balance") {
+TEST_CASE("the energies of a gas with friction balance") {
   std::vector<std::string> settings;
   const auto error_at = [&](Real step, const std::string& materials, const std::string& law) {
     SimulationRun run(model_of(cloud_deck(true, step, materials, law), settings));
@@ -121,7 +121,7 @@ TEST_CASE("the energies of a rubbing gas balance") {
 }
 
 // They take along what the springs of their contacts hold, and nothing goes on to push or turn what stays.
-TEST_CASE("particles that leave while they rub take their energy along: the balance stays of second order") {
+TEST_CASE("particles that escape in frictional contact take their energy along: the balance stays of second order") {
   const std::string deck = R"(
 gravity = [0.0, 0.0, -9.81]
 [space]

@@ -82,7 +82,7 @@ ImpactErrors neck_errors(const std::string& more, Real parts, bool pair) {
 
 }  // namespace
 
-TEST_CASE("spheres with a neck rebound from a wall and from each other, or stick") {
+TEST_CASE("spheres with JKR contacts rebound from a wall and from each other, or stick") {
   for (const bool pair : {false, true})
     for (const std::string more : {"", "friction = 0.5\nrolling_friction = 0.1\n"}) {
       const ImpactErrors coarse = neck_errors(more, 200, pair), fine = neck_errors(more, 400, pair);
@@ -94,7 +94,7 @@ TEST_CASE("spheres with a neck rebound from a wall and from each other, or stick
 }
 
 // What a contact made and broken takes: 7.0922 (w^5 R*^4 / E*^2)^(1/3), whatever the path is.
-TEST_CASE("the ledger books what making a neck loses, and its energy is negative while it holds") {
+TEST_CASE("the ledger has the formation dissipation of JKR contacts, and their energy is negative while they last") {
   const ReferenceTable table("contact/jkr_points.csv");
   for (const auto& row : table.rows()) {
     const Real v = 2 * row["v_stick"], R = row["R_star"], h = std::abs(row["d_sep"]) / v / 50;
@@ -121,7 +121,7 @@ TEST_CASE("the ledger books what making a neck loses, and its energy is negative
 }
 
 // On a wall and between two, with a slide and spins; the energy of the springs does not leave the books.
-TEST_CASE("a neck that breaks loses what its springs hold") {
+TEST_CASE("a JKR contact that breaks dissipates the energy of its springs") {
   const ReferenceTable table("contact/jkr_impact.csv");
   const auto& row = table.rows()[2];
   REQUIRE((row["z"] == 0 && row["e"] > 0.8));
@@ -153,7 +153,7 @@ TEST_CASE("a neck that breaks loses what its springs hold") {
   }
 }
 
-TEST_CASE("a contact that is there at the start has the energy of its neck to lose") {
+TEST_CASE("a JKR contact that exists at the start has its full energy") {
   const ReferenceTable table("contact/jkr_points.csv");
   const auto& row = table.rows()[0];
   const Real R = row["R_star"], period = 1e-2 * row["d_F0"] / row["v_stick"];
@@ -173,7 +173,7 @@ TEST_CASE("a contact that is there at the start has the energy of its neck to lo
 }
 
 // Of two spheres at rest, or of one and a wall, before any step.
-TEST_CASE("the ledger tells what a pull adds to the elastic energy, touching and beyond") {
+TEST_CASE("the ledger has the cohesive part of the elastic energy, in touch and beyond") {
   constexpr Real R = 0.01, pull = 1, range = 1e-3, stiffness = 1e5;
   for (const std::string more : {"", "friction = 0.5\n"})
     for (const bool pair : {false, true})
@@ -197,7 +197,7 @@ TEST_CASE("the ledger tells what a pull adds to the elastic energy, touching and
       }
 }
 
-TEST_CASE("of a neck's energy all is cohesion but what the overlap has by Hertz's law") {
+TEST_CASE("the energy of a JKR contact beyond Hertz's energy of its overlap is cohesion") {
   const ReferenceTable table("contact/jkr_points.csv");
   const auto& row = table.rows()[0];
   const Real R = row["R_star"], step = 1e-3 * row["d_F0"] / row["v_stick"];
@@ -229,7 +229,7 @@ TEST_CASE("of a neck's energy all is cohesion but what the overlap has by Hertz'
   CHECK(lowest < -1.5 * row["W_stick"]);
 }
 
-TEST_CASE("DMT: spheres rebound from each other as they came, and rest where their pull is carried") {
+TEST_CASE("DMT: spheres rebound without loss, and rest where the spring carries the attraction") {
   const ReferenceTable table("contact/dmt.csv");
   for (const auto& row : table.rows())
     for (const std::string more : {"", "friction = 0.5\n"}) {
@@ -241,7 +241,7 @@ TEST_CASE("DMT: spheres rebound from each other as they came, and rest where the
     }
 }
 
-TEST_CASE("an attraction with a range holds two spheres that are apart, up to its energy") {
+TEST_CASE("an attraction with a range holds two separated spheres, up to its energy") {
   // A = 1 N over 1 mm: 0.5 mJ beyond touch; two spheres of 0.1 kg, m* = 0.05 kg.
   const Real R = 0.01, escape = std::sqrt(2 * 0.5e-3 / 0.05);
   for (const std::string more : {"", "friction = 0.5\n"})
@@ -265,7 +265,7 @@ TEST_CASE("an attraction with a range holds two spheres that are apart, up to it
     }
 }
 
-TEST_CASE("friction of a contact that is pulled apart holds up to mu times its load and twice the pull-off") {
+TEST_CASE("friction of a contact under tension holds up to mu times its load and twice the pull-off force") {
   // A sphere that hangs from a wall by its neck, drawn along it by gravity: JKR's limit is mu (F + 2 F_c).
   const ReferenceTable table("contact/jkr_points.csv");
   const auto& row = table.rows()[0];

@@ -166,7 +166,7 @@ std::map<std::pair<GlobalId, GlobalId>, Vec3> springs_by_pair(const State& state
 }  // namespace
 
 // Round-off alone tells the two apart, until collisions have made it grow.
-TEST_CASE("the springs of a gas in a periodic box are the same when all of it flies") {
+TEST_CASE("the springs of a gas in a periodic box are the same under a uniform velocity") {
   for (const std::vector<std::string>& method : {std::vector<std::string>{}, implicit_steps(0)}) {
     CAPTURE(method.empty());
     SimulationRun resting(gas({}, method)), flying(gas({7, -5, 3}, method));
@@ -185,7 +185,7 @@ TEST_CASE("the springs of a gas in a periodic box are the same when all of it fl
   }
 }
 
-TEST_CASE("a clump that flies keeps its springs as one at rest does") {
+TEST_CASE("a translating clump keeps its springs as a static one does") {
   for (const Sticking& law : sticking_laws()) {
     CAPTURE(law.name);
     const Model model = clump(law);
@@ -202,7 +202,7 @@ TEST_CASE("a clump that flies keeps its springs as one at rest does") {
 // Held together against m omega^2 r: the springs change by what that load takes, which is four times as much
 // at twice the rate; what is left without it is the order of the method. Springs that stayed where they were
 // would be wrong by more than their own length.
-TEST_CASE("a clump that turns as one body turns its springs with it") {
+TEST_CASE("a clump that rotates rigidly rotates its springs with it") {
   const Vec3 axis = (1 / std::sqrt(Real(14))) * Vec3{1, -2, 3};
   for (const Sticking& law : sticking_laws()) {
     CAPTURE(law.name);

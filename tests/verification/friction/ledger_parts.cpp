@@ -104,7 +104,7 @@ Vec3 orbital(const std::vector<Particle>& particles) {
 
 }  // namespace
 
-TEST_CASE("what the ledger says of rotation and springs is what a count of them gives, and adds up") {
+TEST_CASE("the ledger's parts of rotation and springs are those counted one by one, and add up") {
   SimulationRun run(box(kRubbing, kTurning));
   Parts largest;
   for (int part = 0; part < 40; ++part) {
@@ -128,7 +128,7 @@ TEST_CASE("what the ledger says of rotation and springs is what a count of them 
   CHECK(largest.rolling > 1e-3);
 }
 
-TEST_CASE("what rubs and rolls in springs is dissipated or comes back: the energies balance") {
+TEST_CASE("energy of frictional and rolling springs is dissipated or returned: the energies balance") {
   const auto error_at = [](const std::string& step) {
     SimulationRun run(box(kRubbing, kTurning, {"time.step=" + step}));
     run.run();
@@ -141,7 +141,7 @@ TEST_CASE("what rubs and rolls in springs is dissipated or comes back: the energ
   CHECK(coarse > 4 * fine);
 }
 
-TEST_CASE("a free collision turns orbital momentum into spins, and the ledger's angular momentum has both") {
+TEST_CASE("a free collision converts orbital momentum into spins, and the ledger's angular momentum has both") {
   Grain i{.velocity = {1, 0.5, 0}, .spin = {5, -20, 30}, .radius = 0.02, .mass = 0.1};
   Grain j{.velocity = {-1, 0, 0.3}, .spin = {-10, 0, 8}, .radius = 0.03, .mass = 0.2};
   i.position = {-0.03, 0, 0}, j.position = {0.021, 0.005, 0.01};

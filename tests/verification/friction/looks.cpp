@@ -43,7 +43,7 @@ void for_each_box(const Check& check) {
 
 }  // namespace
 
-TEST_CASE("looks at the bodies after a step and in reports leave what contacts remember as it was") {
+TEST_CASE("queries of the bodies after a step and in reports do not change contact histories") {
   for_each_box([](const Model& model) {
     RememberingBox one(model, {}, make_test_backend), looked_at(model, {}, make_test_backend);
     for (RememberingBox* box : {&one, &looked_at}) box->start(), box->take_steps(60);
@@ -55,7 +55,7 @@ TEST_CASE("looks at the bodies after a step and in reports leave what contacts r
   });
 }
 
-TEST_CASE("contacts remember a step to the bodies' corrected place as if they had gone there at once") {
+TEST_CASE("contact histories of a step to the bodies' corrected pose are those of a direct step") {
   for_each_box([](const Model& model) {
     RememberingBox at_once(model, {}, make_test_backend), corrected(model, {}, make_test_backend);
     for (RememberingBox* box : {&at_once, &corrected}) box->start(), box->take_steps(60);

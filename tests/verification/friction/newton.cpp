@@ -67,7 +67,7 @@ Real per_step(std::int64_t count, const StepCounts& counts) {
 
 }  // namespace
 
-TEST_CASE("Newton iterations of a pack that rubs") {
+TEST_CASE("Newton iterations of a pack with friction") {
   struct Expected {
     Real sharpness, slick, rubbing;  // iterations per step, without friction and with it
     bool freezes;
@@ -94,7 +94,7 @@ TEST_CASE("Newton iterations of a pack that rubs") {
 }
 
 // What flies off has ever smaller accelerations, at last beyond the range of single precision.
-TEST_CASE("a sphere that has rubbed on a wall and flies off asks for few products") {
+TEST_CASE("a sphere that rebounds from a wall with friction needs few products") {
   SimulationRun run(model_of(R"(
 [space]
 dimension = 3

@@ -246,7 +246,7 @@ TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whet
   CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-3, .measured = 7.4e-5}));
 }
 
-TEST_CASE("a wheel that turns under a disc feels the torque of the friction, and its motor does that work") {
+TEST_CASE("the friction of a disc brakes a wheel that rotates under it, and the wheel's motor does that work") {
   constexpr Real kTurn = -50;
   const char* integrator = GENERATE("explicit", "implicit");
   CAPTURE(integrator);
@@ -265,7 +265,7 @@ TEST_CASE("a wheel that turns under a disc feels the torque of the friction, and
   CHECK(near(ledger.rotation.losses.of[kFrictionLoss], ledger.contact_loss, {.relative = 1e-2}));
 }
 
-TEST_CASE("a disc that is held by friction on a body that turns stays where it is, with its springs") {
+TEST_CASE("a disc held by friction on a rotating body stays in place, with its springs") {
   const int dimension = GENERATE(2, 3);
   const char* integrator = GENERATE("explicit", "implicit");
   CAPTURE(dimension, integrator);

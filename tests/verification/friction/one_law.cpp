@@ -83,7 +83,7 @@ TEST_CASE("with a dashpot of friction rebounds from a wall are those of explicit
 
 // Right: 0.482 of the speed along the floor is left where the spring slides back at its limit, with any ratio
 // whose dashpot has nothing to act on in between.
-TEST_CASE("a ball that meets a rough floor at 60 degrees keeps the same speed along it in all steps") {
+TEST_CASE("a ball that hits a rough floor at 60 degrees keeps the same speed along it in all steps") {
   const Real tangent = std::sqrt(Real(3));
   for (const auto& [ratio, kept] : {std::pair{0.1, 0.482}, {0.3, 0.482}, {1.0, 0.485}}) {
     CAPTURE(ratio);
@@ -104,7 +104,7 @@ TEST_CASE("a ball that meets a rough floor at 60 degrees keeps the same speed al
 }
 
 // Unlike partners, spins that turn against each other; a body instead of the second particle.
-TEST_CASE("with a dashpot of friction pairs part alike in explicit and implicit steps, and on bodies") {
+TEST_CASE("with a frictional dashpot pairs separate alike in explicit and implicit steps, and on bodies") {
   for (const int dimension : {2, 3})
     for (const Real ratio : {0.1, 1.0})
       for (const Vec3 along : {Vec3{-3, -9, 0}, Vec3{-6, -8, 0}, Vec3{-8, -3, 0}}) {

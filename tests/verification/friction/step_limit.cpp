@@ -74,7 +74,7 @@ Real growth(Model model, Real step) {
 
 }  // namespace
 
-TEST_CASE("a dense lattice that rubs is stable up to the step that is said, and not beyond") {
+TEST_CASE("a dense lattice with friction is stable up to the stated step, and not beyond") {
   for (const Real damping_ratio : {0.0, 0.3}) {
     CAPTURE(damping_ratio);
     const Model model = model_of(lattice_deck(kStiffness, damping_ratio, 1e-5, 1));

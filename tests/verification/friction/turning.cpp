@@ -39,7 +39,7 @@ Real misturn(const Quaternion& q, Vec3 spin, Real t) {
 }  // namespace
 
 // A step turns by 2 atan(h w / 2) or the like: (h w)^3 / 48 too little, of second order over a time.
-TEST_CASE("free spheres keep their spins, and their orientations turn with them to second order") {
+TEST_CASE("free spheres keep their spins, and their orientations follow them to second order") {
   Errors errors[2];
   for (int fine = 0; fine < 2; ++fine) {
     const Real h = fine == 0 ? 2e-4 : 1e-4;

@@ -128,7 +128,7 @@ Momenta momenta_of(const SimulationRun& run, const TwoMeet& meeting) {
 
 }  // namespace
 
-TEST_CASE("in implicit steps two bodies that rub on each other part as two particles do") {
+TEST_CASE("in implicit steps two bodies with friction separate as two particles do") {
   for (const std::string& law : {kUndamped, kStuck, kDamped})
     for (const Real steps : {20, 4}) {
       CAPTURE(law, steps);
@@ -167,7 +167,7 @@ TEST_CASE("in implicit steps two spheres of bodies part as two particles do, to 
 
 // Bodies are integrated by HHT, the particles by leapfrog.
 TEST_CASE(
-    "in explicit steps two bodies that rub on each other part as two particles do, to the method's order") {
+    "in explicit steps two bodies with friction separate as two particles do, to the method's order") {
   for (const int dimension : {2, 3})
     for (const std::string& law : {kUndamped, kStuck}) {
       CAPTURE(dimension, law);
@@ -194,8 +194,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "two bodies that rub on each other keep their momentum, and their angular momentum to the method's "
-    "order") {
+    "two bodies with friction keep their momentum, and their angular momentum to the method's order") {
   for (const std::string& integrator : {kExplicit, kImplicit})
     for (const int dimension : {2, 3})
       for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}}) {

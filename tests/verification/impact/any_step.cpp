@@ -159,7 +159,7 @@ TEST_CASE("adaptive steps keep any impact") {
 }
 
 // What input/choosing.md says of coarse steps is what they do: neither more nor less.
-TEST_CASE("steps of about a contact time err as input/choosing.md says") {
+TEST_CASE("steps of about a contact time have the errors stated in input/choosing.md") {
   constexpr Real kDigits = 0.05;  // of two digits, and of another number of phases
   struct Claim {
     Impact impact;
@@ -215,7 +215,7 @@ TEST_CASE("the table of impacts at any step", "[.][table]") {
 }
 
 // The same table: errors of impacts add up.
-TEST_CASE("what an undamped gas gains in 1,000 steps of a third of the contact time", "[.][table]") {
+TEST_CASE("energy gain of an undamped gas in 1,000 steps of a third of the contact time", "[.][table]") {
   for (const auto& [exponent, stiffness] : {std::pair{"1.0", "2.5e4"}, std::pair{"1.5", "1.1e6"}}) {
     for (const std::string alpha : {"0.0", "-0.05"}) {
       const Model model = input_model(

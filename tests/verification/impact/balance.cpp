@@ -173,7 +173,7 @@ TEST_CASE("two particles that leave together take their contact along once, and 
     }
 }
 
-TEST_CASE("what leaves a hopper leaves the books balanced") {
+TEST_CASE("particles that escape from a hopper leave the energies balanced") {
   for (const std::string policy : {"remove", "drift"}) {
     const Outcome hht = outcome_of(kHopper, {"space.leaving=" + policy, "contact.pairs.0.damping=20.0"});
     CAPTURE(policy, hht.balance, hht.exchanged);
@@ -191,7 +191,7 @@ TEST_CASE("what leaves a hopper leaves the books balanced") {
   }
 }
 
-TEST_CASE("what implicit steps do to oblique impacts is the integrator's") {
+TEST_CASE("the energy error of oblique impacts in implicit steps is accounted to the integrator") {
   for (const Overrides& way : kImplicitWays)
     for (const std::string step : {"3e-4", "1e-3"}) {
       CAPTURE(text(way), step);
@@ -205,7 +205,7 @@ TEST_CASE("what implicit steps do to oblique impacts is the integrator's") {
     }
 }
 
-TEST_CASE("what implicit steps do to a gas of another exponent is the integrator's") {
+TEST_CASE("the energy error of a gas of another exponent in implicit steps is accounted to the integrator") {
   for (const std::string tension : {"false", "true"}) {
     const Outcome run = outcome_of(kGas, {"contact.pairs.0.exponent=1.5", "contact.pairs.0.stiffness=1e7",
                                           "contact.pairs.0.tension=" + tension, "integrator.hht_alpha=0.0"});
@@ -265,7 +265,7 @@ shapes = [{ radius = 0.05 }]
 
 // Shapes of bodies meet each other and a wall; their centres are the bodies', so that the bodies' own books
 // have the same work. The bodies' Newton loop ends at its tolerances, not at round-off.
-TEST_CASE("the contacts of bodies' shapes are booked like those of particles") {
+TEST_CASE("the dissipation of bodies' shapes is accounted for like that of particles") {
   const std::string body = R"(
 [[bodies]]
 name = "{}"

@@ -192,7 +192,7 @@ TEST_CASE("adaptive steps keep the restitution of Hertz impacts, at any speed") 
 }
 
 // Spheres in a box, in steps of about a third of a contact.
-TEST_CASE("the books of a Hertz gas close to round-off, and its dampers never give energy") {
+TEST_CASE("the energy balance of a Hertz gas closes to round-off, and its dampers never give energy") {
   constexpr Real kRoundOff = 1e-12;  // of the energy exchanged
   const std::string deck = R"(
 [space]

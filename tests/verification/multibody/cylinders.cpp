@@ -75,7 +75,7 @@ struct Lift {
 
 }  // namespace
 
-TEST_CASE("a cylinder that wants a length holds a boom, shorter by the load over its gain") {
+TEST_CASE("a cylinder with a prescribed length holds a boom, shorter by the load over its gain") {
   for (const bool spatial : {false, true}) {
     INFO("spatial " << spatial);
     Lift lift(boom(spatial, kServo));
@@ -94,7 +94,7 @@ TEST_CASE("a cylinder that wants a length holds a boom, shorter by the load over
   }
 }
 
-TEST_CASE("a cylinder that wants a speed lifts a boom with it, up to its stop, and its limit presses there") {
+TEST_CASE("a cylinder with a prescribed speed lifts a boom up to its limit, and presses there with its force limit") {
   for (const bool spatial : {false, true}) {
     INFO("spatial " << spatial);
     Lift lift(boom(spatial, kPump));
@@ -127,7 +127,7 @@ TEST_CASE("a cylinder whose limit is too small sinks onto its stop") {
   }
 }
 
-TEST_CASE("cylinders in the plane and in space move alike") {
+TEST_CASE("cylinders in the plane and in space have the same motion") {
   Lift planar(boom(false, kPump)), spatial(boom(true, kPump));
   planar.steps(400, 2e-3), spatial.steps(400, 2e-3);
   CHECK(near(planar.angle(), spatial.angle(), {.absolute = 1e-6}));

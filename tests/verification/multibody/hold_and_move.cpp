@@ -116,7 +116,7 @@ TEST_CASE("a crank that holds and then moves follows its driver, and the driver'
   }
 }
 
-TEST_CASE("the same table on the natural spline begins with the crank turning backwards") {
+TEST_CASE("the same table on the natural spline begins with a backward rotation of the crank") {
   petsc();
   const Model model = slider_crank(table(Interpolation::natural), -0.05);
   const Multibody multibody(model);

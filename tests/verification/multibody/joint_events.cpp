@@ -102,7 +102,7 @@ void check_orders(const Model& model, int coordinate, Real coarse, Real end, Rea
 
 }  // namespace
 
-TEST_CASE("a motor that its limit lets go within a step turns as far as the closed form says") {
+TEST_CASE("a motor that leaves its limit within a step rotates by the angle of the closed form") {
   // At the limit w = 10 t until e = 0.5; then, critically damped, e = (0.5 - 5 s) exp(-10 s) at the time s.
   const Real rate = 19.877, free = (rate - 0.5) / 10, s = 2.1 - free;
   const Real exact = 5 * free * free + rate * s - 0.5 * s * std::exp(-10 * s);
@@ -117,7 +117,7 @@ TEST_CASE("a motor that its limit lets go within a step turns as far as the clos
   }
 }
 
-TEST_CASE("a servo that its limit lets go within a step turns as far as the closed form says") {
+TEST_CASE("a servo that leaves its limit within a step rotates by the angle of the closed form") {
   // At the limit w = 10 t until 0.05 (2 - 5 t^2) - 0.2 t = 0.05, at 0.2 s; then e = c - 2 follows
   // J e'' + D e' + P e = 0 from e = -1.8, e' = 2: J = 0.005, P = 0.05, D = 0.02.
   const Real end = 0.9137, s = end - 0.2, w = std::sqrt(6.0), b = (2 - 2 * 1.8) / w;
@@ -134,7 +134,7 @@ TEST_CASE("a servo that its limit lets go within a step turns as far as the clos
   }
 }
 
-TEST_CASE("a motor that its limit holds back and lets go again and again is of second order") {
+TEST_CASE("a motor that reaches and leaves its limit repeatedly is of second order") {
   for (const Real alpha : {0.0, -0.05, -0.3}) {
     INFO("alpha = " << alpha);
     Model model = wheel(alpha);
@@ -146,7 +146,7 @@ TEST_CASE("a motor that its limit holds back and lets go again and again is of s
   check_orders(model, 2, 2e-3, 2, outcome_of(model, 2, 2.5e-5, 2).position);
 }
 
-TEST_CASE("from sticking to sliding and back again and again friction is of second order") {
+TEST_CASE("friction with repeated changes between sticking and sliding is of second order") {
   struct Case {
     Real alpha, static_ratio, damping, stiffness;
   };

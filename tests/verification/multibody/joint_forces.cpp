@@ -81,7 +81,7 @@ Real rate_error(const Model& model, Real h, const Exact& exact) {
 
 }  // namespace
 
-TEST_CASE("a constant torque turns a flywheel by T t^2 / 2 J, and its work is the kinetic energy") {
+TEST_CASE("a constant torque rotates a flywheel by T t^2 / 2 J, and its work is the kinetic energy") {
   Model model = flywheel();
   model.motors = {torque_motor(0.02)};
   MultibodyRun run(model);
@@ -147,7 +147,7 @@ TEST_CASE("a speed controller takes a load without a rest of error, to second or
   CHECK(near(motor.integral_gain * run.state.memory.at(0), 0.03, {.absolute = 1e-7}));
 }
 
-TEST_CASE("the integral of a speed controller stands while the limit holds it back") {
+TEST_CASE("the integral of a speed controller is constant while the limit acts") {
   Model model = flywheel();
   Motor motor = motor_of(MotorKind::speed);
   motor.rate = constant(20), motor.gain = 0.1, motor.integral_gain = 0.5, motor.limit = 0.05;
@@ -201,7 +201,7 @@ TEST_CASE("a spring without a free coordinate has no effort at the start") {
   CHECK(run.state.acceleration == std::vector<Real>(6, 0));
 }
 
-TEST_CASE("a stop gives a slider back as the contact law says; undamped and linear at any step") {
+TEST_CASE("a limit rebounds a slider as its contact law; undamped and linear at any step") {
   struct Case {
     Real damping, exponent, steps, rebound, allowed;  // steps: of a contact
   };
@@ -234,7 +234,7 @@ TEST_CASE("a stop gives a slider back as the contact law says; undamped and line
   }
 }
 
-TEST_CASE("gears, belts, racks and differentials share torques as their ratios say") {
+TEST_CASE("gears, belts, racks and differentials distribute torques by their ratios") {
   // Two wheels: torque T on the first; a_1 = T / (J + J r^2) with c_1 + r c_2 fixed at r = ratio... of c_2 =
   // -c_1 / r.
   for (const Real ratio : {2.0, -2.0}) {
@@ -277,7 +277,7 @@ TEST_CASE("gears, belts, racks and differentials share torques as their ratios s
   CHECK(near(axle.angle(0), side / kInertia / 2, {.relative = 1e-8}));
 }
 
-TEST_CASE("the books close: to round-off on revolute joints, to second order on a slider that turns") {
+TEST_CASE("the energy balance closes: to round-off on revolute joints, to second order on a rotating slider") {
   Model model = flywheel();
   model.gravity = {0, -kGravity, 0};
   model.joints[0].point[0] = model.joints[0].point[1] = {-0.3, 0, 0};

@@ -164,7 +164,7 @@ TEST_CASE("a pin with a radius brakes its wheel by mu R times the load") {
   CHECK(near(kInertia / 2 * (400 - w * w), torque * (angle - torque / 2e3), {.relative = 1e-4}));
 }
 
-TEST_CASE("faster than the Stribeck rate friction falls from its value at rest") {
+TEST_CASE("above the Stribeck rate friction falls from its static value") {
   Model model = flywheel();
   JointFriction friction = friction_of(0.02, 0, 1e3, 0.1);
   friction.static_ratio = 1.5, friction.stribeck_rate = 0.5;
@@ -255,7 +255,7 @@ Real apart(const std::vector<Real>& a, const std::vector<Real>& b) {
 
 }  // namespace
 
-TEST_CASE("under a load that changes friction is of second order, in a slide and where it turns back") {
+TEST_CASE("friction under a changing load is of second order, in sliding and at reversal") {
   for (const Real end : {0.3, 1.2}) {  // in the first swing; after two turns
     INFO("until " << end);
     const Outcome exact = outcome_of(rubbing_pendulum(-0.1), 5e-5, end),
@@ -271,7 +271,7 @@ TEST_CASE("under a load that changes friction is of second order, in a slide and
   }
 }
 
-TEST_CASE("a crank whose joints all rub is of second order and keeps its books to round-off") {
+TEST_CASE("a crank with friction in all joints is of second order and balances its energy to round-off") {
   const Outcome exact = outcome_of(rubbing_crank(), 1e-4, 1), coarse = outcome_of(rubbing_crank(), 4e-3, 1),
                 fine = outcome_of(rubbing_crank(), 1e-3, 1);
   CHECK(apart(coarse.position, exact.position) < 2e-3);

@@ -106,7 +106,7 @@ TEST_CASE("a servo responds as mass, spring and damper do, to second order") {
   }
 }
 
-TEST_CASE("a load leaves load over gain of a servo's position, and a limit lets it go") {
+TEST_CASE("a load deflects a servo by load over gain, and beyond its limit it yields") {
   Model model = slider(-0.05);
   Motor motor = servo(200, 30);
   motor.position.value = 0.4;

@@ -10,7 +10,7 @@
 using namespace scree;
 
 // Contact j from the bottom, j = 1 .. n, bears n - j + 1 discs.
-TEST_CASE("the overlaps of a column of discs at rest bear the weight above them") {
+TEST_CASE("the overlaps of a static column of discs bear the weight above them") {
   constexpr Real kRoundOff = 1e-9;  // of overlaps of 1e-5 m: positions of 1 m carry 1e-16
   for (const std::string integrator : {"hht", "velocity-verlet"}) {
     // A residual of 1e-8 would let the column swing on by 1e-6 of its overlaps.

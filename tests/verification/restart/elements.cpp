@@ -274,7 +274,7 @@ State taken_up(const Model& model, const State& state) {
 
 }  // namespace
 
-TEST_CASE("elements of joints go on from a checkpoint at any instant bit for bit") {
+TEST_CASE("elements of joints continue from a checkpoint at any instant bit for bit") {
   for (const Case& one : cases()) {
     CAPTURE(one.name);
     const ScratchDirectory folder;
@@ -292,7 +292,7 @@ TEST_CASE("elements of joints go on from a checkpoint at any instant bit for bit
 }
 
 // So that the test above would see what a checkpoint leaves out.
-TEST_CASE("every number that elements of joints remember matters") {
+TEST_CASE("every number in the memory of joint elements matters") {
   const Model model = everything();
   std::vector<State> left;
   const State end = whole_run(model, [&](const State& state) { left.push_back(state); });

@@ -89,7 +89,7 @@ TEST_CASE("a restarted run continues bit for bit") {
   }
 }
 
-TEST_CASE("a run continues bit for bit from its start, where contacts turn spatial bodies") {
+TEST_CASE("a run continues bit for bit from its start, where contacts rotate spatial bodies") {
   for (const std::vector<std::string>& way : kWays) {
     CAPTURE(way);
     std::vector<std::string> overrides = way;

@@ -55,7 +55,7 @@ bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
 
 // 50 turns up and back, 150 of what an internal gear drives from it; left and taken up again on the way, and
 // after steps that are given up.
-TEST_CASE("an angle counts fifty turns and back, and goes on where it was left") {
+TEST_CASE("an angle counts fifty revolutions and back, and continues after a restart") {
   Model model = wheel();
   const Real amplitude = 100 * M_PI;
   model.time.end = 2;
@@ -88,7 +88,7 @@ TEST_CASE("an angle counts fifty turns and back, and goes on where it was left")
 
 // Universal joints at both ends of a shaft that is bent by beta: tan(b) = tan(a) cos(beta) for the shaft in
 // the middle; the last one turns as the first, since the arms of the middle one are in one plane.
-TEST_CASE("a double Hooke shaft turns as its closed form says") {
+TEST_CASE("a double Hooke shaft rotates by its closed form") {
   constexpr Real kBend = 0.6, kRate = 20;
   const Vec3 along{std::cos(kBend), std::sin(kBend), 0}, across{-std::sin(kBend), std::cos(kBend), 0},
       up{0, 0, 1};
@@ -130,7 +130,7 @@ TEST_CASE("a double Hooke shaft turns as its closed form says") {
 }
 
 // Frame 2 is frame 1 turned about its x by angle_1, then about its own y by angle_2, also past whole turns.
-TEST_CASE("the angles of a universal joint place its second body") {
+TEST_CASE("the angles of a universal joint determine the pose of its second body") {
   Model model = wheel(JointKind::universal);
   model.drivers = {{"roll", 0, ramp(9), JointCoordinate::angle_1},
                    {"pitch", 0, ramp(-7), JointCoordinate::angle_2}};
@@ -185,7 +185,7 @@ TEST_CASE("springs on the angles of a universal joint have their frequencies") {
 }
 
 // J c'' = min(T_limit, T_stall (1 - c' / w_free)).
-TEST_CASE("a motor on a torque-speed line with a limit turns a wheel in space") {
+TEST_CASE("a motor on a torque-speed line with a limit rotates a wheel in space") {
   constexpr Real kStall = 0.5, kFree = 80, kLimit = 0.3, kEnd = 4;
   Model model = wheel();
   Motor motor;
@@ -207,7 +207,7 @@ TEST_CASE("a motor on a torque-speed line with a limit turns a wheel in space") 
   CHECK(near(run.state.driver_work, inertia * rate * rate / 2, {.relative = 1e-4}));
 }
 
-TEST_CASE("a torsional spring turns a wheel in space through many turns and back, to second order") {
+TEST_CASE("a torsional spring rotates a wheel in space through many revolutions and back, to second order") {
   const auto error = [](Real h) {
     Model model = wheel();
     model.joint_springs = {{"spring", 0, 3, 0, 40, {}, {}}};  // free at 40 rad: swings to 80 rad

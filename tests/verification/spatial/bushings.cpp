@@ -155,7 +155,7 @@ TEST_CASE("a body on a bushing swings in six modes, those of M^-1 K") {
   }
 }
 
-TEST_CASE("turned by 2.5 rad a bushing still has the torque of its angle") {
+TEST_CASE("rotated by 2.5 rad a bushing still has the torque of its angle") {
   // About one axis the rotation vector is the angle: J angle'' = -k angle.
   Model model = spatial_model(-0.02);
   model.gravity = {};
@@ -183,7 +183,7 @@ TEST_CASE("turned by 2.5 rad a bushing still has the torque of its angle") {
   CHECK(coarse / fine < 4.3);
 }
 
-TEST_CASE("a bushing that nears half a turn ends the run with its name") {
+TEST_CASE("a bushing that nears half a revolution ends the run with its name") {
   Model model = spatial_model(-0.1);
   model.gravity = {};
   model.bodies = {spatial_body("body", 1, {0.2, 0.2, 0.2}, {0, 0, 0})};
@@ -205,7 +205,7 @@ TEST_CASE("a bushing that nears half a turn ends the run with its name") {
   CHECK(message.find("bushing 'bushing' is rotated by 2.") != std::string::npos);
 }
 
-TEST_CASE("at rest K x + preload carries the load") {
+TEST_CASE("in equilibrium K x + preload carries the load") {
   Model model = spatial_model(-0.1);
   model.bodies = {spatial_body("body", 2, {0.1, 0.2, 0.15}, {0, 0, 0})};
   Bushing bushing = bushing_between(kGround, 0, {}, {});
@@ -225,7 +225,7 @@ TEST_CASE("at rest K x + preload carries the load") {
   CHECK(near(at.force, Vec3{0, 0, 2 * 9.81}, {.absolute = 1e-6}));
 }
 
-TEST_CASE("two bodies on a bushing keep momentum and their books, and converge with second order") {
+TEST_CASE("two bodies on a bushing keep momentum and balance their energy, and converge with second order") {
   const Model model = two_free_bodies();
   struct Outcome {
     Real momentum = 0, spin = 0, energy = 0, turn = 0;

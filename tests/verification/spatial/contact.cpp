@@ -75,7 +75,7 @@ void check_same(const Outcome& one, const Outcome& other, Real bound) {
 
 }  // namespace
 
-TEST_CASE("spheres on a spatial body meet grains as those on a planar one do, in any frame") {
+TEST_CASE("spheres on a spatial body collide with particles as those on a planar one do, in any frame") {
   for (const std::string particles : {"hht", "velocity-verlet"}) {
     CAPTURE(particles);
     const Outcome planar = outcome(particles, nullptr);
@@ -87,7 +87,7 @@ TEST_CASE("spheres on a spatial body meet grains as those on a planar one do, in
   }
 }
 
-TEST_CASE("a spatial run goes on from its state with the same bits") {
+TEST_CASE("a spatial run continues from its state with the same bits") {
   const Quaternion turned = normalized({0.4, 0.5, -0.2, 0.7});
   const Model model = model_of(deck("hht", &turned));
   SimulationRun whole(model), first(model);

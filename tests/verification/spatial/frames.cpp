@@ -111,7 +111,7 @@ TEST_CASE("reactions along the axes of the joint's first marker") {
 }
 
 // A body that flips while it spins passes through w = 0 many times.
-TEST_CASE("quaternions keep their sign through all turns") {
+TEST_CASE("quaternions keep their sign through all rotations") {
   MultibodyRun run(free_body(-0.02), 1e-12);
   Quaternion before = run.multibody.motion(run.state)[0].orientation;
   int changes = 0;
@@ -190,7 +190,7 @@ TEST_CASE("a row of ten bodies on the markers of a chain moves as on points give
 }
 
 // Pendulums side by side, each on its own hinge: all as one alone.
-TEST_CASE("each body of a row hangs on its own hinge") {
+TEST_CASE("each body of a row hangs on its own revolute joint") {
   const auto pendulums = [](int count) {
     return kHead +
            fmt::format(

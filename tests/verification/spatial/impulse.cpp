@@ -98,13 +98,13 @@ void check_converges(const std::string& hinge, const Motion& exact) {
 
 }  // namespace
 
-TEST_CASE("the impulse of a grain on a free body in space") {
+TEST_CASE("the impulse of a particle on a free body in space") {
   const Vec3 push = transposed_times(rotation_matrix(kPose), -kAway);
   const Vec3 turned = inverse(kInertia) * cross(kOffset, push);
   check_converges("", closed_form(turned, (1 / kBodyMass) * push));
 }
 
-TEST_CASE("the impulse of a grain on a body that hangs on a ball joint") {
+TEST_CASE("the impulse of a particle on a body that hangs on a spherical joint") {
   const Vec3 push = transposed_times(rotation_matrix(kPose), -kAway);
   const Vec3 centre = -kHinge;  // from the joint
   Sym3 about_joint = kInertia;
@@ -118,7 +118,7 @@ TEST_CASE("the impulse of a grain on a body that hangs on a ball joint") {
                   closed_form(turned, cross(turned, centre)));
 }
 
-TEST_CASE("the impulse of a grain on a plate that turns on a hinge") {
+TEST_CASE("the impulse of a particle on a plate on a revolute joint") {
   const Vec3 push = transposed_times(rotation_matrix(kPose), -kAway);
   const Vec3 axis = (1 / norm(Vec3{0.3, 0.9, -0.2})) * Vec3{0.3, 0.9, -0.2};  // in the body's frame
   const Vec3 centre = -kHinge, across = cross(axis, centre);

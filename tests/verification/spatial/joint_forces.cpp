@@ -65,7 +65,7 @@ TEST_CASE("a spring lets a slider down an oblique axis and takes it back, to sec
   CHECK(coarse / fine < 4.3);
 }
 
-TEST_CASE("a slider on an oblique axis rubs by the force across it: it holds, or slides with what is left") {
+TEST_CASE("friction of a slider on an oblique axis follows the force across it: it holds, or slides with the rest") {
   const Vec3 axis{1.0 / 3, -2.0 / 3, -2.0 / 3};
   Model model = spatial_model(-0.05);
   model.bodies = {spatial_body("slider", 2, {0.1, 0.2, 0.15}, {0, 0, 0})};
@@ -170,7 +170,7 @@ void check_momentum_and_books(const Model& model) {
 
 }  // namespace
 
-TEST_CASE("efforts on a joint between two bodies that fly and turn keep momentum, and their books") {
+TEST_CASE("efforts on a joint between two free rotating bodies keep momentum, and balance the energy") {
   check_momentum_and_books(pushed_pair());
   check_momentum_and_books(pushed_and_turned_pair());
 }

@@ -89,7 +89,7 @@ Braking found_stop(const Model& model, Real h) {
 
 }  // namespace
 
-TEST_CASE("a hinge that rubs brakes its wheel evenly through fourteen turns to its stop, at any step") {
+TEST_CASE("a revolute joint with friction brakes its wheel uniformly over fourteen revolutions, at any step") {
   constexpr Real kTorque = 0.1, kStop = kInertia * kRate / kTorque, kAngle = kRate * kStop / 2;
   REQUIRE(kAngle > 14 * 2 * M_PI);
   for (Model model : {dry_wheel(kTorque), heavy_wheel(kTorque)}) {
@@ -193,7 +193,7 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
 
 // J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: what friction
 // does to the motion changes the load that it follows by more than itself, as the assertion says.
-TEST_CASE("a heavy jack on a thread that locks itself rises evenly and keeps its books") {
+TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances its energy") {
   constexpr Real kLoad = 1e5, kSpindle = 0.1, kPitch = 1.6e-3, kLever = 3e-3;
   constexpr Real kTorque = 6000, kFade = 2000;  // [N m], [N m/s]
   static_assert(kLever * kLoad * kPitch > kSpindle + kLoad * kPitch * kPitch);

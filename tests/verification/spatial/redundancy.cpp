@@ -116,7 +116,7 @@ Real error_of_bars(const Model& model, int loops, Real h, Real span, Real tolera
 
 }  // namespace
 
-TEST_CASE("a four-bar with four hinges in space moves as with exact joints and has the least reactions") {
+TEST_CASE("a four-bar with four spatial revolute joints moves as with exact joints and has minimum-norm reactions") {
   Model shared = bars(1, false), exact = bars(1, true), other = bars(1, false);
   other.integrator.redundant = RedundantRows::error;  // with other joints that are exact
   other.joints[0].kind = JointKind::cylindrical, other.joints[2].kind = JointKind::spherical;
@@ -137,7 +137,7 @@ TEST_CASE("bars in a row pass their flat position on the right branch, to second
   CHECK(measured("bars/forty", "m", at_most(error_of_bars(bars(40, false), 40, 1e-3, 0.8, 1e-8), 5e-6)));
 }
 
-TEST_CASE("Bricard's linkage moves as with an exact joint, through the published places") {
+TEST_CASE("Bricard's linkage moves as with an exact joint, through the published positions") {
   check_shared(bricard(false), bricard(true), 1e-3, 0.5);
   MultibodyRun run(bricard(false), 1e-9);
   CHECK(run.multibody.redundancy().starts_with("30 rows of rank 29: joint 'hinge.0', "));
@@ -201,7 +201,7 @@ TEST_CASE("Bricard's linkage converges with second order") {
 }
 
 // The parallelogram with a third rocker of planar bodies.
-TEST_CASE("planar joints that repeat each other share as well") {
+TEST_CASE("redundant planar joints have minimum-norm reactions, too") {
   Model model = empty_model();
   model.gravity = {0, -kFall, 0};
   model.integrator.hht_alpha = -0.1;
@@ -245,7 +245,7 @@ TEST_CASE("planar joints that repeat each other share as well") {
 }
 
 // The digits of a deck leave gaps far above what rows that share yield.
-TEST_CASE("a gap that only rows that repeat each other see loads nothing") {
+TEST_CASE("a gap in redundant rows alone loads nothing") {
   Model model = bars(1, false);
   const Model exact = model;
   model.joints[3].point[0].z += 5e-10;  // along the hinge
@@ -269,7 +269,7 @@ TEST_CASE("a gap that only rows that repeat each other see loads nothing") {
   }
 }
 
-TEST_CASE("a linkage keeps its joints and its books over 100,000 steps") {
+TEST_CASE("a linkage keeps its joints closed and its energy balanced over 100,000 steps") {
   const Model model = bricard(false);
   MultibodyRun run(model, 1e-10);
   const auto balance = [&] {
@@ -291,7 +291,7 @@ TEST_CASE("a linkage keeps its joints and its books over 100,000 steps") {
   CHECK(off < 1e-12);
 }
 
-TEST_CASE("shared reactions go on from a state with the same bits") {
+TEST_CASE("minimum-norm reactions continue from a state with the same bits") {
   for (const Model& model : {bars(2, false), bars(6, false), bricard(false)}) {
     MultibodyRun whole(model), second(model);
     whole.steps(100, 1e-3);
@@ -324,7 +324,7 @@ TEST_CASE("a loop with an axis that is a little off is refused, too") {
   }
 }
 
-TEST_CASE("the refusal of a loop of hinges says what helps, and that helps") {
+TEST_CASE("the refusal of a loop of revolute joints names a remedy that works") {
   Model model = bars(1, false);
   model.integrator.redundant = RedundantRows::error;
   petsc();

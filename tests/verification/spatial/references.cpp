@@ -130,7 +130,7 @@ TEST_CASE("reactions are of second order from the first step on, without a corre
 }
 
 // Without w x w' the estimate has another sign and direction.
-TEST_CASE("the local error of a turning body is that of its first step") {
+TEST_CASE("the local error estimate of a rotating body is that of its first step") {
   constexpr Real kStep = 1e-2;
   Model model = free_body(-0.1);
   MultibodyRun coarse(model, 1e-13), fine(model, 1e-13);
@@ -146,7 +146,7 @@ TEST_CASE("the local error of a turning body is that of its first step") {
   CHECK(near(estimate, error, {.relative = 0.1}));
 }
 
-TEST_CASE("three Newton iterations solve a step of a top that turns by 0.15 rad") {
+TEST_CASE("three Newton iterations solve a step of a top that rotates by 0.15 rad") {
   MultibodyRun run(heavy_top(-0.1), 1e-10);
   run.steps(100, 1e-3);
   CHECK(run.most_iterations <= 4);

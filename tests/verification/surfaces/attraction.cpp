@@ -107,7 +107,7 @@ Pull pull_apart(const StickyDeck& deck) {
 
 }  // namespace
 
-TEST_CASE("what holds a sphere by a neck pulls it with 3/2 pi w R*, and lets go where JKR's law says") {
+TEST_CASE("JKR holds a sphere with up to 3/2 pi w R*, and breaks at the pull-off distance") {
   const std::string corner =
       fmt::format("rotation_axis = [1, -1, 0]\nrotation_angle = {:.17g}\n", std::acos(1 / std::sqrt(3.0)));
   struct Case {
@@ -149,7 +149,7 @@ TEST_CASE("what holds a sphere by a neck pulls it with 3/2 pi w R*, and lets go 
 
 // Over the inner edges of a refined face and then past the edge of the box, along which it is drawn while it
 // sinks: its distance alone says what pulls, beyond touch and round the edge.
-TEST_CASE("a neck is drawn along a face and over its edge without a jump") {
+TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
   constexpr Real kEdge = 5.0003e-4, kAcross = 1, kSinking = 5e-3;
   const auto ramp = [](const char* direction, Real rate) {
     return fmt::format(
@@ -198,7 +198,7 @@ Real impact_work(const State& state) {
 
 }  // namespace
 
-TEST_CASE("an impact loses what making a neck takes, on meshes and on free bodies, and the books close") {
+TEST_CASE("an impact loses the formation dissipation of JKR, on meshes and on free bodies, and the energy balance closes") {
   constexpr Real kMass = 1e-5, kBody = 3e-5, kSphere = 0.002;
   const auto free_body = [&](Real place, const std::string& surface) {
     return fmt::format(
@@ -253,7 +253,7 @@ TEST_CASE("an impact loses what making a neck takes, on meshes and on free bodie
   }
 }
 
-TEST_CASE("a neck that is drawn out beyond touch goes on after a restart, whatever its list covers") {
+TEST_CASE("a JKR contact under tension continues after a restart, whatever its list covers") {
   const std::string law = fmt::format(
       "work_of_adhesion = {}\nrestitution = 0.5\nfriction = 0.4\ntangential_damping_ratio = 0.1\n"
       "rolling_friction = 0.1\n",
@@ -293,7 +293,7 @@ TEST_CASE("a neck that is drawn out beyond touch goes on after a restart, whatev
   }
 }
 
-TEST_CASE("bodies meet each other and walls as where nothing attracts") {
+TEST_CASE("contacts between bodies and with walls are those without cohesion") {
   const auto ball = [](const std::string& name, const std::string& motion) {
     return "[[bodies]]\nname = \"" + name + "\"\nkind = \"spatial\"\n" + motion +
            "mass = 1e-3\ninertia_tensor = [1e-9, 1e-9, 1e-9, 0, 0, 0]\nshapes = [{ radius = 0.002, material "

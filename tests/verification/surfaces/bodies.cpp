@@ -55,7 +55,7 @@ Momenta momenta(const SimulationRun& run, const Model& model) {
 
 // A hard impact of restitution e: impulse P = (1 + e) v m*, 1/m* = 1/m + 1/M + (r x n) J^-1 (r x n).
 TEST_CASE(
-    "a block of triangles that is hit off its centre goes on as impulse says, better with stiffer contacts") {
+    "a block of triangles hit off its centre moves by the impulse, better with stiffer contacts") {
   Real errors[2];
   for (const int k : {0, 1}) {
     const Real stiffness = k == 0 ? 1e5 : 1e7;
@@ -81,7 +81,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a grain that rubs on a block of triangles and the block keep their momenta to the method's order") {
+    "a particle with friction on a block of triangles and the block keep their momenta to the method's order") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     Real drift[2];
     for (const int k : {0, 1}) {
@@ -103,7 +103,7 @@ TEST_CASE(
 }
 
 // The same block turned in space, hit along its own axes.
-TEST_CASE("a mesh that is turned and moved feels what it felt before") {
+TEST_CASE("a rotated and moved mesh has the same contact forces") {
   const Model upright = model_of(block_and_grain("velocity-verlet", 4e-5, "friction = 0.4"));
   Model turned = upright;
   const Quaternion frame = normalized({0.4, 0.5, -0.2, 0.7});

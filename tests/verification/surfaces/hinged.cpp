@@ -69,7 +69,7 @@ Rates rates_of(const SimulationRun& run, const Body& plate) {
 
 }  // namespace
 
-TEST_CASE("hinge, grain and weight are what accelerates a plate of triangles, at every step of an impact") {
+TEST_CASE("revolute joint, particle and weight alone accelerate a plate of triangles, at every step of an impact") {
   constexpr Real kBalance = 1e-12, kIterated = 1e-9;  // of the largest force
   for (const std::string method : {"velocity-verlet", "hht"})
     for (const Real alpha : {0.0, -0.05}) {
@@ -100,7 +100,7 @@ TEST_CASE("hinge, grain and weight are what accelerates a plate of triangles, at
     }
 }
 
-TEST_CASE("a hinge that is held carries a plate of triangles and the grain that has come to rest on it") {
+TEST_CASE("a held revolute joint carries a plate of triangles and the particle at rest on it") {
   constexpr Real kBalance = 1e-12, kAtRest = 1e-8;
   const std::string held =
       "[[drivers]]\nname = \"hold\"\njoint = \"hinge\"\nmotion = { kind = \"constant\", value = 0.0 }\n";

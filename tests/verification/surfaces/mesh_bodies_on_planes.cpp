@@ -130,7 +130,7 @@ TEST_CASE("corners do not roll: laws against rolling and twisting change nothing
 }
 
 // Past tan(angle) = width / height.
-TEST_CASE("a high crate on a slope stands, and tilts where the slope is steep enough") {
+TEST_CASE("a high crate on a slope is stable, and tilts where the slope is steep enough") {
   for (const std::vector<std::string>& steps : kSteps)
     for (const Real slope : {0.44, 0.53}) {
       CAPTURE(steps, slope);
@@ -153,7 +153,7 @@ TEST_CASE("a high crate on a slope stands, and tilts where the slope is steep en
 
 // The impulse at restitution 1 without friction: P = 2 v / (1/m + (r x n) J^-1 (r x n)), in the limit of a
 // stiff corner.
-TEST_CASE("a crate that falls on a corner leaves as impulse says, and keeps its energy") {
+TEST_CASE("a crate that falls on a corner rebounds by the impulse, and keeps its energy") {
   Real errors[2];
   for (const int k : {0, 1}) {
     const Real stiffness = k == 0 ? 1e6 : 1e8, step = k == 0 ? 2e-5 : 2e-6, v = 2;
@@ -282,7 +282,7 @@ TEST_CASE("a closed line comes to rest on two corners in the plane") {
   }
 }
 
-TEST_CASE("spheres of a body and corners of its mesh touch both, what is drawn does not") {
+TEST_CASE("spheres of a body and corners of its mesh have contacts, visual-only geometry has none") {
   const std::string sphere = "bodies.crate.shapes=[{radius = 0.1}]";
   for (const auto& [overrides, contacts] : std::vector<std::pair<std::vector<std::string>, Real>>{
            {{sphere}, 5}, {{sphere, "bodies.crate.meshes.0.collides=false"}, 1}, {{}, 4}}) {

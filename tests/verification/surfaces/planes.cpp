@@ -66,7 +66,7 @@ State end_of(const Model& model) {
 }  // namespace
 
 TEST_CASE(
-    "however a plane along the axes is cut into triangles, grains that rub on it keep the plane's bits") {
+    "whatever the triangulation of a plane along the axes, particles with friction have the plane's bits") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     const std::string deck = falling_grains(method);
     const State plane = end_of(model_of(deck + kPlane));
@@ -80,8 +80,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "grains that stick to a plane of triangles, or to one that is placed anew, keep the bits of one at "
-    "rest") {
+    "particles that stick to a plane of triangles, or to a moving plane, keep the bits of a static one") {
   const std::string powder =
       "[[materials]]\nname = \"powder\"\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n[[contact.pairs]]\n"
       "restitution = 0.6\n";
@@ -112,7 +111,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("grains that slide through periodic sides keep their springs on a plane that is placed anew") {
+TEST_CASE("particles that slide through periodic sides keep their springs on a moving plane") {
   const std::string slick = "[[contact.pairs]]\nstiffness = 1e4\nrestitution = 0.6\nfriction = 0.02\n";
   const std::string deck = falling_grains("velocity-verlet", slick);
   Model still = model_of(deck + kPlane + kStill);
@@ -123,7 +122,7 @@ TEST_CASE("grains that slide through periodic sides keep their springs on a plan
   CHECK(differing_arrays(pack(wrapped), pack(placed)) == "");
 }
 
-TEST_CASE("the upper side of a block keeps the plane's bits of places, velocities and spins") {
+TEST_CASE("the upper side of a block has the plane's bits of positions, velocities and spins") {
   const std::string deck = falling_grains("velocity-verlet");
   const std::string block =
       "[[meshes]]\nname = \"floor\"\nkind = \"box\"\nsize = [4.0, 4.0, 1.0]\noffset = [1.0, 1.0, "
@@ -140,7 +139,7 @@ TEST_CASE("the upper side of a block keeps the plane's bits of places, velocitie
   }
 }
 
-TEST_CASE("on a tilted plane of triangles grains go as on the analytic one") {
+TEST_CASE("on a tilted plane of triangles particles move as on the analytic one") {
   for (const Real angle : {0.1, 0.7, 2.0, 3.1}) {
     const Mat3 a = rotation_matrix(exponential(angle * (1 / std::sqrt(3.0)) * Vec3{1, -1, 1}));
     const auto text = [](Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); };

@@ -103,7 +103,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a block that has come 100 km is touched as one that has come 2 m, to the rounding of the place") {
+TEST_CASE("contacts of a block after 100 km are those after 2 m, to the rounding of the position") {
   const std::vector<Vec3> near_by = forces(spheres_where_it_comes_to({2, 0, 0}));
   for (const Vec3 force : near_by) REQUIRE(norm(force) > 0.2 * kStiffness * kRadius);
   for (const Vec3 far : {Vec3{1e5, 0, 0}, Vec3{-3e4, 8e4, 5e4}}) {

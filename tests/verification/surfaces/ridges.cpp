@@ -97,7 +97,7 @@ Carried carried_over(const Fold& fold, const std::string& method, Vec3 spring) {
 
 }  // namespace
 
-TEST_CASE("a spring goes over a fold at its length, turned into the next plane") {
+TEST_CASE("a spring crosses a fold at its length, rotated into the next plane") {
   constexpr Real kKept = 1e-12, kAcross = 1e-3, kAlong = 8e-4;  // the last two: [N]
   for (const std::string& method : kMethods)
     for (const Real degrees : kDegrees) {
@@ -115,7 +115,7 @@ TEST_CASE("a spring goes over a fold at its length, turned into the next plane")
     }
 }
 
-TEST_CASE("a sphere that slides over a fold rubs at Coulomb's limit and never past it") {
+TEST_CASE("friction of a sphere that slides over a fold is at Coulomb's limit and never beyond it") {
   constexpr Real kRoundOff = 1e-13;  // of the limit
   for (const std::string& method : kMethods)
     for (const Real degrees : kDegrees) {

@@ -103,7 +103,7 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
   }
 }
 
-TEST_CASE("a body's mesh that rubs on another body's sphere: momenta are kept, and the books close") {
+TEST_CASE("friction of a body's mesh on another body's sphere: momenta are kept, and the energy balance closes") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};
@@ -123,7 +123,7 @@ TEST_CASE("a body's mesh that rubs on another body's sphere: momenta are kept, a
   }
 }
 
-TEST_CASE("shapes meet no mesh of a body that a joint connects with theirs, and none of their own") {
+TEST_CASE("shapes have no contacts with meshes of connected bodies, nor with their own") {
   const std::string joint =
       "[[joints]]\nname = \"pin\"\ntype = \"spherical\"\nbodies = [\"sphere\", \"box\"]\npoint = [0, 0, 0]\n";
   SimulationRun run(model_of(setup("", "hht") + sphere({0, 0, 0.02}, {}) + box({0, 0, -0.05}, {}) + joint));

@@ -86,7 +86,7 @@ int contacts_past(const State& state) {
 
 }  // namespace
 
-TEST_CASE("a grain whose centre goes through a sheet is pushed back by K times its overlap") {
+TEST_CASE("a particle whose centre penetrates an open surface is pushed back by K times its overlap") {
   for (const std::string& method : kMethods)
     for (const Real friction : {0.0, 0.3}) {
       CAPTURE(method, friction);
@@ -115,7 +115,7 @@ TEST_CASE("a grain whose centre goes through a sheet is pushed back by K times i
     }
 }
 
-TEST_CASE("lists, restarts and a carrier that moves do not change on which side of a sheet a grain is") {
+TEST_CASE("lists, restarts and moving bodies do not change on which side of an open surface a particle is") {
   for (const std::string& method : kMethods)
     for (const Real friction : {0.0, 0.3}) {
       CAPTURE(method, friction);
@@ -138,7 +138,7 @@ TEST_CASE("lists, restarts and a carrier that moves do not change on which side 
 
 // They go 0.3 of their radius in a step, farther than the row of triangles of the step before reaches, and
 // touch both turns of a spiral between which they are, or folds of a zigzag of which the next row has fewer.
-TEST_CASE("what fast grains remember of a sheet does not depend on lists") {
+TEST_CASE("the history of fast particles on an open surface does not depend on lists") {
   const ScratchDirectory folder;
   const std::string file = folder.path() + "/strip.obj";
   const auto hash = [&](Real skin, Real friction) {
@@ -169,7 +169,7 @@ TEST_CASE("what fast grains remember of a sheet does not depend on lists") {
 
 // From whose point its middle is as far as the sheet reaches over a side of the space; the least motion takes
 // the point over the other side.
-TEST_CASE("a sheet that moves acts across the sides of a periodic space wherever its point is") {
+TEST_CASE("a moving open surface acts across the sides of a periodic domain wherever its point is") {
   for (const Real rate : {0.0, 1e-9, -1e-9}) {
     CAPTURE(rate);
     SimulationRun run(model_of(fmt::format(
@@ -187,7 +187,7 @@ TEST_CASE("a sheet that moves acts across the sides of a periodic space wherever
   }
 }
 
-TEST_CASE("shapes and sheets of bodies keep their sides: momentum and energy are those of a rebound") {
+TEST_CASE("shapes keep their side of open surfaces of bodies: momentum and energy are those of a rebound") {
   const std::string body =
       "[[bodies]]\nname = \"{}\"\nkind = \"spatial\"\nmass = 1.0\ninertia_tensor = [9, 9, 9, "
       "0, 0, 0]\n";
@@ -211,7 +211,7 @@ TEST_CASE("shapes and sheets of bodies keep their sides: momentum and energy are
     }
 }
 
-TEST_CASE("a grain that goes round a free edge is on the other side of the sheet then") {
+TEST_CASE("a particle that moves around a free edge is then on the other side of the open surface") {
   SheetDeck deck;
   deck.grain = "positions = [[3.4, 0.1, 1.2]]\nvelocity = [0.0, 0.0, -1.0]\n";
   deck.gravity = "[-0.3, 0.0, 0.1]";  // around the edge, and up against the sheet from below

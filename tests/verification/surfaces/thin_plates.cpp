@@ -65,7 +65,7 @@ struct Passed {
 
 // The energy of an overlap of a radius and half the plate's thickness is 9 J: at 14.6 J the sphere goes
 // through.
-TEST_CASE("a sphere goes through a thin closed plate, or is thrown back, as in fine explicit steps") {
+TEST_CASE("a sphere passes a thin closed plate, or rebounds, as in fine explicit steps") {
   for (const char* friction : {"", "friction = 0.3\ntangential_damping_ratio = 0.1\n"})
     for (const Real stiffness : {3e3, 5e3, 2e4}) {
       const PlateDeck deck{fmt::format("stiffness = {}\nrestitution = 0.9\n{}", stiffness, friction), "0.02"};

@@ -57,7 +57,7 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::vect
 
 }  // namespace
 
-TEST_CASE("the works of all triangles are what a grain that bounces, slides and rolls books itself") {
+TEST_CASE("the dissipation of all triangles is that of a particle that bounces, slides and rolls") {
   for (const Method& method : kMethods) {
     SimulationRun run(model_of(thrown_grain(0.05, "[0.9, 0.3, -0.5]"), with(method.settings, {kWears})));
     for (const Real t : {0.05, 0.11, 0.3, 0.8}) {
@@ -77,7 +77,7 @@ TEST_CASE("the works of all triangles are what a grain that bounces, slides and 
 }
 
 // In two parts, between which the run is continued from its state.
-TEST_CASE("the works of all triangles are what a body's sphere that bounces, slides and rolls loses") {
+TEST_CASE("the dissipation of all triangles is that of a body's sphere that bounces, slides and rolls") {
   for (const Method& method : kMethods) {
     CAPTURE(method.name);
     const Real inertia = 0.4 * mass() * kRadius * kRadius;
@@ -105,7 +105,7 @@ TEST_CASE("the works of all triangles are what a body's sphere that bounces, sli
 }
 
 // Books of particles that do not turn are trapezoidal: they have half of the last step's end yet to come.
-TEST_CASE("without friction the works of an impact are the grain's books and half a step's end") {
+TEST_CASE("without friction the dissipation of an impact is the particle's and that of the last half step") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     const std::string smooth =
         "gravity = [0.0, 0.0, -9.81]\n[space]\ndimension = 3\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, "
@@ -132,7 +132,7 @@ TEST_CASE("without friction the works of an impact are the grain's books and hal
 }
 
 // The height that it falls before the impact and that from which it comes back are those of the energies.
-TEST_CASE("the impact work of a dropped grain is the height that it loses") {
+TEST_CASE("the impact work of a dropped particle is the height that it loses") {
   for (const Method& method : kMethods) {
     CAPTURE(method.name);
     const Real height = 0.1;
@@ -148,7 +148,7 @@ TEST_CASE("the impact work of a dropped grain is the height that it loses") {
   }
 }
 
-TEST_CASE("a grain thrown along a floor loses a seventh of m v^2 to friction, and wears K F s") {
+TEST_CASE("a particle thrown along a floor loses a seventh of m v^2 to friction, with wear K F s") {
   const Real overlap = mass() * kGravity / kStiffness, v = 0.8;
   SimulationRun run(model_of(thrown_grain(kRadius - overlap, fmt::format("[{}, 0.0, 0.0]", v)), {kWears}));
   run.run_until(0.01);
@@ -170,7 +170,7 @@ TEST_CASE("a grain thrown along a floor loses a seventh of m v^2 to friction, an
   CHECK(near(sums_of(run.complete_state()).sliding, mass() * v * v / 7, {.relative = 2e-3}));
 }
 
-TEST_CASE("works go on after a restart with the bits of the run that was not stopped") {
+TEST_CASE("works continue after a restart with the bits of an uninterrupted run") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     const Model model = model_of(falling_grains(method) + kFloor, {kWears, "meshes.floor.refine=0.03"});
     SimulationRun whole(model), first(model);
@@ -185,7 +185,7 @@ TEST_CASE("works go on after a restart with the bits of the run that was not sto
   }
 }
 
-TEST_CASE("a floor on which nothing is asked for has no works") {
+TEST_CASE("a floor without requested fields has no works") {
   SimulationRun run(
       model_of(thrown_grain(0.05, "[0.9, 0.3, -0.5]"), {"output.surface_fields=[\"pressure\"]"}));
   run.run();

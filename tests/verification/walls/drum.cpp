@@ -41,7 +41,7 @@ WallDeck in_driven_body(const std::string& method) {
 }  // namespace
 
 TEST_CASE(
-    "a drum that turns as a wall carries a sphere as one that a driver turns, and takes the same work") {
+    "a drum rotated as a wall carries a sphere as a driven one, and takes the same work") {
   for (const std::string method : {"hht", "velocity-verlet"}) {
     CAPTURE(method);
     SimulationRun wall(in_drum(method).model()), body(in_driven_body(method).model());

@@ -56,7 +56,7 @@ WallDeck piston(const std::string& method, const std::string& wall, const std::s
 }  // namespace
 
 TEST_CASE(
-    "a sphere on a shaken floor follows the closed form at second order, and the floor's work is booked") {
+    "a sphere on a shaken floor follows the closed form at second order, and the floor's work is accounted for") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Shaken coarse = shake(method, 4e-4), fine = shake(method, 2e-4);
@@ -68,7 +68,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a piston throws a sphere that is at rest with twice its speed, and its work is the sphere's energy") {
+    "a piston accelerates a resting sphere to twice its speed, and its work is the sphere's energy") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     SimulationRun plane(piston(method, kFloor, "").model());
@@ -89,7 +89,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "motions act one after the other: a plane and a box that turn while they move carry a sphere alike") {
+    "combined motions: a plane and a box that rotate while they translate carry a sphere alike") {
   const std::string path = motions(
       "{ type = \"rotation\", axis = [0, 1, 0], point = [-1, 0, 0], angle = { kind = \"ramp\", rate = "
       "-0.4 } }, { type = \"translation\", direction = [1, 0, 0], displacement = { kind = \"sine\", "

@@ -44,7 +44,7 @@ TEST_CASE("motions of walls that mean nothing are refused, and the message names
   }
 }
 
-TEST_CASE("walls that run attract particles in explicit steps alone") {
+TEST_CASE("conveyors with cohesion are supported in explicit steps alone") {
   WallDeck deck;
   deck.grain = "positions = [[0, 0, 1]]\n", deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
   deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n";
@@ -54,7 +54,7 @@ TEST_CASE("walls that run attract particles in explicit steps alone") {
   CHECK(deck.model().attracts());
 }
 
-TEST_CASE("in 2D walls turn about z, and an axis is refused") {
+TEST_CASE("in 2D walls rotate about z, and an axis is refused") {
   const auto deck = [](const std::string& axis) {
     return "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\n[time]\nend = 1\nstep = 1e-3\n"
            "[[contact.pairs]]\nstiffness = 1e4\n[[walls]]\nname = \"plate\"\npoint = [0, 0]\nnormal = [0, "

@@ -47,7 +47,7 @@ std::string turntable() {
 // It slips for 2/7 B / (mu g). Then it rolls, with 2/7 of the belt's speed; of the belt's work, 2/7 m B^2,
 // half was rubbed away.
 TEST_CASE(
-    "a sphere laid on a conveyor's belt ends with 2/7 of its speed, rolling; the belt's work is booked") {
+    "a sphere laid on a conveyor's belt ends with 2/7 of its speed, rolling; the belt's work is accounted for") {
   for (const std::string method : {"hht", "velocity-verlet"}) {
     CAPTURE(method);
     SimulationRun run(conveyor(method, 1e-4).model(kSolved));
@@ -84,7 +84,7 @@ TEST_CASE("a belt that runs is a floor that moves without end") {
   }
 }
 
-TEST_CASE("a run that goes on from a state in the middle has the same bits where walls move and run") {
+TEST_CASE("a restarted run has the same bits with moving walls and conveyors") {
   for (const std::string method : {"hht", "velocity-verlet"}) {
     CAPTURE(method);
     WallDeck deck = conveyor(method, 1e-4);

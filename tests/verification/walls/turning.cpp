@@ -142,7 +142,7 @@ Ended end_of(const TurningDeck& deck, const std::string& method, Real step) {
 }  // namespace
 
 TEST_CASE(
-    "a ball rolls over planes, lines, meshes and edges that turn at second order, and implicit books close") {
+    "a ball rolls over rotating planes, lines, meshes and edges at second order, and implicit steps balance the energy") {
   for (const TurningDeck& deck : all_decks())
     for (const std::string& method : kMethods) {
       const Ended coarse = end_of(deck, method, 2e-4), middle = end_of(deck, method, 1e-4),

@@ -46,7 +46,7 @@ std::string swinging_line(const std::string& control, const std::string& law) {
 
 }  // namespace
 
-TEST_CASE("an impact on a free box that spins is booked to round-off, and its energy kept at second order") {
+TEST_CASE("an impact on a spinning free box is accounted for to round-off, and its energy kept at second order") {
   Real taken[2];
   for (const int fine : {0, 1}) {
     SimulationRun run(model_of(spinning_box(fine == 0 ? 5e-4 : 2.5e-4, "")));
@@ -64,7 +64,7 @@ TEST_CASE("an impact on a free box that spins is booked to round-off, and its en
   CHECK(keeps(rubbing.balance_error() / rubbing.exchanged(), {.promise = 1e-10, .measured = 1e-11}));
 }
 
-TEST_CASE("what a line that swings does to a disc is booked to round-off, in fixed and adaptive steps") {
+TEST_CASE("the work of a swinging line on a disc is accounted for to round-off, in fixed and adaptive steps") {
   for (const std::string control : {"step = 1e-3\ncontrol = \"fixed\"\n", "step = 1e-4\n"})
     for (const std::string law : {"", "friction = 0.4\ntangential_damping_ratio = 0.2\n"}) {
       CAPTURE(control, law);
