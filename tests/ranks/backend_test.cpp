@@ -17,14 +17,14 @@
 
 namespace {
 
-// What this rank has sent by MPI_Send, which is how entries are gathered on rank 0.
+// Entries sent by this rank with MPI_Send, which is how they are gathered on rank 0.
 struct Sent {
   int messages = 0, entries = 0;
 } sent;
 
 }  // namespace
 
-// MPI lets a program look at its own calls this way.
+// MPI lets a program intercept its own calls in this way.
 extern "C" int MPI_Send(const void* data, int count, MPI_Datatype type, int to, int tag,
                         MPI_Comm communicator) {
   ++sent.messages, sent.entries += count;
@@ -85,8 +85,8 @@ bool touched(const std::vector<ContactSum>& sums) {
 
 constexpr int kRow = 20, kFarBodies = 300;
 
-// A row of particles far from each other, a body that touches it beside each of the first ones, and many
-// bodies that nothing reaches.
+// A row of separate particles, a body in contact beside each of the first ones, and many bodies without
+// contacts.
 Model row_beside_bodies(int touched, ParticleIntegrator integrator) {
   constexpr Real kRadius = 0.1, kSpacing = 1;
   Model model;
@@ -133,7 +133,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       CAPTURE(c.name, static_cast<int>(integrator));
       Model model = random_box(c, kParticles, 21);
       model.integrator.particles = integrator;
-      model.parallel.imbalance = 0;                       // boxes are cut anew with every list
+      model.parallel.imbalance = 0;                       // boxes are recomputed with every list
       RankedBox many(model, world), one(model, Ranks());  // in this order: the first takes the rank's GPU
       CHECK(differing_fields(one.records(), many.records()) == "");
       for (int k = 0; k < 25; ++k) {
@@ -217,8 +217,8 @@ TEST_CASE("escaped particles in contact, and their former partners, have the bit
       }
 }
 
-// So many that each rank has particles far from its sides, whose forces a GPU computes while the ghosts come;
-// and lists that expire amid steps that have been asked for together.
+// So many that each rank has particles far from its sides, whose forces a GPU computes during the exchange
+// of ghosts; and lists that expire within a batch of steps.
 TEST_CASE("many explicit steps of many particles have the bits of one rank") {
   petsc();
   for (const BoxCase& c : {kBoxes[1], kBoxes[4]}) {
@@ -257,7 +257,7 @@ TEST_CASE("a particle that is not finite ends all ranks with the same message") 
       const std::vector<char> own(message.begin(), message.end()),
           all = Ranks::world().gather_everywhere(own);
       CHECK(std::string(all.begin(), all.end()) == of_all);
-      // All ranks came to the same end: the next collective is the same one everywhere.
+      // All ranks have reached the same point: the next collective is the same one everywhere.
       CHECK(Ranks::world().sum(std::int64_t{1}) == Ranks::world().size());
     }
 }

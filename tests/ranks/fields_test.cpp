@@ -1,4 +1,4 @@
-// Every field of the table goes with a particle that changes its rank.
+// Every field of the table migrates with its particle.
 #include "support/catch.hpp"
 #include "support/particle_bits.hpp"
 #include "unit/dem/random_box.hpp"

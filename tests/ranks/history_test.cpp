@@ -1,5 +1,5 @@
-// What contacts remember, on all ranks against one rank alone: with particles that change their rank, and
-// from a checkpoint of any number of ranks to any other. (One rank against brute force: unit/dem.)
+// Contact histories on all ranks against one rank: with migrating particles, and from a checkpoint of any
+// number of ranks to any other. (One rank against brute force: unit/dem.)
 #include "output/checkpoint.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// The state of all ranks, on each.
+// The state of all ranks, on each rank.
 State of_all(const RememberingBox& box) {
   const State own = box.in_id_order();
   State all;

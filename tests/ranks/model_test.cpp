@@ -1,4 +1,4 @@
-// A model that several ranks build together is the one that a rank builds alone, in parts.
+// A model built by several ranks is that of a single rank, in parts.
 #include <filesystem>
 #include <fstream>
 
@@ -33,7 +33,7 @@ std::string failure(const std::string& text, const std::vector<std::string>& ove
   });
 }
 
-// Every kind of group, with everything that is drawn at random.
+// Every kind of group, with every random quantity.
 const std::string kGroups = R"(
 [space]
 dimension = 3
@@ -95,7 +95,7 @@ mass = 3.0
 class GroupsDeck {
  public:
   explicit GroupsDeck(const Ranks& ranks) : text_(kGroups) {
-    const std::string csv = folder_ / "p.csv";  // each rank has one of its own
+    const std::string csv = folder_ / "p.csv";  // each rank has its own file
     std::ofstream(csv) << "x,y,z,radius\n3.5,2.0,1.0,0.1\n3.5,2.3,1.0,0.1\n# none\n3.5,2.6,1.0,0.2\n";
     text_.replace(text_.find("FOLDER"), 6, folder_.path());
     ranks.any(false);
@@ -162,9 +162,10 @@ TEST_CASE("overlaps at the start are found whichever ranks have the two, and nam
     std::string override, message;
   };
   const std::vector<Wrong> wrong = {
-      {"particles.lattice.spacing=[0.08, 0.15, 0.15]", "and particle"},  // neighbours, of the first ranks
-      {"particles.lattice.origin=[0.03, 2.5, 0.5]", "and particle"},     // with one across the periodic sides
-      {"particles.lattice.origin=[8.03, 2.5, 0.5]", "and particle"},     // two periods away
+      {"particles.lattice.spacing=[0.08, 0.15, 0.15]", "and particle"},  // neighbours, on the first ranks
+      {"particles.lattice.origin=[0.03, 2.5, 0.5]",
+       "and particle"},  // with a partner across the periodic sides
+      {"particles.lattice.origin=[8.03, 2.5, 0.5]", "and particle"},  // two periods away
       {"particles.lattice.origin=[-16.0, 2.5, 0.5]", "and particle"},
       {"particles.lattice.origin=[0.1, 0.1, 0.02]", "wall \"z_min\" overlap"},
       {"particles.lattice.origin=[0.1, 0.1, -0.02]", "particle 0 starts at"},

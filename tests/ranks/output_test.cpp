@@ -1,5 +1,5 @@
-// Files that several ranks write: the same whichever way they are written, from any number of ranks; failures
-// of one rank end all.
+// Files written by several ranks: the same for every method of writing and number of ranks; a failure of one
+// rank ends all.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@
 #include "support/shared_folder.hpp"
 #include "unit/output/scratch.hpp"
 
-// What the system call that reserves disk space returns; 0: what the system says.
+// Return value of the system call that reserves disk space; 0: the system's own.
 static int reservation_error = 0;
 
 extern "C" int fallocate(int file, int mode, off_t first, off_t count) {
@@ -41,7 +41,7 @@ Ranks world() {
   return Ranks::world();
 }
 
-// What rank `rank` of `size` has of n rows: uneven parts, the second of them empty.
+// The part of rank `rank` of `size` in n rows: uneven parts, the second of them empty.
 RowPart uneven_part(std::int64_t n, int rank, int size) {
   const auto start = [&](int r) {
     return r >= size ? n : r <= 0 ? 0 : std::max<std::int64_t>(n / 3, r > 2 ? n * r / size : 0);
@@ -90,7 +90,7 @@ bool holds_the_values(const std::string& path) {
   return right;
 }
 
-// What all ranks throw; empty if nothing. CHECKs that it is the same on all.
+// The message that all ranks throw; empty if none. CHECKs that it is the same on all.
 std::string common_failure(const Ranks& ranks, const std::function<void()>& action) {
   std::string message;
   try {
@@ -128,7 +128,7 @@ TEST_CASE("every id has one owner, and ranges cover the ids without a gap") {
 TEST_CASE("values find the ranks that write them, in the order of the ids") {
   const Ranks ranks = world();
   constexpr std::int64_t kCount = 1000;
-  // Every third particle is gone; the others are dealt out without order.
+  // Every third particle is missing; the others are distributed without order.
   std::vector<GlobalId> ids;
   for (GlobalId k = 0; k < kCount; ++k) {
     const GlobalId id = k * 617 % kCount;
@@ -219,7 +219,7 @@ TEST_CASE("snapshots of several ranks read back as those of one") {
     }
     CHECK(read_predictable_particles(folder / "particles.vtkhdf") == counts);
     CHECK(Hdf5File(folder / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 12);
-    // A restart that keeps some of them goes on on all ranks.
+    // A restart that keeps some of them continues on all ranks.
     SnapshotWriter again(folder.path(), {"title", 2, compression, ranks});
     again.append(0.5, {}, {});
     CHECK(again.snapshots() == 3);
@@ -227,8 +227,8 @@ TEST_CASE("snapshots of several ranks read back as those of one") {
   }
 }
 
-// A file that cannot grow, as on a full disk: on rank 0, on all ranks, or on all but rank 0, where it depends
-// on the MPI library which ranks write.
+// A file that cannot grow, as on a full disk: on rank 0, on all ranks, or on all but rank 0, where it
+// depends on the MPI library which ranks write.
 TEST_CASE("a write that fails on one rank fails on all, with its message, and leaves what was there") {
   const Ranks ranks = world();
   const SharedFolder folder(ranks);
@@ -260,14 +260,14 @@ TEST_CASE("a write that fails on one rank fails on all, with its message, and le
   }
 }
 
-// The disk fills up while the rows are written, which the library, MPI and the system may all keep to
-// themselves: a file that cannot grow takes the beginning of a write.
+// The disk fills up while the rows are written, which the library, MPI and the system may all fail to
+// report: a file that cannot grow takes the beginning of a write.
 TEST_CASE("rows that only partly get to the disk do not replace a good checkpoint") {
   const Ranks ranks = world();
   const SharedFolder folder(ranks);
   const FileSizeLimit limit;
   constexpr std::int64_t kEach = 50001;
-  const auto value = [&](std::int64_t row, std::uint64_t seed) {  // hardly to be compressed
+  const auto value = [&](std::int64_t row, std::uint64_t seed) {  // nearly incompressible
     const auto mixed = (static_cast<std::uint64_t>(ranks.rank() * kEach + row) + seed) * 0x9e3779b97f4a7c15u;
     return static_cast<std::int64_t>(mixed ^ (mixed >> 29));
   };
@@ -319,7 +319,7 @@ TEST_CASE("rows that only partly get to the disk do not replace a good checkpoin
 
 TEST_CASE("a state that no run can have written is refused on every rank") {
   const Ranks ranks = world();
-  constexpr std::int64_t kParticles = 1000;  // of which every fifth is gone
+  constexpr std::int64_t kParticles = 1000;  // of which every fifth is missing
   State good;
   good.carried_out.removed = kParticles / 5;
   const IdRange own = id_range(kParticles, ranks.rank(), ranks.size());

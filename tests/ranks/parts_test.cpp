@@ -1,4 +1,4 @@
-// The parts that several ranks work with, under mpirun with any number of ranks: collectives, boxes, halo.
+// Components used by several ranks, under mpirun with any number of ranks: collectives, boxes, halo.
 #include <cmath>
 #include <limits>
 #include <set>
@@ -37,7 +37,7 @@ struct Points {
   std::vector<std::int64_t> weight;
 };
 
-// More of them at smaller x.
+// Random points, denser at smaller x.
 Points random_points(const Space& space, int count, std::uint64_t seed) {
   RandomNumbers random(seed);
   const Subdomain subdomain(space);
@@ -55,7 +55,7 @@ Points random_points(const Space& space, int count, std::uint64_t seed) {
   return points;
 }
 
-// Every size()-th point, as if they had not found their ranks yet.
+// Every size()-th point, before the migration to their ranks.
 Points dealt(const Points& points, const Ranks& ranks) {
   Points own;
   for (std::size_t i = static_cast<std::size_t>(ranks.rank()); i < points.position.size();
@@ -167,7 +167,7 @@ TEST_CASE("as many ranks as cells are possible, more are refused on every rank")
 
 TEST_CASE("ghosts are the particles and images near the box, as brute force finds them") {
   const Ranks ranks = world();
-  using Entry = std::tuple<std::int64_t, int, Real, Real, Real, Real>;  // id, image, place, velocity
+  using Entry = std::tuple<std::int64_t, int, Real, Real, Real, Real>;  // id, image, position, velocity
   for (const int dimension : {2, 3})
     for (int periodic_axes = 0; periodic_axes <= dimension; ++periodic_axes) {
       CAPTURE(dimension, periodic_axes);
@@ -241,7 +241,7 @@ TEST_CASE("more ghosts than an Index counts are refused") {
   CHECK_THROWS_AS(plan.set_counts(0, sent), SimulationError);
 }
 
-// Takes 14 GB of memory, so that it runs only when it is asked for: mpirun -n 2 test_ranks "[large]".
+// Takes 14 GB of memory, so that it runs only on request: mpirun -n 2 test_ranks "[large]".
 TEST_CASE("a message between two ranks may be longer than 2 GiB", "[.][large]") {
   const Ranks ranks = world();
   REQUIRE(ranks.size() == 2);

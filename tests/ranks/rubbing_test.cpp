@@ -1,5 +1,5 @@
-// Particles that rub, on all ranks against one rank alone: the state and what the contacts remember, bit for
-// bit, over lists, migration and cuts.
+// Particles with friction on all ranks against one rank: state and contact histories, bit for bit, over
+// lists, migration and changes of the boxes.
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
 #include "support/particle_bits.hpp"
@@ -20,7 +20,7 @@ void check_equal(const RubbingKind& kind, const RememberingBox& one, const Remem
   CHECK(!a.contacts.keys.empty());
   const ParticleLedger p = one.backend->reports().ledger(kMovingStep),
                        q = many.backend->reports().ledger(kMovingStep);
-  if (many.ranks.is_root()) CHECK(p.rotation == q.rotation);  // the others lack what bodies have
+  if (many.ranks.is_root()) CHECK(p.rotation == q.rotation);  // the other ranks lack the data of bodies
 }
 
 }  // namespace

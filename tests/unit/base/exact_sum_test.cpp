@@ -72,7 +72,8 @@ TEST_CASE("one term is its own sum, and terms cancel") {
   }
   CHECK(sum_of({}).value() == 0);
   CHECK(sum_of({0.0, -0.0}).value() == 0);
-  CHECK(sum_of({1e300, 1.0, -1e300}).value() == 0);  // 1 is below what the sum keeps, whatever the order
+  CHECK(sum_of({1e300, 1.0, -1e300}).value() ==
+        0);  // 1 is below the resolution of the sum, whatever the order
   CHECK(sum_of({1.0, 1e300, -1e300}).value() == 0);
   CHECK(sum_of({1.0, std::numeric_limits<Real>::denorm_min()}).value() == 1);
   CHECK(sum_of({std::numeric_limits<Real>::max()}).value() == std::numeric_limits<Real>::max());

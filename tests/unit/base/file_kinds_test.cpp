@@ -1,4 +1,4 @@
-// Kinds of files by their first bytes.
+// Recognition of files by their first bytes.
 #include "base/file_kinds.hpp"
 
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
-// Sums at fixed places: the same words in any order, for any split and with carries at any time; right to
-// 2^-96 a term; a NaN where a term has no place.
+// Fixed-point sums: the same limbs in any order, for any split and with carries at any time; exact to 2^-96
+// a term; NaN for a term outside the range.
 #include "base/fixed_sum.hpp"
 
 #include <algorithm>
@@ -86,8 +86,8 @@ TEST_CASE("terms whose last bit is above the lowest limb are summed exactly, and
 
 TEST_CASE("a fixed sum past 94 bits is rounded once, to the nearest") {
   const Real large = std::ldexp(1.0, 31), small = std::ldexp(1.0, -96);
-  const Real half = std::ldexp(1.0, 31 - 53);     // of the last place
-  CHECK(sum_of({large, half}).value() == large);  // to even
+  const Real half = std::ldexp(1.0, 31 - 53);     // half of the last bit
+  CHECK(sum_of({large, half}).value() == large);  // rounded to even
   CHECK(sum_of({large, half, small}).value() == std::nextafter(large, 2 * large));
   CHECK(sum_of({-large, -half, -small}).value() == std::nextafter(-large, -2 * large));
   CHECK(sum_of({-large, -half, small}).value() == -large);

@@ -1,4 +1,4 @@
-// Free memory as /proc, control groups and limits tell it.
+// Free memory as reported by /proc, control groups and limits.
 #include "base/host_memory.hpp"
 
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-// Why a file is no input.
+// Reasons why a file is not usable as input.
 #include "base/input_file.hpp"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Warnings of one kind.
+// Suppression of repeated warnings of one kind.
 #include "base/log.hpp"
 
 #include "support/catch.hpp"

@@ -1,4 +1,4 @@
-// Text of others in messages.
+// Escaping of foreign text in messages.
 #include "base/printable.hpp"
 
 #include "support/catch.hpp"
@@ -14,9 +14,9 @@ TEST_CASE("control characters, other encodings and bidirectional controls are es
   CHECK(printable("a\nb\tc") == "a\\nb\\tc");
   CHECK(printable(std::string_view("\x1b[31m\x7f\0", 7)) == "\\x1b[31m\\x7f\\x00");
   CHECK(printable("\xe4 \xc3") == "\\xe4 \\xc3");                  // Latin-1; cut off
-  CHECK(printable("\xc0\xaf") == "\\xc0\\xaf");                    // a longer form of "/"
-  CHECK(printable("\xed\xa0\x80") == "\\xed\\xa0\\x80");           // half of a pair of UTF-16
-  CHECK(printable("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");  // past the last character
+  CHECK(printable("\xc0\xaf") == "\\xc0\\xaf");                    // an overlong encoding of "/"
+  CHECK(printable("\xed\xa0\x80") == "\\xed\\xa0\\x80");           // half of a surrogate pair
+  CHECK(printable("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");  // beyond the last code point
   CHECK(printable("\u0085\u202e\ufeff") == "\\u0085\\u202e\\ufeff");
 }
 

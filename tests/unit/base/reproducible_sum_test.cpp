@@ -57,7 +57,7 @@ TEST_CASE("a sum is exact to a quantum per term and the last rounding") {
   for (const int spread : {1, 30, 200}) {
     CAPTURE(spread);
     const std::vector<Real> terms = mixed_terms(1000, spread, random);
-    long double exact = 0;  // its own rounding: 1000 terms of at most 1 at 2^-64
+    long double exact = 0;  // rounding of the sum itself: 1000 terms of at most 1 at 2^-64
     for (const Real term : terms) exact += term;
     const Real sum = sum_of(terms);
     CHECK(std::abs(static_cast<Real>(sum - exact)) <=

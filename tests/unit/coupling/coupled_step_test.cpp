@@ -1,4 +1,5 @@
-// Steps of both sides: refused ones leave no trace, and what the neighbour list covers changes nothing.
+// Steps of bodies and particles together: rejected ones leave no trace, and the extent of the neighbour list
+// changes nothing.
 #include "coupling/coupled_step.hpp"
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ stiffness = 1e5
 damping = 30.0
 )";
 
-// Balls that stand on each other, askew.
+// A skewed stack of balls.
 const std::string kStack = R"(
 [[bodies]]
 name = "ball"
@@ -101,7 +102,7 @@ inertia_tensor = [4e-3, 4e-3, 4e-3, 0.0, 0.0, 0.0]
 shapes = [{ radius = 0.1 }]
 )";
 
-// A board of triangles alone on three balls, with grains on it.
+// A board of triangles alone on three balls, with particles on it.
 const std::string kBoard = R"(
 [[meshes]]
 name = "board"
@@ -132,7 +133,7 @@ radius = 0.05
 mass = 0.02
 )";
 
-// Both sides at the start of a run.
+// Bodies and particles at the start of a run.
 struct Coupled {
   explicit Coupled(const std::vector<std::string>& overrides = {}) {
     petsc();
@@ -154,7 +155,7 @@ struct Coupled {
   MultibodyState bodies;
 };
 
-// Names of what differs in a bit; "" if there is nothing.
+// Names of the values that differ in a bit; "" if there are none.
 std::string differing(const Coupled& a, const Coupled& b) {
   const auto packed = [](const Coupled& side) {
     State state;
@@ -197,8 +198,8 @@ TEST_CASE("a step that does not converge names the side that is at fault") {
   const std::string touching = trouble({"particles.falling.origin=[-0.03, -0.04]"});
   CAPTURE(touching);
   CHECK(contains(touching, "stage particle_correct: no convergence in 1 iterations; the largest residual, "));
-  CHECK(contains(touching, "occurs at particle 0"));
-  // The particles move on along their prediction, far from everything.
+  CHECK(contains(touching, "is that of particle 0"));
+  // The particles move along their prediction, far from everything.
   const std::string bodies =
       trouble({"gravity=[0, 0]", "particles.falling.origin=[0.5, 0.5]", "particles.falling.radius=0.01"});
   CAPTURE(bodies);
@@ -213,8 +214,8 @@ TEST_CASE("a step too long for the pair search is refused, but only where contac
   Coupled step(fast);
   const StepOutcome outcome = step.step->implicit_step(step.bodies, 0, 0.02);
   CHECK(outcome.verdict == Verdict::not_converged);
-  CHECK(contains(outcome.trouble, "stage neighbors: the step displaces a particle or a shape of a body by 2 m"));
-  // A body alone that turns by many of its radii per step: no list has to cover it.
+  CHECK(contains(outcome.trouble, "stage neighbors: the step moves a particle or a shape of a body by 2 m"));
+  // A single body that rotates by many of its radii per step: no list has to cover it.
   petsc();
   const Model model = model_of(kSmallDeck + R"(
 [[contact.pairs]]

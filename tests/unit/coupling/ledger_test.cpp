@@ -1,4 +1,4 @@
-// Bookkeeping of what leaves, and of energy that changes its place.
+// Energy accounting of escaped particles, and of conversions between entries.
 #include "coupling/ledger.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ TEST_CASE("inside the domain the ledger is that of a run which removes the balli
   CHECK(inside_ledger(make_ledger(before, {}, nullptr, {}, 0), before, {}).entries() ==
         make_ledger(before, {}, nullptr, {}, 0).entries());
 
-  // The escaped particles have 10 J and -4 J, and fall on.
+  // The escaped particles have 10 J and -4 J, and continue to fall.
   ParticleLedger removed = before, drifting = before;
   removed.kinetic = 20, removed.gravitational = -3, removed.contact_elastic = 0;
   removed.contact_loss = 4 - 0.75, removed.integrator_loss = 1 - 0.125;

@@ -57,7 +57,7 @@ BodyMotion at(Vec3 place, Vec3 turn) {
 }  // namespace
 
 TEST_CASE("the wrench's slope is found by as many displacements as it has directions") {
-  // The wrench of springs along z at two points, for a displacement and a small turn.
+  // The wrench of springs along z at two points, for a displacement and a small rotation.
   const auto wrench = [](Vec3 place, Vec3 turn) {
     BodyWrench sum;
     for (const Vec3 arm : {Vec3{0.1, 0.05, 0}, Vec3{-0.08, 0.02, 0}}) {
@@ -79,7 +79,7 @@ TEST_CASE("the wrench's slope is found by as many displacements as it has direct
   CHECK(norm(foretold.torque - true_one.torque) < 1e-6 * norm(true_one.torque));
 }
 
-// A slope below zero would take from what makes Newton's matrix definite.
+// A negative slope would make Newton's matrix less definite.
 TEST_CASE("contacts that open leave no stiffness where they were") {
   WrenchSlope slope;
   slope.begin(4e5, 0.2);
@@ -104,7 +104,8 @@ TEST_CASE("a body's load counts its contacts, their stiffness and their damping"
   CHECK(bodies.are_loaded({16}, 1e-4));
 }
 
-// As many of the smallest as lie on the plate, 0.12 m^2 over 2 sqrt(3) r^2; 20 of them where there are 20.
+// The number of the smallest particles that fit on the plate, 0.12 m^2 over 2 sqrt(3) r^2; at most the 20
+// that there are.
 TEST_CASE("the step for the most contacts that a body can have") {
   const Model many = model_of(kPlate, {"particles.0.size=[9, 7, 9]"});
   CHECK(most_contacts(many, 0) == 347);

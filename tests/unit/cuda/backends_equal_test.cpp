@@ -1,6 +1,6 @@
-// The CUDA backend against the CPU's, on boxes of particles and bodies at random places. Both are built
+// The CUDA backend against the CPU's, on boxes of particles and bodies at random positions. Both are built
 // without contraction, and roots and divisions are exact to the last bit on both: linear laws give the same
-// bits. pow() is not: other exponents agree to round-off.
+// bits. pow() does not: other exponents agree to round-off.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -16,7 +16,7 @@ namespace scree {
 namespace {
 
 constexpr int kParticles = 3000;
-constexpr Real kRoundOff = 1e-11;  // of forces: sums of some ten terms behind a pow()
+constexpr Real kRoundOff = 1e-11;  // of forces: sums of some ten terms after a pow()
 
 struct Pair {
   explicit Pair(const Model& of, Real skin = 0.02)
@@ -59,7 +59,7 @@ Real difference(const std::vector<Particle>& a, const std::vector<Particle>& b) 
 
 Real allowed(const BoxCase& box) { return box.exponent == 1 ? 0 : kRoundOff; }
 
-// Of both backends.
+// Compares the wrenches of both backends.
 void check_wrenches(const std::vector<BodyWrench> (&wrench)[2], Real tolerance) {
   REQUIRE(wrench[0].size() == wrench[1].size());
   for (std::size_t b = 0; b < wrench[0].size(); ++b) {
@@ -68,7 +68,7 @@ void check_wrenches(const std::vector<BodyWrench> (&wrench)[2], Real tolerance) 
   }
 }
 
-// What touches the walls and the bodies where all are now.
+// Compares the contacts with walls and bodies at their present poses.
 void check_contacts(Pair& pair, Real tolerance) {
   std::vector<int> all(pair.model.walls.size());
   std::iota(all.begin(), all.end(), 0);
@@ -154,7 +154,8 @@ TEST_CASE("an implicit step is the same on both backends") {
   }
 }
 
-// Takes those that leave out; what they take along [J], all of it and the contacts' part.
+// Removes the escaped particles; returns the energy that they take along [J]: all of it, and the contacts'
+// part.
 std::array<Real, 2> leave(Backend& backend) {
   const std::vector<Leaver> leavers = backend.particles().outside();
   std::array<Real, 2> taken{};
@@ -164,7 +165,8 @@ std::array<Real, 2> leave(Backend& backend) {
   return taken;
 }
 
-TEST_CASE("particles that escape after an implicit step, and the remaining ones, are the same on both backends") {
+TEST_CASE(
+    "particles that escape after an implicit step, and the remaining ones, are the same on both backends") {
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
       if (c.periodic_axes == c.dimension) continue;
@@ -197,12 +199,12 @@ TEST_CASE("particles that escape after an implicit step, and the remaining ones,
 }
 
 struct Outcome {
-  std::array<Real, 2> taken{};         // by those that left
+  std::array<Real, 2> taken{};         // energy of the escaped particles
   std::vector<BodyWrench> wrench;      // with the last step closed
   std::vector<std::int64_t> contacts;  // that these are of
 };
 
-// Steps of one backend, with those that leave taken out on the way.
+// Takes steps on one backend and removes escaped particles on the way.
 Outcome take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h = 1e-4) {
   Outcome out;
   out.wrench.resize(pair.model.bodies.size());
@@ -261,7 +263,7 @@ TEST_CASE("many short explicit steps are the same on both backends") {
     }
 }
 
-// Of the largest box the lines leave the device in parts.
+// Lines of the largest box leave the device in parts.
 TEST_CASE("contacts are shown the same on both backends") {
   std::vector<std::pair<BoxCase, int>> cases{{kBoxes[1], 200000}};
   for (const BoxCase& c : kBoxes)

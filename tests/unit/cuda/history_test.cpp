@@ -1,6 +1,6 @@
-// What contacts remember on the GPU against the CPU: bit for bit, with rows pruned or not and either form of
-// the step's kernel, and from one backend to the other.
-#include "dem/backend/device.hpp"
+// Contact histories on the GPU against the CPU: bit for bit, with and without pruned rows and with either
+// form of the step's kernel, and from one backend to the other.
+#include "dem/device.hpp"
 #include "launches.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -32,7 +32,7 @@ TEST_CASE("contact histories are the same on both backends") {
         for (RememberingBox* box : {&cpu, &cuda}) box->take_steps(1 + 2 * part);
         check_equal(cpu, cuda);
       }
-      // Each goes on from what the other has.
+      // Each backend continues from the other's state.
       RememberingBox on_cpu(model, {}, make_remembering_cpu_backend<kRemembered>),
           on_cuda(model, {}, make_remembering_cuda_backend<kRemembered>);
       on_cpu.motion = on_cuda.motion = cpu.motion;

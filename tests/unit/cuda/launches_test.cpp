@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kParticles = 3000;
 
-// Kernels are launched so as long as this lives.
+// Sets the launch configuration for as long as this object exists.
 class Launched {
  public:
   explicit Launched(const Launches& choice) : before_(launches()) { launches() = choice; }
@@ -50,7 +50,7 @@ Outcome implicit_steps(const BoxCase& c, const Launches& choice) {
   return outcome_of(box, 0);
 }
 
-// Over several lists, and rows pruned several times for each.
+// Steps over several lists, with rows pruned several times for each.
 Outcome explicit_steps(const Model& model, Real step, const Launches& choice) {
   const Launched launched(choice);
   LoadedBox box(model, model.contact.skin, make_cuda_backend);
@@ -71,7 +71,7 @@ Outcome explicit_steps(const BoxCase& c, Precision precision, const Launches& ch
   return explicit_steps(model, 1e-5, choice);
 }
 
-// Layers of grains that fly about over a floor of triangles, which only the lowest of them meet.
+// Layers of agitated particles over a floor of triangles, which only the lowest of them touch.
 Model grains_over_mesh() {
   return model_of(R"(
 [space]
@@ -160,7 +160,7 @@ TEST_CASE("both forms of the explicit step's kernel give the same bits") {
     several.several_at_once = true, one_by_one.several_at_once = false;
     const Outcome outcome = explicit_steps(c.box, c.precision, several);
     check_same(outcome, explicit_steps(c.box, c.precision, one_by_one));
-    // Mixed is something else: these are not the same kernels four times.
+    // Mixed precision has kernels of its own.
     if (c.precision == Precision::mixed)
       CHECK(differing_arrays(outcome.state, explicit_steps(c.box, Precision::full, several).state) != "");
   }

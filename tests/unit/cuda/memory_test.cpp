@@ -1,6 +1,6 @@
-// What is said about device memory before a run against what the run takes.
-#include "dem/backend/device.hpp"
-#include "model/builder/particle_file.hpp"
+// Predicted device memory against the memory that the run takes.
+#include "dem/device.hpp"
+#include "model/particle_file.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "unit/dem/random_box.hpp"
@@ -8,7 +8,7 @@
 namespace scree {
 namespace {
 
-// Of what the model's run takes at the start, with reports; explicit ones with steps and a list behind them.
+// Memory of the model's run at the start, with reports; for explicit runs after steps and a list.
 double taken(const Model& model) {
   const std::size_t before = device_memory_in_use();
   const std::unique_ptr<Backend> backend = make_cuda_backend(model);
@@ -31,7 +31,7 @@ void check_estimate(const Model& model) {
   CHECK(near(static_cast<double>(device_memory(model)), bytes, {.relative = 0.1}));
 }
 
-// Settled spheres that rub: tiles of a bed, beside each other.
+// Settled spheres with friction: tiles of a bed, side by side.
 Model rubbing_bed() {
   constexpr int kTiles = 30;
   constexpr Real kWidth = 25, kRadius = 0.5, kStiffness = 2e5;
@@ -84,7 +84,7 @@ TEST_CASE("the predicted device memory of settled spheres with friction is what 
   }
 }
 
-// But for the rooms through which records leave the device, which do not grow with the particles.
+// Except for the transfer buffers, whose size does not depend on the number of particles.
 TEST_CASE("settled spheres with friction take at most 800 bytes each, in steps and while lists are built") {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     CAPTURE(static_cast<int>(precision));
@@ -98,7 +98,7 @@ TEST_CASE("settled spheres with friction take at most 800 bytes each, in steps a
     backend->particles().initial_forces();
     const std::unique_ptr<ExplicitRun> run = backend->start_run(1e-4);
     run->take_steps(50, true, timers);
-    backend->list().build(model.contact.skin, timers);  // with what contacts remember
+    backend->list().build(model.contact.skin, timers);  // including contact histories
     run->take_steps(50, false, timers);
     CHECK(backend->particles().contacts().keys.size() > 3 * model.particles.size());
     constexpr std::size_t kPerContact = sizeof(std::int64_t) + 3 * sizeof(Real);

@@ -1,5 +1,4 @@
-// Explicit runs in mixed precision keep what they promise: restitution, heaps that stay settled, momentum,
-// and the same bits on a rerun.
+// Explicit runs in mixed precision: restitution, settled heaps, momentum, and the same bits on a rerun.
 #include <cmath>
 #include <cstdio>
 
@@ -110,11 +109,11 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "
   }
   std::printf("settled heap after 1e6 steps: moved by %.1e diameters, fastest %.1e\n", moved, fastest);
   CHECK(measured("mixed/moved", "diameters", at_most(moved, 1e-4)));
-  // As after a fall from 5e-9 diameters.
+  // As after a fall by 5e-9 diameters.
   CHECK(measured("mixed/fastest", "m/s", at_most(fastest, 1e-4)));
 }
 
-// One size on either side of where another form of the step's kernel takes over.
+// Sizes on either side of the switch to another form of the step's kernel.
 TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") {
   const int spheres = GENERATE(100000, 110000);
   Model model = box_model(62, Precision::mixed);
@@ -130,13 +129,14 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") 
   run.advance(1e-4, 20000);
   const ParticleLedger after = run.backend->reports().ledger(0);
   CHECK(after.contact_loss > 0.01 * before.kinetic);  // there were collisions
-  // Over the sum of the momenta's sizes, some 1 each.
+  // Relative to the sum of the magnitudes of the momenta, some 1 each.
   const Real drift = norm(after.momentum - before.momentum) / spheres;
   CHECK(measured("mixed/momentum of " + std::to_string(spheres), "kg m/s", at_most(drift, 1e-9)));
   std::printf("momentum of the gas: changed by %.1e of the sum of sizes in 20000 steps\n", drift);
 }
 
-TEST_CASE("mixed precision: spheres with friction rebound with the velocities and spins of double precision") {
+TEST_CASE(
+    "mixed precision: spheres with friction rebound with the velocities and spins of double precision") {
   Model model = box_model(1000, Precision::mixed);
   const bool hertz = GENERATE(false, true);
   if (hertz) {
@@ -144,12 +144,12 @@ TEST_CASE("mixed precision: spheres with friction rebound with the velocities an
     law = {}, law.effective_modulus = 5e6, law.damping_ratio = 0.1;
     model.contact.friction = {{0.3, 0, 2e6, 0.1}};
   } else {
-    // Without a dashpot across the normal: it is off while a contact slides, and a step at which that begins
-    // for a single and not for a double would change the impulse by h c v, 2e-3 N s here.
+    // Without a tangential dashpot: it is off while a contact slides, and a step in which sliding begins in
+    // single but not in double precision would change the impulse by h c v, 2e-3 N s here.
     model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0}};
   }
   model.walls = {{"floor", {0, 0, 980}, {0, 0, 1}, 0}};
-  for (int k = 0; k < 64; ++k) {  // they stick, slide, or do the one after the other; some against the floor
+  for (int k = 0; k < 64; ++k) {  // sticking, sliding, or both in turn; some against the floor
     const Vec3 at{900 + 1e-5 * k, 3.0 + 4 * k, 990};
     add_sphere(model, at, {1, 0.03 * k, 0}), add_sphere(model, at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3});
     add_sphere(model, {920, 3.0 + 4 * k, 980.50503}, {0.03 * k, 0, -1});
@@ -164,7 +164,7 @@ TEST_CASE("mixed precision: spheres with friction rebound with the velocities an
     spin = std::max(spin, norm(a[i].angular_velocity - b[i].angular_velocity));
     fastest_spin = std::max(fastest_spin, norm(b[i].angular_velocity));
   }
-  CHECK(fastest_spin > 0.5);  // they did rub
+  CHECK(fastest_spin > 0.5);  // there was friction
   CHECK(velocity <= 1e-4);
   CHECK(spin <= 4e-4);
   const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
@@ -180,8 +180,7 @@ TEST_CASE("mixed precision: spheres with friction rebound with the velocities an
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
 }
 
-TEST_CASE(
-    "mixed precision: cohesion and rolling resistance run in double precision, with a message") {
+TEST_CASE("mixed precision: cohesion and rolling resistance run in double precision, with a message") {
   Model model = box_model(10, Precision::mixed);
   const bool attracts = GENERATE(true, false);
   if (attracts)
@@ -204,7 +203,7 @@ TEST_CASE(
     CHECK((a[i].position == b[i].position && a[i].velocity == b[i].velocity));
 }
 
-// What contacts remember would creep if singles kept it.
+// Histories in single precision would make the pile creep.
 TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[long]") {
   Model model = box_model(12, Precision::mixed);
   model.gravity = {0, 0, -1};
@@ -223,7 +222,7 @@ TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[lon
   Real moved = 0;
   for (std::size_t i = 0; i < after.size(); ++i)
     moved = std::max(moved, norm(after[i].position - settled[i].position));
-  CHECK(after[3].position.z > 1);  // it stands
+  CHECK(after[3].position.z > 1);  // it is stable
   CHECK(moved < 1e-5);             // diameters
   std::printf("pile held by friction after 1e6 steps: moved by %.1e diameters\n", moved);
 }
@@ -251,8 +250,7 @@ TEST_CASE("mixed precision: ballistic particles keep their exact positions at an
   }
 }
 
-// Several batches of steps between two rows of the history: how long they are must not be the clock's
-// choice.
+// Several batches of steps between two rows of the history: their length must not depend on the clock.
 TEST_CASE("mixed precision: a rerun has the same bits") {
   const Model model =
       input_model("examples/gas_periodic.toml",

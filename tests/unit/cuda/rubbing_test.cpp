@@ -1,5 +1,5 @@
-// Particles that rub on the GPU against the CPU: bit for bit, with rows pruned or not and either form of the
-// step's kernel, and from one backend to the other.
+// Friction of particles on the GPU against the CPU: bit for bit, with and without pruned rows and with
+// either form of the step's kernel, and from one backend to the other.
 #include "launches.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -28,7 +28,7 @@ void check_equal(const RubbingKind& kind, const RememberingBox& cpu, const Remem
                   ordered_lines(cuda.backend->reports(), particles)));
 }
 
-// What the ledger says of both.
+// Compares the ledgers of both backends.
 void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
   const ParticleLedger a = cpu.backend->reports().ledger(kMovingStep),
                        b = cuda.backend->reports().ledger(kMovingStep);
@@ -41,7 +41,7 @@ void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
   CHECK(a.cohesion == b.cohesion);
 }
 
-// Spheres that slide down a plane, pressed to it by their weight, apart from each other.
+// Separate spheres that slide down a plane under their weight.
 Model sliding_box(const BoxCase& c) {
   Model model = random_box(c, 5, 33);
   const Vec3 normal = model.walls[0].normal, down{normal.y, -normal.x, 0};
@@ -77,7 +77,7 @@ TEST_CASE("friction is the same on both backends, and each continues from the ot
     }
 }
 
-// Without limits that are frozen, and with.
+// Without and with lagged friction limits.
 TEST_CASE("friction is the same on both backends in implicit steps") {
   for (const BoxCase& c : kRubbingBoxes)
     for (const int freeze_after : {0, 2}) {
@@ -99,8 +99,8 @@ TEST_CASE("friction is the same on both backends in implicit steps") {
     }
 }
 
-// What is kept has more than the room of the records with walls alone, and has all the rooms in turn where
-// each particle touches many. Lists that are built at rest leave the forces as they are.
+// Contacts with walls alone already exceed the buffer of the records; with many contacts per particle all
+// buffers are used in turn. Lists that are built without motion leave the forces unchanged.
 TEST_CASE(
     "contacts with walls alone, and very many of each particle, go from list to list on both backends") {
   const BoxCase& c = kRubbingBoxes[3];

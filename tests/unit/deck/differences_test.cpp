@@ -1,4 +1,4 @@
-// Where two decks differ, and how it is told.
+// Differences of two decks and their texts.
 #include "deck/differences.hpp"
 
 #include "support/catch.hpp"

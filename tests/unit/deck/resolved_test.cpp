@@ -64,7 +64,7 @@ TEST_CASE("the default step control follows the particles' integrator") {
   CHECK(contains(resolved(head + "[integrator]\nparticles = \"velocity-verlet\"\n", {step}),
                  "control = \"fixed\""));
   CHECK(contains(resolved(head, {verlet, step, "time.control=adaptive"}), "control = \"adaptive\""));
-  CHECK(contains(resolved(head), "particles = \"auto\"\n"));  // who builds the model knows which
+  CHECK(contains(resolved(head), "particles = \"auto\"\n"));  // decided when the model is built
   CHECK(contains(resolved(head, {verlet}), "control = \"fixed\"\n"));
   const std::string again = resolved(head, {verlet, step});
   CHECK(resolved(again) == again);

@@ -1,4 +1,4 @@
-// Which known name a misspelt one is taken for.
+// Suggestions for misspelt names.
 #include "deck/suggestion.hpp"
 
 #include <set>
@@ -62,7 +62,7 @@ TEST_CASE("synonyms of words of choices are known, and misspelt ones") {
 
 namespace {
 
-// Of this table and those in it: paths of the keys, and the words of choices.
+// Collects the paths of the keys, and the words of choices, of this table and its subtables.
 void collect(const TableKeys& keys, const std::string& path, std::set<std::string>& paths,
              std::set<std::string>& words) {
   for (const Key& key : keys.keys) {

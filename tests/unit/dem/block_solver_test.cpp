@@ -18,7 +18,7 @@ constexpr Real kRoundOff = 2 * kUlp;  // of two products
 constexpr Index kParticles = 12;
 constexpr Real kInverseScale = 1 / 0.7;  // 1 / (1 + hht_alpha)
 
-// Of one rank: particle i has the ghost kParticles + i, across a periodic side.
+// Ghosts on one rank: particle i has the ghost kParticles + i, across a periodic side.
 Halo one_ghost_each() {
   Space space;
   space.dimension = 2, space.max = {1, 1, 0};
@@ -51,7 +51,7 @@ struct ContactProblem {
     for (Index i = 0; i < kParticles; ++i) {
       Sym3 block = diagonal[static_cast<std::size_t>(i)];
       const Real mass = velocity[static_cast<std::size_t>(i)].w * kInverseScale;
-      // Sum over a symmetric matrix's entries bounds its norm.
+      // The sum of a symmetric matrix's entries bounds its norm.
       const Real bound = block.xx + block.yy + block.zz;
       largest_stiffening = std::max(largest_stiffening, bound / mass);
       block += Sym3{mass, 0, 0, mass, 0, mass};
@@ -76,15 +76,15 @@ struct ContactProblem {
     diagonal[static_cast<std::size_t>(i)] += outer(1, b);
     add(i, i, outer(1, b), 1);
   }
-  // volatile: the compiler keeps the digits that a single does not have otherwise.
+  // volatile: otherwise the compiler keeps digits that a single does not have.
   static Real single(Real x) {
     volatile float rounded = static_cast<float>(x);
     return rounded;
   }
-  // through_ghosts: each sees the other as a ghost across a periodic side.
+  // through_ghosts: each particle has the other one as a ghost across a periodic side.
   void add_pair(Index i, Index j, Vec3 exact, bool through_ghosts,
                 std::vector<std::vector<std::pair<Index, Vec3>>>& rows) {
-    const Vec3 b{single(exact.x), single(exact.y), single(exact.z)};  // as the solver keeps it
+    const Vec3 b{single(exact.x), single(exact.y), single(exact.z)};  // as the solver stores it
     add_to_diagonal(i, b), add_to_diagonal(j, b);
     add(i, j, outer(1, b), -1), add(j, i, outer(1, b), -1);
     for (const auto& [row, partner, sign] : {std::tuple{i, j, 1.0}, std::tuple{j, i, -1.0}}) {
@@ -175,7 +175,7 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
         CHECK(norm(solution[i] - x) <= truncation);
       }
       // Chebyshev's bound: the error falls by (sqrt(c) - 1) / (sqrt(c) + 1) per product, c <= 2 (1 +
-      // stiffening).
+      // stiffness ratio).
       CHECK(products <= 5 + 20 * std::sqrt(2 * (1 + p.largest_stiffening)));
     }
 }

@@ -11,7 +11,7 @@ namespace scree {
 namespace {
 
 constexpr Real kRoundOff = 1e-12;  // relative to the sum of magnitudes
-constexpr Real kSum = 32 * kUlp;   // of the particles in another order, relative
+constexpr Real kSum = 32 * kUlp;   // of sums with the particles in another order, relative
 constexpr int kParticles = 120;
 
 struct BruteContacts {
@@ -23,7 +23,7 @@ struct BruteContacts {
   int count = 0;
 };
 
-// One contact of item i: its force, and `share` of its energy and number.
+// One contact of item i: its force, and the fraction `share` of its energy and number.
 struct BruteContact {
   Real overlap, rate;
   Vec3 normal;
@@ -49,7 +49,7 @@ void add_contact(BruteContacts& sum, const KelvinVoigt& law, const BruteContact&
   add_contact(sum, PowerLaw(law), c, i);
 }
 
-// A body counts as unmovable for a particle, and has its mass among bodies.
+// A body counts as fixed for a particle, and has its mass among bodies.
 PairSize size_of(const BruteItem& a, const BruteItem& b) {
   return {a.radius, b.radius, a.body >= 0 && b.body < 0 ? kInfinity : a.mass,
           b.body >= 0 && a.body < 0 ? kInfinity : b.mass};

@@ -1,5 +1,5 @@
-// What contacts remember: the same as a book kept by brute force, over lists, crossings of periodic sides and
-// particles that leave.
+// Contact histories against a record kept by brute force, over lists, crossings of periodic sides and
+// escaping particles.
 #include "random_box.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -18,19 +18,19 @@ Model moving_box(const BoxCase& c, int particles = 150) {
   model.integrator.particles = ParticleIntegrator::velocity_verlet;
   model.contact.skin = kSkin;
   for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
-  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone have one place
+  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone do not repeat
     model.walls.resize(1);
     model.walls[0].normal = {0, 1, 0};
   }
   return model;
 }
 
-// The bodies go on at their velocity.
+// Moves the bodies with their velocities.
 void move_bodies(LoadedBox& box, Real h) {
   for (BodyMotion& body : box.motion) body.position += h * body.velocity;
 }
 
-// The particles outside leave; the list is built anew.
+// Removes escaped particles; the list is built anew.
 bool leave(LoadedBox& box) {
   const std::vector<Leaver> leavers = box.backend->particles().outside();
   if (leavers.empty()) return false;
@@ -72,16 +72,17 @@ TEST_CASE("contact histories are those of a record kept by brute force") {
     }
 }
 
-TEST_CASE(
-    "reports between steps, and batches of steps, do not change contact histories") {
+TEST_CASE("reports between steps, and batches of steps, do not change contact histories") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
     LoadedBox one(moving_box(c), kSkin, make_remembering_backend<3>),
         looked_at(moving_box(c), kSkin, make_remembering_backend<3>);
     RankParticles &a = one.backend->particles(), &b = looked_at.backend->particles();
     for (int part = 0; part < 6; ++part) {
-      const Index steps = one.motion.empty() ? 15 : 1;  // together, where no body wants to be placed between
-      for (Index left = steps; left > 0;) left -= verlet_steps(one, kStep, left);  // it stops for leavers
+      const Index steps =
+          one.motion.empty() ? 15 : 1;  // one batch where no body needs a new pose between steps
+      for (Index left = steps; left > 0;)
+        left -= verlet_steps(one, kStep, left);  // a batch ends where particles escape
       for (Index k = 0; k < steps; ++k) {
         verlet_steps(looked_at, kStep, 1);
         looked_at.backend->reports().ledger(kStep);
@@ -92,7 +93,7 @@ TEST_CASE(
       CHECK(difference(a.contacts(), b.contacts()) == "");
       CHECK(a.contacts().numbers == 3);
     }
-    // Back into a backend that has none yet.
+    // Back into a backend without history.
     LoadedBox onward(moving_box(c), kSkin, make_remembering_backend<3>);
     onward.motion = one.motion;
     onward.backend->particles().load(a.records(), {});

@@ -10,10 +10,10 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 4 * kUlp;  // of shares of up to 1
+constexpr Real kRoundOff = 4 * kUlp;  // of fractions up to 1
 
-// What a search comes to: the share that is applied, and how often it was shortened. slope(share): of the
-// potential.
+// Result of a search: the fraction of the correction that is applied, and the number of evaluations.
+// slope(share): derivative of the potential.
 struct Found {
   Real share;
   int looks;

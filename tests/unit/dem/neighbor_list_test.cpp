@@ -18,7 +18,7 @@ using Entry = std::pair<GlobalId, int>;
 constexpr Real kSkin = 0.03;
 constexpr Index kParticles = 150, kDrifting = 7;
 
-// Store and layout as a backend lays them out, from records in an order of their own.
+// Store and layout as a backend arranges them, from records in an arbitrary order.
 struct Items {
   Items(const Model& model, const NeighborBuilder& builder) {
     const Subdomain subdomain(model.space);
@@ -54,7 +54,7 @@ struct Items {
   std::vector<Ghost> ghosts;
 };
 
-// What row i must hold: particles, and images of them and of itself.
+// The expected row i: particles, and images of them and of itself.
 std::vector<Entry> expected_row(const Items& items, Vec3 period, Index i) {
   std::vector<Entry> row;
   for (Index j = 0; j < items.layout.active; ++j)

@@ -1,5 +1,5 @@
-// The fields that snapshots are made of.
-#include "dem/reports/output_fields.hpp"
+// The fields of snapshots.
+#include "dem/output_fields.hpp"
 
 #include <set>
 
@@ -15,7 +15,7 @@ TEST_CASE("output fields of the table are what the particles have") {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 200, 21));
     for (Particle& record : box.records) {
-      record.position.x += 0.7;  // some leave the periodic box
+      record.position.x += 0.7;  // some move out of the periodic box
       record.image = {3, -1, 2}, record.contact_loss = 0.1 * static_cast<Real>(record.global_id);
     }
     box.backend->particles().load(box.records, {});
@@ -56,7 +56,7 @@ TEST_CASE("each output field has a name of its own, a unit and a sentence") {
     CHECK(std::string(field.head.description) != "");
     CHECK(output_fields_text().find(std::string("  ") + field.head.name + " ") != std::string::npos);
   }
-  CHECK(!names.contains("position"));  // these every snapshot has
+  CHECK(!names.contains("position"));  // present in every snapshot
   CHECK(!names.contains("global_id"));
 }
 

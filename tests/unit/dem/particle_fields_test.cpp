@@ -1,4 +1,4 @@
-// Every field of the table goes with its particle, wherever that goes on one rank.
+// Every field of the table moves with its particle on one rank.
 #include <algorithm>
 #include <set>
 
@@ -52,7 +52,7 @@ TEST_CASE("every field goes into the store, through its order, and out") {
   store.rotates = store.rolls = true;
   store.load(std::span(all).first(6));
   CHECK(differing_fields(store.records(), {all.begin(), all.begin() + 6}) == "");
-  store.resize_items(11);  // ghosts and shapes go with the next order
+  store.resize_items(11);  // ghosts and shapes are dropped by the next sort
   store.reorder({5, 0, 4, 2});
   CHECK(store.owned == 4);
   for (const std::size_t id : {7, 3}) store.add(all[id]);

@@ -1,4 +1,4 @@
-// Boxes of particles and bodies at random places for tests, and their contacts found by brute force.
+// Boxes of particles and bodies at random positions for tests, and their contacts found by brute force.
 #pragma once
 
 #include <cmath>
@@ -22,14 +22,14 @@ namespace scree {
 struct BoxCase {
   const char* name;
   int dimension;
-  int periodic_axes;     // that many, x first
-  Real smallest_radius;  // over the largest
-  bool walls;            // two planes
+  int periodic_axes;     // number of periodic axes, x first
+  Real smallest_radius;  // relative to the largest
+  bool walls;            // whether there are two planes
   bool bodies;
   int materials;
   Real exponent;
   bool tension;
-  Real modulus = 0;  // E* of Hertz's law [Pa]; 0: a stiffness
+  Real modulus = 0;  // E* of Hertz's law [Pa]; 0: a linear stiffness
 };
 
 inline const BoxCase kBoxes[] = {
@@ -54,7 +54,7 @@ inline Vec3 random_velocity(RandomNumbers& random, int dimension) {
   return {x, y, dimension == 3 ? random.normal() : 0};
 }
 
-// What a backend hands out for a snapshot of a random box: all fields that there are.
+// All fields of a snapshot of a random box, as a backend returns them.
 struct BoxOutput {
   explicit BoxOutput(Backend& backend) {
     backend.reports().start_output();
@@ -138,7 +138,7 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
   return model;
 }
 
-// A wall of triangles in waves through the middle of the space.
+// Adds a wavy wall of triangles through the middle of the domain.
 inline void add_floor(Model& model, int squares) {
   const Vec3 min = model.space.min, size = model.space.max - min;
   const TriangleMesh grid = mapped(unit_grid(squares, squares), [&](Vec3 v) {
@@ -151,7 +151,7 @@ inline void add_floor(Model& model, int squares) {
   model.walls.push_back(floor);
 }
 
-// Larger, with some ten neighbours for each of any number of particles.
+// A larger box with some ten neighbours per particle, for any number of particles.
 inline Model dense_box(const BoxCase& box, ParticleIntegrator integrator, int particles) {
   constexpr Real kInSmallBox = 3000;
   Model model = random_box(box, particles, 33);
@@ -169,7 +169,7 @@ inline std::vector<BodyMotion> motion_of(const std::vector<Body>& bodies) {
   return motion;
 }
 
-// Of all that carries surfaces; walls are at rest.
+// Motion of all bodies and walls with surfaces; walls are static.
 inline std::vector<BodyMotion> carriers_of(const Model& model) {
   std::vector<BodyMotion> motion = motion_of(model.bodies);
   BodyMotion wall;
@@ -178,7 +178,7 @@ inline std::vector<BodyMotion> carriers_of(const Model& model) {
   return motion;
 }
 
-// A model on a backend with its list built and its first forces known.
+// A model on a backend with its list built and its first forces computed.
 struct LoadedBox {
   explicit LoadedBox(const Model& of, Real skin = 0.02,
                      std::unique_ptr<Backend> (*make)(const Model&, const Ranks&) = make_test_backend)
@@ -223,14 +223,14 @@ inline void hht_step(Backend& backend, const std::vector<BodyMotion>& motion, Re
   FAIL("no convergence");
 }
 
-// A run of explicit steps, the bodies held at `motion`; how many it took.
+// A run of explicit steps with the bodies held at `motion`; returns the number of steps taken.
 inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {
   const std::unique_ptr<ExplicitRun> run = box.backend->start_run(h);
   box.backend->list().place_bodies(box.motion);
   return run->take_steps(steps, false, box.timers).closed;
 }
 
-// A particle or a shape for the search by brute force.
+// A particle or a shape in the search by brute force.
 struct BruteItem {
   Vec3 position, velocity;
   Real radius, mass;

@@ -1,4 +1,4 @@
-// Reports of one instant look at the contacts with bodies once, and say what they say one by one.
+// Reports of one instant query the contacts with bodies once, with the same results as separate queries.
 #include <numeric>
 
 #include "random_box.hpp"
@@ -7,7 +7,7 @@
 namespace scree {
 namespace {
 
-// Counts its looks.
+// Counts the queries.
 class CountedReports : public Reports {
  public:
   ParticleLedger ledger(Real) override {

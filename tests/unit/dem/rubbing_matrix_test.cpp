@@ -1,6 +1,6 @@
-// The Newton matrix of contacts that rub: its products against differences of forces, its blocks against its
-// products, its bounds, the blocks' inverse.
-#include "dem/implicit/rubbing_matrix.hpp"
+// The Newton matrix of frictional contacts: its products against differences of forces, its blocks against
+// its products, its bounds, and the blocks' inverses.
+#include "dem/rubbing_matrix.hpp"
 
 #include "dem/implicit/rubbing_items.hpp"
 #include "model/derived/random.hpp"
@@ -24,7 +24,7 @@ Twist pull(const RubbingEntry& entry, Vec3 apart, Vec3 turning, bool consistent)
   return in_double(entry.pull(in_single(apart), in_single(turning), consistent));
 }
 
-// One that sticks, or slides; the same seen from j has the opposite normal and direction.
+// A sticking or sliding contact; seen from j it has the opposite normal and direction.
 RubbingEntry entry_of(Vec3 n, Vec3 t, Real along, Real across) {
   const auto single = [](Real x) { return static_cast<float>(x); };
   return {{single(n.x), single(n.y), single(n.z), 1},
@@ -45,10 +45,10 @@ RandomEntry random_entry(RandomNumbers& random, bool slides) {
   return {entry_of(n, t, along, across), entry_of(-n, -t, along, across)};
 }
 
-// Two spheres of radius 1 over a step of 1 s, without damping; i has yet to move and turn by small amounts.
+// Two spheres of radius 1 over a step of 1 s, without damping; i is displaced and rotated by small amounts.
 struct Pair {
   ContactLaw<LinearLaw, LinearSlider> law;
-  Vec3 r0, r1, spin;      // from j to i at the start and the end; i's over the step
+  Vec3 r0, r1, spin;      // vectors from j to i at the start and the end; rotation of i over the step
   ContactHistory before;  // across the normal at the start
 
   RubbingContact moved(const Twist& by) const {
@@ -62,7 +62,7 @@ struct Pair {
     path.leverage0 = 2 / begin.distance, path.curvature = end.scale;
     return rubbing_contact(law, path, before, true, [](bool) { return Vec3{}; });
   }
-  // On i, and its torque.
+  // Force and torque on i.
   Twist load(const Twist& by) const {
     const RubbingContact c = moved(by);
     const RubbingSums sums = RubbingSums::of(c);
@@ -70,7 +70,7 @@ struct Pair {
   }
 };
 
-// Overlaps at both ends, one of which may be a gap, of the order of `size`, as slip and spring.
+// Overlaps at both ends, one of which may be negative, of the order of `size`, as are slip and spring.
 Pair random_pair(RandomNumbers& random, Real size, Real friction) {
   Pair out{{LinearLaw(2, 0, false), {Real(0.7), friction, 0}}, {}, {}, {}, {}};
   Vec3 n = vector(random);
@@ -92,7 +92,8 @@ Twist product(const Block6& a, Twist v) {
 
 TEST_CASE("a contact's matrix is the derivative of its force") {
   struct Case {
-    Real size, friction, error;  // without friction only the normal force and its turn, at any overlap
+    Real size, friction,
+        error;  // size of the overlap; without friction only the normal force rotates, at any overlap
   };
   RandomNumbers random(2);
   for (const Case& of : {Case{1e-5, 2, 3e-4}, Case{0.2, 0, 3e-5}}) {

@@ -1,5 +1,5 @@
 // Steps of the CPU backend: undone without a trace, the same bits for every list and for fused substeps;
-// particles that leave.
+// escaping particles.
 #include <cmath>
 
 #include "base/error.hpp"
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 16 * kUlp;  // of ways of some hundredths between places of some 1 m
+constexpr Real kRoundOff = 16 * kUlp;  // of displacements of some hundredths between positions of some 1 m
 
 constexpr int kParticles = 60;
 
@@ -37,7 +37,7 @@ TEST_CASE("a rolled-back step leaves no trace") {
     CHECK_FALSE(same_bits(box.backend->particles().records(), before));
     step->undo();
     CHECK(same_bits(box.backend->particles().records(), before));
-    // The next step is the one that would have followed.
+    // The step after the roll-back equals the step without it.
     hht_step(*box.backend, box.motion, 1e-4);
     const std::vector<Particle> after = box.backend->particles().records();
     LoadedBox other(soft_box(c, ParticleIntegrator::hht), 0.2);
@@ -192,7 +192,7 @@ TEST_CASE("an explicit step across the whole periodic domain is refused, except 
 TEST_CASE("gravity alone acts on a ballistic particle") {
   Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
   LoadedBox box(model);
-  // Three of a kind at one place outside.
+  // Three of each kind at one position outside.
   for (const std::size_t id : {3, 4, 5}) {
     box.records[id].position = {2 + 0.01 * static_cast<Real>(id), 0, 0};
     box.records[id].drifting = true;

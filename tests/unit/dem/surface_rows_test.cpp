@@ -1,5 +1,5 @@
-// Which surfaces each particle is near, against a search over all of them and their images.
-#include "dem/search/surface_rows.hpp"
+// The surfaces near each particle, against a search over all of them and their images.
+#include "dem/surface_rows.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -23,7 +23,7 @@ constexpr Index kParticles = 150, kDrifting = 7;
 // Surface and number of its image.
 using Entry = std::pair<Index, int>;
 
-// The list of a rank that has every particle of the model.
+// The list of a rank with all particles of the model.
 struct BuiltRows {
   explicit BuiltRows(const Model& of)
       : model(of),
@@ -74,7 +74,7 @@ std::vector<Entry> expected_row(const BuiltRows& built, Index i) {
   return row;
 }
 
-// A beam of triangles on a body that lies askew across periodic sides, a ring on the ground, and grains.
+// A beam of triangles on a body that is skewed across periodic sides, a ring on the ground, and particles.
 const char* const kGrainsAndMeshes = R"(
 [space]
 dimension = 3
@@ -128,7 +128,7 @@ density = 1000.0
 seed = 3
 )";
 
-// The triangles that come within `past` of particle i, image by image, as the groups have them.
+// The triangles within `past` of particle i, image by image, in the order of the groups.
 std::vector<std::vector<Index>> triangles_in_reach(const BuiltRows& built, Index i, Index s, Real past) {
   const SurfacePlaces places = built.side.places();
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];

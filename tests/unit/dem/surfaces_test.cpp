@@ -1,5 +1,5 @@
-// Surfaces on bodies: how a sphere lies to them, and what their contacts sum to.
-#include "dem/surfaces/surfaces.hpp"
+// Surfaces on bodies: position of a sphere relative to them, and the sums of their contacts.
+#include "dem/surfaces.hpp"
 
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-// Single particles that are traced, against the output of all of them.
+// Traced particles against the output of all particles.
 #include <algorithm>
 #include <map>
 
@@ -10,9 +10,9 @@ TEST_CASE("traced particles are where the output of all particles has them") {
   for (const BoxCase& c : {kBoxes[0], kBoxes[4]}) {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 200, 5));
-    for (Particle& record : box.records) record.position.x += 0.7;  // some leave the periodic box
+    for (Particle& record : box.records) record.position.x += 0.7;  // some move out of the periodic box
     box.backend->particles().load(box.records, {});
-    const std::vector<GlobalId> wanted{199, 0, 7, 5000, 198, 3};  // one that is not there
+    const std::vector<GlobalId> wanted{199, 0, 7, 5000, 198, 3};  // one id does not exist
     std::map<GlobalId, TracedParticle> found;
     for (const TracedParticle& t : box.backend->reports().traced(wanted))
       CHECK(found.emplace(t.global_id, t).second);

@@ -11,9 +11,10 @@ namespace scree {
 namespace {
 
 constexpr Real kStiffness = 1e5, kDamping = 50, kRadius = 0.1;
-// So small that what the blocks leave out, the turning of normals and arms under the force, is 1e-6 of them.
+// So small that the terms missing in the blocks, the rotation of normals and arms under the force, are 1e-6
+// of them.
 constexpr Real kOverlap = 1e-6 * kRadius;
-constexpr Real kGeometric = 1e-5;      // that, and the differences' error, relative
+constexpr Real kGeometric = 1e-5;      // missing terms, and the error of differences, relative
 constexpr Real kRoundOff = 64 * kUlp;  // of sums of up to 30 in the unit of their terms
 
 // One body with two shapes, and particles that touch them from several directions.
@@ -45,7 +46,7 @@ Model touched_body(int dimension) {
   return model;
 }
 
-// Its shapes and those of another body in the places of particles, which there are none of.
+// Its shapes against those of another body in the positions of the particles; there are no particles.
 Model two_bodies(int dimension) {
   Model model = touched_body(dimension);
   Body other;
@@ -77,7 +78,7 @@ Real block(const std::array<Real, 21>& packed, int i, int j) {
   return packed[static_cast<std::size_t>(i <= j ? packed6(i, j) : packed6(j, i))];
 }
 
-// The coordinates of a body that its motion can change: x, y, z and the turn about z.
+// Coordinates of a body that the test changes: x, y, z and the rotation about z.
 constexpr int kColumns[] = {0, 1, 2, 5};
 
 BodyMotion moved(BodyMotion motion, int column, Real position, Real velocity) {

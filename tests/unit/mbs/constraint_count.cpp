@@ -1,4 +1,4 @@
-// The model's number of constraint equations, which checkpoints are compared with, is that of the system.
+// The model's number of constraint equations, with which checkpoints are compared, is that of the system.
 #include "mbs/rigid_body_system.hpp"
 #include "model/derived/connections.hpp"
 #include "model/derived/joint_coordinates.hpp"

@@ -101,7 +101,7 @@ std::vector<std::pair<std::string, Model>> samples() {
   return all;
 }
 
-// At a place that satisfies nothing in particular: the derivatives hold everywhere.
+// At a position that satisfies no constraint: the derivatives hold everywhere.
 struct DistortedProbe : Probe {
   explicit DistortedProbe(const Model& sample) : Probe(sample) {
     position = {0.35, -0.25, 0.3, 1.2, 0.6, -0.7}, velocity = {0.4, -0.9, 1.3, -0.6, 0.8, -2.1};
@@ -141,7 +141,7 @@ TEST_CASE("the constraint Jacobian and right-hand sides are the derivatives of t
       return constraint(q, kTime + s);
     };
     const Matrix numeric = differences([&](const auto& q) { return constraint(q, kTime); }, probe.position);
-    constexpr Real kStep = 1e-4;  // cuts off some 1e-7, round-off of second differences is as large
+    constexpr Real kStep = 1e-4;  // truncation of some 1e-7, round-off of second differences is as large
     const std::vector<Real> before = along(-kStep), now = along(0), after = along(kStep);
     probe.evaluate(probe.position, probe.velocity);
     const SystemInstant at{kTime, probe.position, probe.velocity};
@@ -161,7 +161,8 @@ TEST_CASE("the constraint Jacobian and right-hand sides are the derivatives of t
 
 namespace {
 
-// Of a body that a force resists which grows with the motion of the point at `arm` along the normal.
+// Stiffness block of a body with a force proportional to the displacement of the point at `arm` along the
+// normal.
 std::array<Real, 21> block_along(Vec3 normal, Vec3 arm, Real slope) {
   const Vec3 moment = cross(arm, normal);
   const Real along[6] = {normal.x, normal.y, normal.z, moment.x, moment.y, moment.z};
@@ -214,7 +215,7 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
   std::vector<Real> unknowns = state.acceleration;
   unknowns.insert(unknowns.end(), state.multipliers.begin(), state.multipliers.end());
   for (Real& x : unknowns) x += 0.3;
-  // The positions feel an acceleration only times beta h^2, so its steps are large.
+  // The positions depend on an acceleration only times beta h^2, so its increments are large.
   const Matrix numeric = differences(residual_at, unknowns, 0.1);
   residual_at(unknowns);
   std::vector<Real> values(method.pattern().column.size());

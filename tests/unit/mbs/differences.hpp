@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// Round-off of central differences of half width 1e-6, of terms of up to 100, and what they cut off.
+// Round-off of central differences of half width 1e-6, of terms of up to 100, and their truncation.
 inline constexpr Real kDifferences = 3e-8;
 
 using Matrix = std::vector<std::vector<Real>>;

@@ -1,11 +1,12 @@
-// Motors, a spring and limits for tests of derivatives: each acts, bends and resists where its joint is.
+// Motors, a spring and limits for tests of derivatives: each has effort, stiffness and damping at the
+// joint's position.
 #pragma once
 
 #include "model/data/model.hpp"
 
 namespace scree {
 
-// On the first joint of the model; `function`: of time.
+// Adds them to the first joint of the model; `function`: of time.
 inline void add_efforts(Model& model, const TimeFunction& function,
                         std::optional<JointCoordinate> coordinate = {}) {
   Motor line;

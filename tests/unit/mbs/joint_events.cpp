@@ -1,5 +1,5 @@
-// Efforts of steps in which a law of a joint changes: their derivatives, wherever in the step that is, and
-// what becomes of a motor's integral.
+// Efforts of steps with events in a joint law: their derivatives, wherever in the step the event is, and a
+// motor's integral.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -45,7 +45,7 @@ Motor any_servo(Numbers& number) {
   return motor;
 }
 
-// A step as the method takes it: with the mean of the rates.
+// A step consistent with the method: with the mean of the rates.
 LawStep any_step(Numbers& number, Real memory) {
   LawStep step{{0.3, number(-1, 1), number(-2, 2), number(0, 5)}, memory, number(1e-3, 0.3)};
   step.start.second = number(-20, 20);
@@ -123,7 +123,6 @@ TEST_CASE("a motor's integral grows over the part of a step in which the limit d
   CHECK(near(after(2, 2.95, 0.05), (3 - 2.75) / 2, {.absolute = 1e-14}));
   // The limit is reached from below, within the step.
   CHECK(near(after(2, 2.8, 0.05), (3 - 2.6) / 2, {.absolute = 1e-14}));
-  // Until I e falls to P c'' at e = 1, after half the step; it has 3 - 1 = I z then, and grows by e from
-  // there.
+  // Until I e falls to P c'' at e = 1, after half the step; then 3 - 1 = I z, which grows by e from there.
   CHECK(near(after(2, 1.1, 0.95), 1 + 0.05 * (1 + 0.9) / 2, {.absolute = 1e-14}));
 }

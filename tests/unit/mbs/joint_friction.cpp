@@ -1,4 +1,4 @@
-// Friction of joints: its derivatives while it sticks and slides, and that no step makes energy.
+// Friction of joints: its derivatives in sticking and sliding, and that no step generates energy.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -52,7 +52,7 @@ Model in_space() {
   return model;
 }
 
-// Newton's matrix beside the differences of the residual, at an iterate off the prediction.
+// Newton's matrix against differences of the residual, at an iterate off the prediction.
 void check_matrix(const Model& model, const std::vector<Real>& memory) {
   Probe probe(model);
   HhtMethod method(probe.system, model.integrator.hht_alpha, probe.position, probe.velocity);
@@ -98,7 +98,8 @@ TEST_CASE("with friction Newton's matrix is the derivative of the residual, that
       INFO("sliding, memory " << memory);
       check_matrix(model, std::vector<Real>(frictions, memory));
     }
-    // Soft and strong enough to stick. Here the level is 1: the spring's cut by it has no derivative.
+    // Soft and strong enough to stick. The factor of the limit is 1 here: clipping of the spring by it has
+    // no derivative.
     for (JointFriction& friction : model.joint_frictions)
       friction.effort += 500, friction.static_ratio = 1, friction.stribeck_rate = kInfinity;
     INFO("sticking");

@@ -14,8 +14,8 @@ using Result = KluFactors::Result;
 
 namespace {
 
-// Matrices [A, B^T; B, 0] of a chain whose links turn by an angle each: coordinates (x, y, angle) of every
-// link, two rows for every joint.
+// Matrices [A, B^T; B, 0] of a chain of bodies at these angles: coordinates (x, y, angle) of every body, two
+// rows for every joint.
 SparsePattern chain_pattern(int links) {
   SparsePattern pattern;
   std::vector<std::vector<int>> columns(static_cast<std::size_t>(5 * links));
@@ -42,7 +42,7 @@ SparsePattern chain_pattern(int links) {
   return pattern;
 }
 
-// angle: [links]; all links have the mass 1, the inertia and half length given.
+// angle: [links]; all bodies have mass 1, and the inertia and half length given.
 std::vector<Real> chain_values(const SparsePattern& pattern, const std::vector<Real>& angle, Real inertia,
                                Real half_length) {
   const int links = static_cast<int>(angle.size());
@@ -83,7 +83,8 @@ std::vector<Real> solution_anew(const SparsePattern& pattern, const std::vector<
 
 }  // namespace
 
-TEST_CASE("reused pivots give the bits of pivots chosen anew, and are given up where KLU would choose others") {
+TEST_CASE(
+    "reused pivots give the bits of pivots chosen anew, and are given up where KLU would choose others") {
   constexpr int kLinks = 30;
   const SparsePattern pattern = chain_pattern(kLinks);
   std::mt19937 random(7);
@@ -95,7 +96,7 @@ TEST_CASE("reused pivots give the bits of pivots chosen anew, and are given up w
     std::vector<Real> angle(kLinks, 0.3);
     int kept = 0, chosen = 0;
     for (int i = 0; i < 300; ++i) {
-      // Small turns mostly; now and then other lengths and inertias, whose pivots are others.
+      // Mostly small rotations; at times other lengths and inertias, whose pivots differ.
       for (Real& a : angle) a += (i % 10 == 0 ? 1 : 0.01) * turn(random);
       const Real scale = i % 50 < 25 ? 1 : 1e3;
       const std::vector<Real> values = chain_values(pattern, angle, 1e-3 * scale, 0.5 * std::sqrt(scale));
@@ -111,7 +112,7 @@ TEST_CASE("reused pivots give the bits of pivots chosen anew, and are given up w
   }
 }
 
-// Rows whose diagonal is zero and that touch few columns are the first that AMD eliminates.
+// Rows with a zero diagonal and few columns are the first that AMD eliminates.
 TEST_CASE("an order that counts on zero diagonals is given up for one that does not") {
   constexpr int kLinks = 200;
   SparsePattern pattern;

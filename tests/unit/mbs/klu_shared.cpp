@@ -1,6 +1,5 @@
 #if SCREE_REFACTORS
-// Kept pivots with matrices whose constraints share the load, some of whose pivots are a billionth of the
-// others.
+// Reused pivots with matrices of redundant constraints, some of whose pivots are a billionth of the others.
 #include "mbs/hht_method.hpp"
 #include "mbs/klu_factors.hpp"
 #include "mbs/rigid_body_system.hpp"

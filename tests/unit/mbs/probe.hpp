@@ -9,7 +9,7 @@ namespace scree {
 
 constexpr Real kTime = 0.3;
 
-// At the bodies' place at t = 0, with multipliers that are of any size.
+// At the bodies' poses at t = 0, with arbitrary multipliers.
 struct Probe {
   explicit Probe(const Model& sample) : model(sample), system(model) {
     terms.applied_force.assign(static_cast<std::size_t>(system.coordinates()), 0);

@@ -16,7 +16,7 @@ TEST_CASE("independent columns have no dependency") {
 }
 
 TEST_CASE("a dependency names exactly the columns that take part") {
-  // Column 3 = 2 column 0 - column 2; columns 1 and 4 have nothing to do with it.
+  // Column 3 = 2 column 0 - column 2; columns 1 and 4 do not take part.
   const std::vector<MatrixEntry> entries = {{0, 0, 1}, {1, 0, 3}, {2, 1, 1}, {1, 2, 5},
                                             {0, 3, 2}, {1, 3, 1}, {3, 4, 1}, {2, 4, 1}};
   CHECK(dependent_columns(4, 5, entries) == std::vector<int>{0, 2, 3});
@@ -48,7 +48,7 @@ TEST_CASE("all dependencies are found, as many as columns less the rank") {
 }
 
 TEST_CASE("a column near others hides no dependency, nor counts as one") {
-  // Column 2 is 0 + 1 but for a little, 3 is 2 + 0, and 5 is 4 + 3.
+  // Column 2 is nearly 0 + 1, 3 is nearly 2 + 0, and 5 is nearly 4 + 3.
   for (const Real little : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
     const std::vector<MatrixEntry> entries = {{0, 0, 1}, {1, 1, 1}, {0, 2, 1},      {1, 2, 1}, {2, 2, little},
                                               {0, 3, 2}, {1, 3, 1}, {2, 3, little}, {3, 4, 1}, {3, 5, 1},

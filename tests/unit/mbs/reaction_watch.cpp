@@ -1,4 +1,4 @@
-// Reactions that oscillate because nothing damps them are told from those that have a reason to.
+// Undamped oscillations of reactions are distinguished from reactions that alternate for a reason.
 #include "mbs/reaction_watch.hpp"
 
 #include <array>
@@ -47,7 +47,7 @@ Model four_bar(Real hht_alpha) {
   return model;
 }
 
-// Takes steps: what is said where the reactions are found to oscillate.
+// Takes steps and returns the message where the reactions oscillate.
 std::string outcome(const Model& model, int steps, Real h) {
   MultibodyRun run(model);
   try {
@@ -81,8 +81,7 @@ TEST_CASE("reactions that a stiff spring makes alternate are its own") {
   CHECK(outcome(model, 3000, 1e-3) == "done");
 }
 
-TEST_CASE(
-    "the watch: fifty alternating steps and a tenfold growth, of reactions and of velocity gaps") {
+TEST_CASE("the watch: fifty alternating steps and a tenfold growth, of reactions and of velocity gaps") {
   const std::vector<Real> scale{1}, constraint_scale{1};
   const auto watched = [&](Real growth, Real applied, bool gap_turns, int steps) {
     ReactionWatch watch(scale, constraint_scale);

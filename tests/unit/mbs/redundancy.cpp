@@ -1,4 +1,4 @@
-// Constraints that repeat each other: refused by name, shared, or found to contradict each other.
+// Redundant constraints: refused by name, permitted with minimum-norm reactions, or contradictory.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -67,7 +67,7 @@ TEST_CASE("with minimum-norm reactions constraints may be redundant, but not con
   SECTION("positions") {
     model.drivers[1].motion.value = 0.1;
     contradict("positions that they require at t = 0 differ by 0.1 rad");
-    model.drivers[0].motion.value = 0.1;  // both say the same, but the bodies stand elsewhere
+    model.drivers[0].motion.value = 0.1;  // consistent with each other, but not with the bodies' positions
     CHECK(contains(refusal(model),
                    "driver 'first': its motion and the joint's coordinate at t = 0 differ by 0.1 rad"));
   }
@@ -79,7 +79,8 @@ TEST_CASE("with minimum-norm reactions constraints may be redundant, but not con
     }
     model.drivers.push_back({"third", 0, ramp(2)});
     model.drivers.push_back({"fourth", 0, ramp(4)});
-    CHECK(contains(refusal(model), "driver 'fourth' contradict each other"));  // by the largest difference
+    CHECK(contains(refusal(model),
+                   "driver 'fourth' contradict each other"));  // named by the largest difference
     CHECK(!contains(refusal(model), "driver 'second'"));
   }
   SECTION("accelerations") {
@@ -105,7 +106,8 @@ TEST_CASE("with minimum-norm reactions constraints may be redundant, but not con
     model.drivers[0].deck_label = "deck.toml:9:1: drivers.first";
     CHECK(refusal(model) ==
           "deck.toml:9:1: drivers.first: joint 'weld', driver 'first' contradict each other: the velocities "
-          "that they require at t = 0 differ by 2 rad/s, and no motion satisfies them all. Change or remove one");
+          "that they require at t = 0 differ by 2 rad/s, and no motion satisfies them all. Change or remove "
+          "one");
   }
   SECTION("that begin to contradict each other on the way") {  // the rows of two joints
     model.drivers.pop_back();
@@ -145,10 +147,10 @@ TEST_CASE("a matrix that is singular due to constraints alone is reported as a s
   HhtMethod method(system, -0.1, state.position, state.velocity);
   std::vector<Real> values(method.pattern().column.size()), rhs(14);
   method.acceleration_system(state, 0, values, rhs);
-  CHECK(contains(
-      matrix_failure(system, method.pattern(), values),
-      "is singular: joint 'middle', joint 'again' are redundant in this position, or nearly so: it "
-      "is singular; integrator.redundant = \"minimum-norm\" passes it"));
+  CHECK(
+      contains(matrix_failure(system, method.pattern(), values),
+               "is singular: joint 'middle', joint 'again' are redundant in this position, or nearly so: it "
+               "is singular; integrator.redundant = \"minimum-norm\" passes it"));
 }
 
 TEST_CASE("minimum-norm reactions of a rod of 0.1 um are those of a rod of 0.1 m, scaled") {

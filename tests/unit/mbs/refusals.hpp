@@ -1,4 +1,4 @@
-// What tests of refused starts share: models of a few discs and the message that they get.
+// Shared parts of tests of refused starts: models of a few discs, and the message of the refusal.
 #pragma once
 
 #include <string>

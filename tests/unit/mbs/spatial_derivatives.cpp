@@ -1,6 +1,5 @@
 // Analytic derivatives between spatial bodies against central differences: every joint, driver and force
-// element, between two bodies and between body and ground. Poses are changed as steps change them, by
-// displace.
+// element, between two bodies and between body and ground. Poses are changed by displace, as in steps.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +22,7 @@ using namespace scree;
 
 namespace {
 
-// Neither the poses nor the velocities satisfy anything in particular: the derivatives hold everywhere.
+// Neither the poses nor the velocities satisfy any constraint: the derivatives hold everywhere.
 Model two_bodies() {
   Model model = spatial_model(-0.2);
   model.bodies = {
@@ -45,7 +44,7 @@ TimeFunction sine() {
 Joint joint_between(JointKind kind, int first, int second) {
   Joint joint = joint_at(kind, word_of(kind), first, second, {0.2, -0.3, 0.15}, {-0.1, 0.25, 0.3});
   joint.distance = 0.9, joint.lead = 0.4;
-  // The frames are turned against each other by half a radian about no axis in particular.
+  // The frames are rotated against each other by half a radian about an arbitrary axis.
   const auto orientation = [](int body) {
     return body == kGround ? Quaternion{} : two_bodies().bodies[static_cast<std::size_t>(body)].orientation;
   };
@@ -55,7 +54,7 @@ Joint joint_between(JointKind kind, int first, int second) {
   return joint;
 }
 
-// Every entry of its matrices is another one.
+// All entries of its matrices differ.
 Bushing bushing_between(int first, int second) {
   Bushing bushing;
   bushing.name = "bushing";
@@ -169,7 +168,7 @@ TEST_CASE("in space the constraint Jacobian and right-hand sides are the derivat
       return constraint(u, kTime + s);
     };
     const Matrix numeric = differences([&](const auto& u) { return constraint(u, kTime); }, probe.still);
-    constexpr Real kStep = 1e-4;  // cuts off some 1e-7, round-off of second differences is as large
+    constexpr Real kStep = 1e-4;  // truncation of some 1e-7, round-off of second differences is as large
     const std::vector<Real> before = along(-kStep), now = along(0), after = along(kStep);
     probe.evaluate(probe.position, probe.velocity);
     const SystemInstant at{kTime, probe.position, probe.velocity};
@@ -224,7 +223,7 @@ TEST_CASE("in space Newton's matrix is the derivative of the residual, tangent i
     state.acceleration.push_back(std::cos(2.0 * static_cast<Real>(i)));
     state.force.push_back(0.3 * std::sin(1.0 + static_cast<Real>(i)));
   }
-  constexpr Real kStep = 0.2;  // turns the bodies by 0.3 to 0.5 rad: T is not 1
+  constexpr Real kStep = 0.2;  // rotates the bodies by 0.3 to 0.5 rad: T is not 1
   // An iterate off the prediction, then a correction of the pose's change over beta h^2, and of lambda.
   std::vector<Real> off(size, 0.3);
   const auto residual_at = [&](const std::vector<Real>& correction) {

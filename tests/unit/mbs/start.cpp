@@ -1,4 +1,4 @@
-// What a multibody system refuses at its start, what it reports when it fails, and its consistent start.
+// The start of a multibody system: refusals, reports of failures, and consistent velocities.
 #include <petscsys.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ TEST_CASE("joints whose sides do not meet are named with their gap") {
   CHECK(contains(refusal(model), "0.03 m"));
   model.joints[0].point[0] = {0, 3e-9, 0};
   CHECK(contains(refusal(model), "their distance is 3e-09 m, allowed is 1e-09 m"));
-  model.joints[0].point[0] = {0, 9e-10, 0};  // what a deck is refused for is refused here, and nothing else
+  model.joints[0].point[0] = {0, 9e-10, 0};  // the tolerance equals that for decks
   CHECK(refusal(model) == "nothing was refused");
   model = hanging_disc();
   model.joints[0].kind = JointKind::fixed;
@@ -66,7 +66,7 @@ TEST_CASE("the refusal of start velocities names the keys and values to set, wit
       "driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is 1e-08 rad/s; set "
       "bodies.bob.velocity = [0.0, 0.925], bodies.bob.angular_velocity = "
       "1.85, or velocities = \"consistent\" at the top of the deck"));
-  // What it says is what passes.
+  // The stated velocity is accepted.
   model.bodies[0].velocity = {0, 0.925, 0};
   CHECK(contains(refusal(model), "set bodies.bob.angular_velocity = 1.85, or"));
   model.bodies[0].angular_velocity = 1.85;
@@ -103,9 +103,9 @@ TEST_CASE("consistent start velocities change the given ones least in the norm o
   CHECK(near(state.velocity[0], 0, {.absolute = kRoundOff}));
   CHECK(near(state.velocity[1], w / 2, {.relative = kRoundOff}));
   CHECK(near(state.velocity[2], w, {.relative = kRoundOff}));
-  CHECK(near(state.acceleration[0], -w * w / 2, {.relative = kRoundOff}));  // of the new velocity
+  CHECK(near(state.acceleration[0], -w * w / 2, {.relative = kRoundOff}));  // with the new velocity
   CHECK(contains(swinging.start_change(), "x component of the velocity of body 'bob' (id 0) from 3.0 to "));
-  // A driver leaves no choice; bodies that nothing holds keep what they have.
+  // A driver leaves no choice; free bodies keep their velocities.
   model.drivers.push_back({"motor", 0, ramp(1.85)});
   model.bodies.push_back(paper_disc("free", 3, 0));
   model.bodies[1].velocity = {0.1, -0.2, 0};
@@ -117,7 +117,7 @@ TEST_CASE("consistent start velocities change the given ones least in the norm o
   CHECK(state.velocity[4] == -0.2);
   CHECK(near(driven.energies(state, 0).kinetic, (0.925 * 0.925 + 0.005 * 1.85 * 1.85 + 0.01 + 0.04) / 2,
              {.relative = kRoundOff}));
-  // Velocities that agree stay what they are.
+  // Consistent velocities are unchanged.
   model.bodies[0].velocity = {0, 0.925, 0};
   model.bodies[0].angular_velocity = 1.85;
   Multibody same(model);
@@ -125,7 +125,7 @@ TEST_CASE("consistent start velocities change the given ones least in the norm o
   CHECK(state.velocity[1] == 0.925);
   CHECK(state.velocity[2] == 1.85);
   CHECK(same.start_change().empty());
-  // Redundant constraints are refused as ever.
+  // Redundant constraints are refused as without consistent velocities.
   model.drivers.push_back({"second", 0, ramp(1.85)});
   CHECK(contains(refusal(model), "driver 'motor', driver 'second'"));
 }
@@ -145,7 +145,7 @@ TEST_CASE("elements that make no sense are refused by name") {
 }
 
 TEST_CASE("the start has consistent accelerations and multipliers") {
-  // A disc that swings past: moment about the pivot, and the centripetal pull.
+  // A disc that swings past its lowest point: moment about the pivot, and the centripetal force.
   Model model = hanging_disc();
   model.bodies[0].angular_velocity = 2;
   model.bodies[0].velocity = {0, 1, 0};
@@ -204,7 +204,7 @@ TEST_CASE(
   CHECK(multibody.correct(contacts).residual < 1e-12);
 }
 
-// The rows of parallel axes hold there, too.
+// The rows of parallel axes are satisfied there, too.
 TEST_CASE("a spatial revolute joint with opposite axes is refused") {
   Model model = spatial_model(-0.1);
   model.bodies = {spatial_body("flap", 1, {1, 1, 1}, {})};
@@ -213,8 +213,7 @@ TEST_CASE("a spatial revolute joint with opposite axes is refused") {
   CHECK(contains(refusal(model), "joint 'hinge': its axes on the two bodies are opposite"));
   model.joints[0].marker[1] = exponential({0, 0, 3});
   model.drivers = {{"drive", 0, {}}};
-  CHECK(contains(refusal(model),
-                 "driver 'drive': its motion and the joint's coordinate at t = 0 differ by"));
+  CHECK(contains(refusal(model), "driver 'drive': its motion and the joint's coordinate at t = 0 differ by"));
   model.drivers[0].motion.value = 3;
   CHECK(refusal(model) == "nothing was refused");
 }
@@ -241,7 +240,7 @@ TEST_CASE("PETSc's options: words that are none, unused ones, packages") {
       run.steps(20, 1e-3);
       CHECK(run.most_iterations <= 3);
     });
-    // A PETSc without this package says so.
+    // A PETSc without this package refuses it.
     if (text != "nothing was refused") CHECK(contains(text, "this PETSc has no such LU"));
   }
   set("nonsense");

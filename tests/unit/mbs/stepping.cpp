@@ -93,7 +93,7 @@ Real polar_error(Real h, int& most_iterations) {
 }  // namespace
 
 TEST_CASE("the HHT core integrates a system whose mass depends on the position") {
-  constexpr Real kTruncationOrder = 2e-4;  // of the order at these steps
+  constexpr Real kTruncationOrder = 2e-4;  // of the observed order at these steps
   int most_iterations = 0;
   const Real coarse = polar_error(1e-2, most_iterations), fine = polar_error(5e-3, most_iterations);
   CAPTURE(coarse, fine);
@@ -118,7 +118,7 @@ TEST_CASE("residuals reach 1e-8 of the forces at small steps") {
   MultibodyRun net(paper_net(), 1e-8);
   net.steps(50, 1e-5);
   CHECK(net.most_iterations <= 3);
-  // At rest and without gravity: what is left is round-off of the springs' lengths, and of nothing.
+  // At rest and without gravity: the residual is round-off of the springs' lengths, or zero.
   for (const Real stiffness : {1e9, 0.0}) {
     Model model = paper_net();
     model.gravity = {0, 0, 0};
@@ -191,7 +191,7 @@ TEST_CASE("reports of a state depend on the state alone, and leave no trace in t
   CHECK(same_bits(plain.state.memory, asked.state.memory));
 }
 
-// The rod stands across the guide and says again what the guide says.
+// The rod is perpendicular to the guide, so that its row is redundant to the guide's.
 TEST_CASE("in a singular position the reactions are those of the step") {
   Model model = empty_model();
   model.bodies = {paper_disc("block", 0.3, 0)};
@@ -213,7 +213,7 @@ TEST_CASE("contacts that change at a step's end leave nothing behind for the nex
     run.multibody.accept(run.state, std::vector{BodyWrench{{}, {0, 0, 0.05}}});
     run.time += 1e-2;
   };
-  // The arm turns and Phi_q with it; the pin at the centre leaves Phi_q as it is.
+  // The arm rotates and Phi_q with it; a pin at the centre leaves Phi_q constant.
   for (const Real arm : {0.5, 0.0}) {
     CAPTURE(arm);
     Model model = empty_model();
@@ -221,7 +221,7 @@ TEST_CASE("contacts that change at a step's end leave nothing behind for the nex
     model.joints.push_back(ground_pin("pivot", 0, {0, 0, 0}, {-arm, 0, 0}));
     MultibodyRun run(model);
     for (int i = 0; i < 10; ++i) pushed_step(run);
-    // One that starts here has seen no other matrix.
+    // A run that starts here has factored no other matrix.
     model.bodies[0].position = {run.x(0), run.y(0), 0}, model.bodies[0].angle = run.angle(0);
     MultibodyRun fresh(model);
     fresh.state = run.state, fresh.time = run.time;
@@ -261,12 +261,12 @@ TEST_CASE("motion, extrapolation and the error estimate") {
       near(run.multibody.error(), hht_coefficients(0).error_constant * 0.25 * 200, {.relative = kRoundOff}));
 }
 
-// Surfaces are placed by the open step's motion, and by the state's after a restart or a rejected step.
+// Surfaces are posed by the open step's motion, and by the state's after a restart or a rejected step.
 TEST_CASE("the motion of a state in space is that of the step that led there, bit for bit") {
   const Model model = double_spherical(-0.1);
   MultibodyRun run(model);
   std::size_t same = 0;
-  constexpr std::size_t kSteps = 300;  // unit quaternions that another normalization changes are among them
+  constexpr std::size_t kSteps = 300;  // they include unit quaternions that a second normalization changes
   for (std::size_t i = 0; i < kSteps; ++i) {
     run.step(1e-3);
     const std::vector<BodyMotion>& last = run.multibody.motion();
@@ -291,7 +291,7 @@ TEST_CASE("another wrench at the step's end changes accelerations and reactions,
   Multibody multibody(model);
   std::vector<BodyWrench> push(2);
   push[0].force = {3, 0, 0};
-  push[1].force = {2, 0, 0};  // along the arm: the pivot takes it
+  push[1].force = {2, 0, 0};  // along the arm: the reaction of the pivot balances it
   MultibodyState state = multibody.initial_state(push);
   multibody.predict(state, 0, 1e-3);
   for (int i = 0; i < 3; ++i) multibody.correct({push, {}});

@@ -1,4 +1,4 @@
-// Fewer triangles for the same surface: how near they stay, what they keep, and that order does not matter.
+// Coarsening: distance from the original surface, preserved edges, and independence of the order.
 #include "mesh/coarsen.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// Of the vertices given, the farthest beside the coarse mesh [m].
+// Largest distance of an original vertex from the coarse mesh [m].
 Real farthest(const TriangleMesh& given, const TriangleMesh& coarse) {
   Real most = 0;
   for (const Vec3 p : given.vertices) {
@@ -94,9 +94,9 @@ TEST_CASE("sharp and free edges stay where they are, and their corners") {
   const auto box_of = [](const TriangleMesh& mesh) { return closed_mesh(mesh).box; };
   CHECK(box_of(coarse.mesh).max.z == 0.5);
   CHECK(box_of(coarse.mesh).min.z == -0.5);
-  for (const Vec3 v : coarse.mesh.vertices) CHECK(std::abs(v.z) == 0.5);  // all within is gone
+  for (const Vec3 v : coarse.mesh.vertices) CHECK(std::abs(v.z) == 0.5);  // all interior vertices are removed
   CHECK(std::ranges::count_if(coarse.mesh.vertices, [](Vec3 v) { return std::hypot(v.x, v.y) < 0.99; }) <= 2);
-  // The hole of a sheet, and its corners.
+  // The hole of an open surface, and its corners.
   TriangleMesh holed = unit_grid(10, 10);
   std::erase_if(holed.triangles, [&](const auto& t) {
     const Vec3 middle = holed.vertices[t[0]] + holed.vertices[t[1]] + holed.vertices[t[2]];

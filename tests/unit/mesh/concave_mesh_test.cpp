@@ -1,4 +1,4 @@
-// Corners and bends: as many contacts as there are places that a sphere touches, and a force without jumps.
+// Corners and bends: one contact for each touched position, and a force without jumps.
 #include <cmath>
 #include <vector>
 
@@ -36,7 +36,7 @@ TriangleMesh bend(Real radius, int facets) {
 
 constexpr Real kCore = 2, kOuter = 5, kPitch = 4;  // of the screw [m]
 
-// A turn and a half of a flight on its core, of this many steps a turn.
+// One and a half revolutions of a flight on its core, with this number of segments per revolution.
 TriangleMesh screw(int steps) {
   const int count = 3 * steps / 2;
   const TriangleMesh flat = strip({{kCore, 0, 2}, {kCore, 0, 0}, {kOuter, 0, 0}}, 1, count);
@@ -64,8 +64,8 @@ Touch touch_at(const SurfaceMesh& mesh, Vec3 c) {
 }
 
 struct Jumps {
-  Real force = 0, overlap = 0;  // the largest change, over the way [m/m]
-  int places = 0;               // that were compared
+  Real force = 0, overlap = 0;  // the largest change per displacement [m/m]
+  int places = 0;               // positions compared
 };
 
 // Along short random lines in a box, where no overlap is more than a tenth of the radius.
@@ -138,8 +138,7 @@ TEST_CASE("in a bend the bottom is touched once, both walls apart") {
 
 TEST_CASE("on a screw flight and core are touched apart, and both in their corner") {
   const SurfaceMesh mesh = sheet_mesh(screw(200));
-  // Above the middle of the sheet; a height above the flight along the axis is more than the distance from
-  // it.
+  // Above the middle of the flight's face; a height along the axis exceeds the distance from the flight.
   const auto place = [](Real from_core, Real above_flight) {
     const Real angle = 1.5 * M_PI, radius = kCore + from_core;
     const Real slope = std::atan(kPitch / (2 * M_PI * radius));

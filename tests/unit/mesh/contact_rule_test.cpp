@@ -1,5 +1,5 @@
-// What holds for contacts on any mesh: the nearest point is among them, whatever the order of the row; and
-// what a run asks of features besides.
+// Properties of contacts on any mesh: the nearest point is among them, whatever the order of the row; and
+// further properties of features used in runs.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -34,7 +34,7 @@ Real distance_from(const SurfaceMesh& mesh, Vec3 c) {
   return std::sqrt(least);
 }
 
-// The rule on a sheet word for word, with all candidates at once.
+// The rule on an open surface, implemented literally with all candidates at once.
 std::vector<MeshContact> contacts_by_rule(const SurfaceMesh& mesh, Vec3 c, Real reach) {
   using namespace mesh_detail;
   const MeshView view = mesh.view();
@@ -118,7 +118,7 @@ TEST_CASE("where a face was touched last changes no contact") {
   }
 }
 
-// What reaches beyond touch must leave what is touched as it is.
+// Features beyond touch must not change the contacts.
 TEST_CASE("a query with a larger range finds the contacts of a smaller one first, then farther ones") {
   constexpr Real kRadius = 0.2;
   MeshRandom random(43);
@@ -132,7 +132,7 @@ TEST_CASE("a query with a larger range finds the contacts of a smaller one first
       const auto touched = contacts_at(surface, c, kRadius);
       auto found = contacts_at(surface, c, kRadius * random.in(1, 1.3));
       const auto beyond = std::find_if(found.begin(), found.end(), [](const MeshContact& contact) {
-        return !(std::abs(contact.distance) < kRadius);  // or too deep inside
+        return !(std::abs(contact.distance) < kRadius);  // or too far inside
       });
       farther += beyond != found.end();
       found.erase(beyond, found.end());
@@ -143,7 +143,7 @@ TEST_CASE("a query with a larger range finds the contacts of a smaller one first
   }
 }
 
-// More nearer facets than there are slots, which are one contact, crowd the floor out of the first look.
+// More than kMeshSlots nearer facets, which are one contact, displace the floor from the first pass.
 TEST_CASE("the last touched triangle changes no contact, also with many nearer ones") {
   constexpr int kFacets = 64;
   constexpr Real kHalf = 0.45 * M_PI, kReach = 0.95;

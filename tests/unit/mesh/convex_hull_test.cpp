@@ -1,4 +1,4 @@
-// Convex hulls: of what is convex, of what is not, of points in every bad order and place.
+// Convex hulls of convex and non-convex meshes, and of points in unfavourable order and position.
 #include "mesh/convex_hull.hpp"
 
 #include <algorithm>
@@ -19,18 +19,19 @@ namespace scree {
 
 namespace {
 
-// A closed surface of one piece. Of points that lie in a plane but for round-off some triangles have no area.
+// The hull must be one closed surface. With points that are coplanar but for round-off some triangles may be
+// degenerate.
 TriangleMesh sound_hull(const std::vector<Vec3>& points) {
   const TriangleMesh hull = convex_hull(points);
   std::set<std::pair<Index, Index>> ways;
   for (const auto& [a, b, c] : hull.triangles) ways.insert({{a, b}, {b, c}, {c, a}});
   CHECK(ways.size() == 3 * hull.triangles.size());
   CHECK(std::ranges::all_of(ways, [&](const auto& way) { return ways.contains({way.second, way.first}); }));
-  CHECK(2 * (hull.vertices.size() - 2) == hull.triangles.size());  // Euler's, of a sphere
+  CHECK(2 * (hull.vertices.size() - 2) == hull.triangles.size());  // Euler's formula for a sphere
   return hull;
 }
 
-// How far the farthest of the points is outside [m].
+// Distance of the farthest point outside the hull [m].
 Real farthest_outside(const TriangleMesh& hull, const std::vector<Vec3>& points) {
   Real farthest = 0;
   for (const auto& [a, b, c] : hull.triangles) {
@@ -50,7 +51,7 @@ void check_same_mass(const TriangleMesh& mesh, const TriangleMesh& other, Real b
   CHECK(near(a.inertia.zz, b.inertia.zz, {.relative = bound}));
 }
 
-// A unit cube whose top is a pyramid that hangs into it.
+// A unit cube whose top is an inverted pyramid.
 TriangleMesh dented_cube(Real depth) {
   TriangleMesh cube = block({0, 0, 0}, {1, 1, 1}, 2);
   for (Vec3& v : cube.vertices)

@@ -1,4 +1,4 @@
-// Curved surfaces made of triangles: what remains of the force is what the facets' sag makes of it.
+// Curved surfaces made of triangles: the error of the force is due to the facets' sag alone.
 #include <cmath>
 #include <vector>
 
@@ -13,8 +13,8 @@ namespace {
 
 constexpr Real kRadius = 1;  // of the particle [m]
 
-// Root mean square of force / (k overlap) - 1 at random places at this overlap with the sphere that a mesh is
-// inscribed in.
+// Root mean square of force / (k overlap) - 1 at random positions, at this overlap with the circumscribed
+// sphere.
 Real force_error(const SurfaceMesh& mesh, Real distance, Real overlap) {
   MeshRandom random(1);
   Real sum = 0;
@@ -26,8 +26,8 @@ Real force_error(const SurfaceMesh& mesh, Real distance, Real overlap) {
   return std::sqrt(sum / kPlaces);
 }
 
-// A point mass of 1 kg on a linear spring, its centre at the height of the drum's axis, let go without
-// friction: the largest change of its energy over a swing and back, over the drop.
+// A point mass of 1 kg on a linear spring, released without friction at the height of the drum's axis: the
+// largest change of its energy over a swing and back, relative to the drop.
 Real swing_energy_error(const SurfaceMesh& drum, Real drum_radius, int steps_per_contact) {
   constexpr Real kGravity = 1, kStiffness = 300, kPeriod = 22;
   const Real h = M_PI / std::sqrt(kStiffness) / steps_per_contact, drop = drum_radius - kRadius;
@@ -87,8 +87,8 @@ TEST_CASE("in a drum of 144 facets the force is that of the facet's sag, and nev
     least = std::min(least, force), most = std::max(most, force);
   }
   CHECK(one);
-  // Sag in the middle of a facet: 10 (1 - cos(180/144 deg)) = 0.00238 m; over its ends 1 - cos of that angle
-  // of the distance from the axis less.
+  // Sag in the middle of a facet: 10 (1 - cos(180/144 deg)) = 0.00238 m; over its ends the distance from the
+  // axis is less by 1 - cos of that angle.
   CHECK(near(most, 1.238, {.absolute = 1e-3}));
   CHECK(near(least, 1.0235, {.absolute = 1e-3}));
 }

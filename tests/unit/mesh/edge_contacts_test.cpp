@@ -1,4 +1,4 @@
-// Edges and corners: the force is k times the overlap all along closed paths around them, which take no work.
+// Edges and corners: the force is k times the overlap along closed paths around them, with no net work.
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -13,7 +13,7 @@ namespace scree {
 namespace {
 
 constexpr Real kRadius = 1;      // of the particle [m]
-constexpr Real kDistance = 0.9;  // of its centre from what it touches [m]
+constexpr Real kDistance = 0.9;  // distance of its centre from the touched feature [m]
 
 // Around the rectangle from (0, 0) to (x, y) at this distance: sides and quarters of circles.
 std::vector<Vec3> around_rectangle(Real x, Real y, Real distance) {
@@ -28,16 +28,17 @@ std::vector<Vec3> around_rectangle(Real x, Real y, Real distance) {
   return path;
 }
 
-// What goes wrong along a path that keeps its distance from a mesh.
+// Errors along a path at constant distance from a mesh.
 struct PathErrors {
   Real force = 0;   // the largest of |force / k| - overlap [m]
   Real work = 0;    // of the force over k along the whole path [m^2]
-  int not_one = 0;  // places without or with several contacts
+  int not_one = 0;  // positions without or with several contacts
 };
 
 PathErrors errors_along(const SurfaceMesh& mesh, const std::vector<Vec3>& path, const Mat3& turn) {
   PathErrors errors;
-  constexpr int kParts = 20;  // of a piece of the path, so that it also passes close to where regions meet
+  constexpr int kParts =
+      20;  // of a piece of the path, so that it also passes close to the borders of regions
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vec3 from = path[i], to = path[(i + 1) % path.size()];
     const auto contacts = contacts_at(mesh, turn * from, kRadius);

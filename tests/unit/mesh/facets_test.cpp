@@ -1,4 +1,4 @@
-// How far facets lie from the surfaces that they stand for, against points on all facets.
+// Deviation of facets from the surfaces that they approximate, against points on all facets.
 #include "mesh/facets.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// The distance of a point from one of the surfaces that a shape is made of [m].
+// The distance of a point from one of the surfaces of a shape [m].
 using Surface = std::function<Real(Vec3)>;
 
 Surface cylinder(Real radius) {
@@ -33,7 +33,7 @@ Surface cone(Real radius, Real top_radius, Real length) {
     return std::abs(beside) * length / slant;
   };
 }
-// The face of a left-handed flight that is turned by `angle` at z = 0, by brute force over the angle.
+// The face of a left-handed flight that is rotated by `angle` at z = 0, by brute force over the angle.
 Surface helicoid(Real rise, Real angle) {
   return [=](Vec3 p) {
     const Real own = std::atan2(p.y, p.x);
@@ -53,8 +53,8 @@ Surface helicoid(Real rise, Real angle) {
   };
 }
 
-// The largest distance of points of facets from the surface that has their corners, the nearest one where
-// several do.
+// The largest distance of points of facets from the surface on which their corners lie, the nearest one of
+// several.
 Real measured(const TriangleMesh& mesh, const std::vector<Surface>& surfaces, int points = 12) {
   constexpr Real kOnIt = 1e-9;
   Real farthest = 0;
@@ -144,7 +144,7 @@ TEST_CASE("facets of screws have the stated deviation from core, rim and faces")
                                           disc(screw.core_length / 2), disc(-screw.core_length / 2)};
       CHECK(facet_deviation(screw) == Approx(measured(screw_mesh(screw), surfaces, 8)).epsilon(0.02));
     }
-  // The angles between its facets do not show this sag: eight chords around a rim of radius 0.045.
+  // The angles between its facets do not reveal this sag: eight chords around a rim of radius 0.045.
   CHECK(facet_deviation(ScrewShape{0.012, 0.045, 0.07, 0.005, 0.14, 0.14, 8}) ==
         Approx(0.045 * (1 - std::cos(kPi / 8))).epsilon(0.01));
 }

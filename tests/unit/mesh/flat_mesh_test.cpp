@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// Of slivers: some 1 : 1000.
+// A grid of slivers: some 1 : 1000.
 TriangleMesh sliver_grid(unsigned seed) {
   MeshRandom random(seed);
   return mapped(unit_grid(2, 500), [&](Vec3 v) {
@@ -35,7 +35,7 @@ std::vector<TriangleMesh> flat_meshes() {
           mapped(sliver_grid(6), large)};
 }
 
-// Places over a mesh: at random, over vertices, over edges, a last place beside both.
+// Positions over a mesh: random, over vertices, over edges, and one ulp beside either.
 Vec3 place_over(const TriangleMesh& mesh, MeshRandom& random) {
   const auto& t = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
   const Vec3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];

@@ -1,4 +1,4 @@
-// The corners by which planes touch a mesh: as many as there are, whatever the triangles.
+// The corners by which planes touch a mesh: exactly those of the hull, whatever the triangles.
 #include "mesh/hull_corners.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// How far points go in a direction [m].
+// Extent of the points in a direction [m].
 Real farthest(const std::vector<Vec3>& points, Vec3 direction) {
   Real most = -kInfinity;
   for (const Vec3 p : points) most = std::max(most, dot(p, direction));

@@ -1,4 +1,4 @@
-// Inside or outside of closed meshes, against their solid angles.
+// Inside test of closed meshes against their solid angles.
 #include "mesh/inside.hpp"
 
 #include "mesh/primitives.hpp"
@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-// How often a mesh winds around p: the sum of the triangles' solid angles (Van Oosterom and Strackee, IEEE
+// Winding number of a mesh about p: the sum of the triangles' solid angles (Van Oosterom and Strackee, IEEE
 // Trans. Biomed. Eng. 30, 1983) over 4 pi.
 Real winding(const MeshView& mesh, Vec3 p) {
   Real sum = 0;
@@ -49,7 +49,7 @@ TEST_CASE("points inside closed meshes and outside, those in line with edges and
       ++looked_at;
       wrong += is_inside(view, p) != (winding(view, p) > 0.5);
     };
-    // A lattice whose lines have vertices, edges and faces on them.
+    // A lattice some of whose lines contain vertices, edges and faces.
     for (int x = -6; x <= 6; ++x)
       for (int y = -6; y <= 6; ++y)
         for (int z = -6; z <= 6; ++z) look({Real(x) / 4, Real(y) / 4, Real(z) / 4});

@@ -1,4 +1,4 @@
-// What is said of triangles that are no surface.
+// Messages on triangles that do not form a surface.
 #include "mesh/mesh_checks.hpp"
 
 #include <cmath>
@@ -29,7 +29,7 @@ TriangleMesh turned_over(TriangleMesh mesh) {
   return mesh;
 }
 
-// Every corner a vertex of its own, as in STL.
+// A vertex for every corner of every triangle, as in STL.
 TriangleMesh torn(const TriangleMesh& mesh) {
   TriangleMesh result;
   for (const auto& triangle : mesh.triangles) {
@@ -46,7 +46,7 @@ TEST_CASE("vertices of equal coordinates become one") {
   const TriangleMesh mesh = welded(torn(cube()));
   CHECK(mesh.vertices.size() == 8);
   CHECK(mesh_troubles(mesh, false) == Texts{});
-  // In the order of use, whatever the order and number of those given.
+  // In the order of use, whatever the order and number of the original vertices.
   TriangleMesh shuffled = cube();
   std::reverse(shuffled.vertices.begin(), shuffled.vertices.end());
   shuffled.vertices.push_back({5, 5, 5});
@@ -72,7 +72,7 @@ TEST_CASE("vertices within a tolerance become one") {
   CHECK(loose.mesh.vertices.size() == 8);
   CHECK(mesh_troubles(loose.mesh, false) == Texts{});
   CHECK(welded_within(mesh, 1e-300).mesh.vertices == welded(mesh).vertices);
-  // A sliver goes with its short edge, and the others keep their numbers.
+  // A sliver is removed with its short edge, and the others keep their numbers.
   const NumberedMesh sheet =
       welded_within({{{0, 0, 0}, {1, 0, 0}, {1, 1e-9, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}, 1e-8);
   CHECK(sheet.mesh.triangles == std::vector<std::array<Index, 3>>{{0, 1, 2}});
@@ -133,7 +133,7 @@ TEST_CASE("triangles twice, without area, without numbers") {
   CHECK(mesh_troubles(broken, false)[0].starts_with(
       "5 triangles have coordinates that are no finite numbers; all must be: triangle 4 (1, -1, -1) "));
   CHECK(mesh_troubles({}, false) == Texts{"no triangles"});
-  // A sliver a million times as long as high is none of these.
+  // A sliver with an aspect ratio of a million has none of these defects.
   CHECK(mesh_troubles(box_mesh({{1, 1, 1e-6}}), false) == Texts{});
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("shells that do not fit to where they are") {
   CHECK(inverted[0].starts_with(
       "a shell is inside out; corners must run counterclockwise seen from outside, but "
       "around a cavity: that of triangle 12 ("));
-  // One inside a cavity, and an inverted one beside.
+  // One shell inside a cavity, and an inverted one outside.
   const TriangleMesh twice =
       with(with(hollow, sphere_mesh({0.1, 1}), {0.2, 0, 0}), turned_over(cube()), {0, 0, 9});
   CHECK(mesh_troubles(twice, false).size() == 1);

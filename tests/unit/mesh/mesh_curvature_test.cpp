@@ -1,4 +1,4 @@
-// Radii of curvature and sags, of shapes whose radii are known.
+// Radii of curvature and sags of shapes with known radii.
 #include "mesh/mesh_curvature.hpp"
 
 #include "mesh/primitives.hpp"

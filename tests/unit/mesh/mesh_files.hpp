@@ -13,7 +13,7 @@ namespace scree {
 
 struct MeshFile {
   std::string name, bytes;
-  bool single = false;  // its numbers have 24 bits
+  bool single = false;  // whether its numbers have 24 bits
 };
 
 template <class Number>
@@ -107,8 +107,8 @@ inline std::vector<MeshFile> tetrahedron_files() {
           {"float.ply", binary_ply<float>("float", false), true}};
 }
 
-// More of what the formats know: a prism over an L with faces of four and six corners, counted back and with
-// texture and normals; a cube of squares with elements and lists that are passed over.
+// Further features of the formats: a prism over an L with faces of four and six corners, with negative
+// indices and with texture and normals; a cube of squares with elements and lists that the reader skips.
 inline std::vector<MeshFile> polygon_files() {
   std::string l = "mtllib l.mtl\ng l\n", prism;
   for (const char* const z : {" 0\n", " 1\n"})

@@ -1,4 +1,4 @@
-// Concave edges past the feature angle.
+// Concave edges beyond the feature angle.
 #include "mesh/mesh_fold.hpp"
 
 #include <numbers>
@@ -18,7 +18,7 @@ MeshFold fold_of(const TriangleMesh& mesh, bool sheet, Real feature_angle = kFea
   return build_surface_mesh(mesh, feature_angle, sheet).fold;
 }
 
-// Through the points, along z.
+// A line through the points, extruded along z.
 TriangleMesh bent(const std::vector<Vec3>& points, bool closed = false) {
   return extruded_line_mesh(points, closed, 1);
 }
@@ -48,8 +48,8 @@ TEST_CASE("of closed meshes folds are concave from outside") {
   CHECK(fold_of(pipe_mesh({1, 2, 1, 16}), false).angle == 0);
   CHECK(fold_of(pipe_mesh({1, 2, 1, 16}), false, 0.2).angle == 0);
   CHECK(fold_of(pipe_mesh({1, 2, 1, 8}), false, 0.8).angle == 0);
-  // The first of 16 that turn alike.
-  CHECK(norm(fold_of(pipe_mesh({1, 2, 1, 8}), false).position) == Approx(1).epsilon(kAccumulatedRoundOff));
+  // The first of 16 folds with equal angles.
+  CHECK(norm(fold_of(pipe_mesh({1, 2, 1, 8}), false).position) == Approx(1));
 }
 
 }  // namespace scree

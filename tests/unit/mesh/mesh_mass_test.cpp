@@ -1,4 +1,4 @@
-// What meshes weigh, against closed forms.
+// Mass properties of meshes against closed forms.
 #include "mesh/mesh_mass.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr Real kPi = std::numbers::pi_v<Real>;
 
 Real largest(const Sym3& j) { return std::max({std::abs(j.xx), std::abs(j.yy), std::abs(j.zz)}); }
 
-// `bound`: of mass and the largest moment; of the centre, times `size`.
+// `bound`: for mass and the largest moment; for the centre, times `size`.
 void check_near(const MassProperties& a, const MassProperties& b, Real bound, Real size = 1) {
   CHECK(near(a.mass, b.mass, {.relative = bound}));
   CHECK(near(a.center, b.center, {.absolute = bound * size}));
@@ -42,7 +42,7 @@ Mat3 some_turn() {
   return Mat3{{c, -s, 0}, {s, c, 0}, {0, 0, 1}} * Mat3{{1, 0, 0}, {0, d, -t}, {0, t, d}};
 }
 
-// A prism over a right triangle, symmetric to no axis.
+// A prism over a right triangle, without symmetry.
 TriangleMesh wedge() {
   return {{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}, {2, 0, 3}, {0, 1, 3}},
           {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
@@ -90,7 +90,7 @@ TEST_CASE("mass properties depend neither on a mesh's fineness nor on its orient
   const Mat3 turn = some_turn();
   check_near(solid_mesh_mass(moved(mesh, turn, {}), 3),
              {mass.mass, turn * mass.center, turned_tensor(turn, mass.inertia)}, 1e-14, 3);
-  // So far that no coordinate is rounded, and as far that all are, to 1.2e-10 m.
+  // So far away that no coordinate is rounded, and as far that all are, to 1.2e-10 m.
   const Vec3 exact{1 << 20, -(1 << 20), 1 << 19}, far{1e6, -1e6, 7e5};
   check_near(solid_mesh_mass(moved(mesh, identity3(), exact), 3),
              {mass.mass, mass.center + exact, mass.inertia}, 1e-14, 1e6);
@@ -121,7 +121,7 @@ TEST_CASE("a torus and a sphere at order 2") {
 }
 
 TEST_CASE("a shell's mass lies on its area") {
-  // A cube of six plates of 1 kg: each 1/12 (twice or once) and 1/4 where it stands off the axis.
+  // A cube of six plates of 1 kg: each 1/12 (twice or once) and 1/4 where it is off the axis.
   check_near(shell_mesh_mass(box_mesh({{1, 1, 1}}), 1), {6, {}, {5 / 3., 0, 0, 5 / 3., 0, 5 / 3.}}, 4 * kUlp);
   const MassProperties plate = shell_mesh_mass(moved(rectangle_mesh(2, 3), identity3(), {1, 0, 0}), 0.5);
   check_near(plate, {3, {1, 0, 0}, {3 * 9 / 12., 0, 0, 1, 0, 3 * 13 / 12.}}, 4 * kUlp);

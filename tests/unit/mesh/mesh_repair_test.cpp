@@ -1,4 +1,4 @@
-// What of a mesh is put right, and what stays as it is.
+// Repairs of meshes, and meshes that stay unchanged.
 #include "mesh/mesh_repair.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ MeshRepair repair_of(const TriangleMesh& mesh, bool sheet = false) {
   return repaired(numbered(welded(mesh)), sheet);
 }
 
-// Of a closed one that is sound then.
+// Volume of a repaired closed mesh, which must be sound.
 Real volume_of(const MeshRepair& repair) {
   CHECK(mesh_troubles(repair.mesh.mesh, false) == Texts{});
   return mesh_volume(repair.mesh.mesh);
@@ -58,7 +58,8 @@ TEST_CASE("a sound mesh stays as it is") {
 }
 
 TEST_CASE("a row of triangles without area that faces another row is joined across") {
-  // The top edge of one side, from (0, 0) to (8, 0), is one; that of the other has seven points between.
+  // The top edge of one side, from (0, 0) to (8, 0), is undivided; that of the other has seven points
+  // between.
   TriangleMesh mesh;
   for (int i = 0; i <= 8; ++i) mesh.vertices.push_back({Real(i), 0, 0});
   mesh.vertices.push_back({4, 3, 0});
@@ -74,13 +75,14 @@ TEST_CASE("a row of triangles without area that faces another row is joined acro
   CHECK(repair.without_area.first == "triangle 9 (0, 0, 0) (1, 0, 0) (2, 0, 0)");
   CHECK(repair.mesh.mesh.triangles.size() == 16);
   CHECK(mesh_area(repair.mesh.mesh) == 24);
-  // One plane without an edge inside: what a sphere could touch there is gone.
+  // One plane without interior edges: no feature that a sphere could touch there remains.
   const SurfaceMesh surface = build_surface_mesh(repair.mesh.mesh, 0.5, true);
   CHECK(surface.parts.size() == 1);
 }
 
 TEST_CASE("a long row of triangles without area takes as many steps as it has") {
-  // Fans from either end of an edge, one above the other, with points between each other's.
+  // Fans from either end of an edge, one above the other, with the points of each between those of the
+  // other.
   constexpr Index kCount = 2000;
   TriangleMesh mesh;
   for (Index i = 0; i <= 2 * kCount; ++i) mesh.vertices.push_back({Real(i), 0, 0});
@@ -105,7 +107,7 @@ TEST_CASE("corners that lie on each other but for round-off become one") {
   TriangleMesh mesh = cube();
   mesh.vertices.push_back(mesh.vertices[6] + Vec3{1e-14, 0, 0});
   const Index twin = static_cast<Index>(mesh.vertices.size()) - 1;
-  // A triangle at the corner gets the other one, and a needle on either side closes the gap.
+  // A triangle at the corner gets the other vertex, and a needle on either side closes the gap.
   const auto at =
       std::ranges::find_if(mesh.triangles, [](const auto& t) { return std::ranges::find(t, 6) != t.end(); });
   std::array<Index, 3>& one = *at;
@@ -125,7 +127,7 @@ TEST_CASE("duplicate triangles: the edges decide which stay") {
   twice.triangles.push_back({twice.triangles[4][1], twice.triangles[4][0], twice.triangles[4][2]});
   CHECK(repair_of(twice).twins.count == 1);
   CHECK(volume_of(repair_of(twice)) == 8);
-  // A file that has everything twice, and one that has every face from both sides.
+  // A file with every triangle twice, and one with every face from both sides.
   for (const TriangleMesh& other : {cube(), turned_over(cube())}) {
     const MeshRepair repair = repair_of(with(cube(), other));
     CHECK(repair.twins.count == 12);
@@ -138,7 +140,7 @@ TEST_CASE("duplicate triangles: the edges decide which stay") {
   const MeshRepair pair = repair_of(with(cube(), mirrored));
   CHECK(pair.twins.count == 4);
   CHECK(volume_of(pair) == 16);
-  // A leaf of two triangles on each side stays on a sheet once, and is no part of a solid.
+  // A leaf of two triangles on each side is kept once on an open surface, and is no part of a solid.
   TriangleMesh leaf = cube();
   leaf.vertices.insert(leaf.vertices.end(), {{0, 0, 5}, {1, 0, 5}});
   leaf.triangles.insert(leaf.triangles.end(), {{0, 1, 8}, {8, 1, 0}, {1, 9, 8}, {8, 9, 1}});
@@ -146,7 +148,7 @@ TEST_CASE("duplicate triangles: the edges decide which stay") {
   CHECK(volume_of(repair_of(leaf)) == 8);
   CHECK(repair_of(leaf, true).twins.count == 2);
   CHECK(repair_of(leaf, true).mesh.mesh.triangles.size() == 14);
-  // A rectangle from both sides encloses nothing: one side stays, and is open.
+  // A two-sided rectangle encloses nothing: one side is kept, and is open.
   const TriangleMesh plate = rectangle_mesh(1, 1);
   const MeshRepair both = repair_of(with(plate, turned_over(plate)));
   CHECK(both.mesh.mesh.triangles.size() == 2);
@@ -162,20 +164,20 @@ TEST_CASE("shells are oriented outward, and cavities stay") {
     CHECK(near(volume_of(repair), volume, {.relative = 1e-13}));
   };
   check(turned_over(cube()), 12, 8);
-  // Beside, and all of it; the outer one of a hollow alone, and all of it.
+  // Outside, and all of it; the outer shell of a hollow body alone, and all of it.
   check(with(cube(), turned_over(ball), {4, 0, 0}), 320, 8 + of_ball);
   check(turned_over(with(cube(), ball, {4, 0, 0})), 332, 8 + of_ball);
   check(with(turned_over(cube()), turned_over(ball)), 12, 8 - of_ball);
   check(with(turned_over(cube()), ball), 332, 8 - of_ball);
-  // One in a cavity.
+  // A shell in a cavity.
   const TriangleMesh hollow = with(cube(), turned_over(ball));
   check(with(hollow, turned_over(small)), 80, 8 - of_ball + of_small);
   check(turned_over(with(hollow, small)), 412, 8 - of_ball + of_small);
-  // A few of the cavity's own.
+  // A few triangles of the cavity.
   TriangleMesh some = hollow;
   for (std::size_t t = 20; t < 120; ++t) std::swap(some.triangles[t][1], some.triangles[t][2]);
   check(some, 100, 8 - of_ball);
-  // A solid in a solid is no mistake of windings.
+  // A solid inside a solid is not an error of windings.
   const MeshRepair inner = repair_of(with(cube(), ball));
   CHECK(inner.turned.count == 0);
   CHECK(mesh_troubles(inner.mesh.mesh, false)[0].starts_with("a shell lies inside another"));
@@ -188,7 +190,7 @@ TEST_CASE("an open surface may have any windings, and be one-sided") {
   const MeshRepair repair = repair_of(sheet, true);
   CHECK(repair.turned.count == 1);
   CHECK(build_surface_mesh(repair.mesh.mesh, 0.5, true).parts.size() == 1);
-  // A strip that is half a turn around: an edge stays between the windings, without sides.
+  // A Moebius strip: an edge between opposite windings remains, without sides.
   TriangleMesh strip;
   constexpr int kCount = 24;
   for (int k = 0; k < kCount; ++k)

@@ -1,4 +1,4 @@
-// What a mesh consists of: parts, patches, edges and vertices that may be touched, in known numbers.
+// Parts, patches, edges and vertices of meshes that may be touched, in known numbers.
 #include "mesh/mesh_topology.hpp"
 
 #include <set>
@@ -39,7 +39,7 @@ TEST_CASE("bodies with sharp edges have a part and a patch per side") {
 
 TEST_CASE("a smooth body has one patch and a part per triangle") {
   CHECK(counts_of(closed_mesh(icosphere(2, 1))) == Counts{320, 1, 480, 162});
-  // An icosahedron's edges turn by 42 degrees.
+  // The angle at an icosahedron's edges is 42 degrees.
   CHECK(counts_of(closed_mesh(icosphere(0, 1))) == Counts{20, 20, 30, 12});
 }
 
@@ -91,17 +91,17 @@ TEST_CASE("a step of any height separates two flats, round-off does not") {
 
 TEST_CASE("slivers join the plane of their neighbours, whatever their own normals") {
   MeshRandom random(52);
-  // Slivers 1e-9 wide along all sides, turned so that all coordinates are rounded.
+  // Slivers 1e-9 wide along all sides, rotated so that all coordinates are rounded.
   const Real lines[] = {0, 1e-9, 0.5, 1 - 1e-9, 1};
   const TriangleMesh mesh = mapped(unit_grid(4, 4), [&](Vec3 v) {
     return Vec3{lines[static_cast<int>(4 * v.x)], lines[static_cast<int>(4 * v.y)], 0};
   });
   for (int i = 0; i < 10; ++i) CHECK(sheet_mesh(turned(mesh, random.turn())).parts.size() == 1);
-  // Slivers alone, of which none knows the plane to the far end.
+  // Slivers alone, none of which defines the plane accurately to the far end.
   CHECK(sheet_mesh(turned(unit_grid(1, 30000), random.turn())).parts.size() == 1);
 }
 
-// What a search and all bounds on it take for the plane of a triangle is that of its part.
+// Queries and all bounds on them use the plane of the part for each triangle.
 TEST_CASE("vertices lie within the stated flatness of their part's plane, slivers included") {
   MeshRandom random(53);
   int off = 0;

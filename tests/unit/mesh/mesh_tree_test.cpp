@@ -1,4 +1,4 @@
-// The tree of boxes against a look at every triangle.
+// The tree of boxes against a test of every triangle.
 #include "mesh/mesh_tree.hpp"
 
 #include "support/catch.hpp"

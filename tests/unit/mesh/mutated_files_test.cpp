@@ -1,5 +1,5 @@
-// Files of every format, changed at random: each is read or refused, and whatever is read is checked and
-// weighed. SCREE_MUTATIONS: how many (200,000); SCREE_SEED: of the first.
+// Random changes of files of every format: each file is read or refused, and every mesh that is read is
+// checked and its mass computed. SCREE_MUTATIONS: number of files (200,000); SCREE_SEED: seed of the first.
 #include <cstdlib>
 #include <random>
 
@@ -21,7 +21,7 @@ std::uint32_t from_environment(const char* name, std::uint32_t otherwise) {
   return value == nullptr ? otherwise : static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10));
 }
 
-// What headers, counts and numbers of all formats are made of, and what stands at their limits.
+// Parts of headers, counts and numbers of all formats, and limits of numbers.
 const std::vector<std::string> kWords{"2147483647",
                                       "2147483648",
                                       "4294967295",
@@ -109,7 +109,7 @@ class Mutator {
   std::mt19937 random_;
 };
 
-// What was put right needs no more of it.
+// A repaired mesh needs no further repair.
 void check_repair(const NumberedMesh& mesh, bool sheet) {
   if (!mesh_troubles(mesh.mesh, sheet).empty()) return;
   if (!sheet && !(mesh_volume(mesh.mesh) > 0)) throw std::logic_error("not sound");

@@ -1,4 +1,4 @@
-// Surfaces made from numbers: sound, and as heavy as the shapes that they stand for.
+// Primitive surfaces: sound, with the mass properties of the exact shapes.
 #include "mesh/primitives.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void check_sound(const TriangleMesh& mesh, bool sheet = false, Index shells = 1)
   CHECK(*std::max_element(shell.begin(), shell.end()) == shells - 1);
 }
 
-// A shape of n segments around, and what its exact form has about its centre, of density 1.
+// A shape with n segments around, and the mass properties of its exact form about its centre, of density 1.
 struct RoundShape {
   const char* name;
   std::function<TriangleMesh(Index)> mesh;
@@ -50,7 +50,7 @@ RoundShape cone() {
 }
 RoundShape drum(Real end_wall) {
   const Real r = 1, wall = 0.1, length = 2, height = 0.25;
-  const Real width = 2 * std::sin(0.9999 * kPi / 32);  // three of 96 segments
+  const Real width = 2 * std::sin(0.9999 * kPi / 32);  // width of three of 96 segments
   const int lifters = 6;
   // A lifter lies between x = r - height and the circle, for |y| <= width / 2: integrals of 1 and x^2 + y^2
   // by Simpson's rule over y, in which they are smooth.
@@ -72,7 +72,7 @@ RoundShape drum(Real end_wall) {
           length * (polar(out) - polar(r) + lifters * squares) + ends * polar(out)};
 }
 RoundShape screw() {
-  const Real core = 1 - 0.9999 * kPi / 4;  // the flight is as high as 12 of 96 segments are long
+  const Real core = 1 - 0.9999 * kPi / 4;  // the flight has the height of the length of 12 of 96 segments
   const Real flight = 1, pitch = -0.5, thickness = 0.0625, length = 1.5, core_length = 2;
   const Real sector = 2 * kPi * thickness / -pitch;
   return {"screw",
@@ -129,7 +129,7 @@ TEST_CASE("a hopper has the area of its sides, a funnel in the limit, and both a
       CHECK(normal.x * p.x + normal.y * p.y > 0);
     }
   };
-  // Sides that lean out by 3 over a height of 4, and by 0.9 over 4.
+  // Sides inclined outwards by 3 over a height of 4, and by 0.9 over 4.
   const TriangleMesh hopper = hopper_mesh({{1, 2, 0}, {7, 3.8, 0}, 4, 0.5});
   CHECK(hopper.triangles.size() == 16);
   CHECK(near(mesh_area(hopper), (2 + 3.8) * 5 + (1 + 7) * 4.1 + 0.5 * 6, {.relative = 4 * kUlp}));
@@ -159,7 +159,7 @@ TEST_CASE("primitives are closed, and open ones sound") {
     check_sound(hopper_mesh({{0.2, 0.4, 0}, {1, 1, 0}, 1.5, outlet_length}), true);
   }
   for (const Index lifters : {0, 1, 2, 3, 8})
-    for (const Real end_wall : {0., 0.1})  // closed, it has a cavity
+    for (const Real end_wall : {0., 0.1})  // a closed drum has a cavity
       check_sound(drum_mesh({1, 0.05, 2, end_wall, lifters, 0.2, 0.1, 36}), false, end_wall > 0 ? 2 : 1);
   for (const Real pitch : {0.5, -0.4})
     for (const Real core_length : {1.5, 2.})
@@ -221,7 +221,7 @@ TEST_CASE("a planar line is drawn out to a power of two") {
   for (const Vec3 v : mesh.vertices) CHECK(std::abs(v.z) == 0.5);
   for (const Vec3 v : extruded_line_mesh({{0, 0, 0}, {1, 0, 0}}, false, 2).vertices)
     CHECK(std::abs(v.z) == 2);
-  // Seen from the right of the way along +x: from -y.
+  // Faces to the right of the path along +x: towards -y.
   const auto& [a, b, c] = mesh.triangles[0];
   const Vec3 normal = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
   CHECK((normal.x == 0 && normal.y < 0 && normal.z == 0));

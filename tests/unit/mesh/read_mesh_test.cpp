@@ -1,4 +1,4 @@
-// Meshes from files: the three formats, and what is said of broken ones.
+// Meshes from files: the three formats, and messages for broken files.
 #include "mesh/read_mesh.hpp"
 
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace scree {
 
 namespace {
 
-// The message with which the text is refused; "": it is read.
+// The message of the refusal; "": it is read.
 std::string refusal(const std::string& bytes, const std::string& name) {
   try {
     parse_mesh(bytes, name);
@@ -68,8 +68,7 @@ TEST_CASE("dialects") {
             "endfacet endsolid\nsolid\nendsolid\n",
             "a.stl")
             .triangles.size() == 1);
-  // Corners counted back, with texture and normal; comments, one like a folder of Windows; a line in two
-  // parts.
+  // Negative indices, with texture and normal; comments, one like a Windows folder; a continued line.
   const TriangleMesh back = parse_mesh(
       "# C:\\meshes\\\nv 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nvn 0 0 1\nv 0 1 0\ng a\nf -3/1/1 \\\n -2//1 -1 # last",
       "a.obj");
@@ -130,7 +129,7 @@ TEST_CASE("polygons are cut into triangles of their winding") {
   }
   for (const char* const face : {" 1 2 3 4", " 2 3 4 1", " 3 4 1 2", " 4 1 2 3"})
     CHECK(area_of(std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nf") + face, 2) == 2);
-  // A hole, joined to the outline by a way there and back.
+  // A hole, connected to the outline by a double edge.
   CHECK(
       area_of("v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\nf 1 2 3 4 1 5 6 7 8 5",
               8) == 8);
@@ -177,7 +176,7 @@ TEST_CASE("messages for files that cannot be read") {
   CHECK(said("step.stp") == at + "step.stp: must end with .stl, .obj or .ply");
   std::ofstream(folder / "a.obj") << obj();
   CHECK(said("a.obj") == "");
-  fs::resize_file(folder / "empty.ply", std::uintmax_t(1) << 31);  // no block of it is written
+  fs::resize_file(folder / "empty.ply", std::uintmax_t(1) << 31);  // sparse: no block of it is written
   CHECK(said("empty.ply") == at + "empty.ply: 2147483648 bytes; must be less than 2147483648");
   fs::remove_all(folder);
 }

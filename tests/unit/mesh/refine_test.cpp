@@ -1,4 +1,4 @@
-// Smaller triangles on the same surface.
+// Refinement without change of the surface.
 #include "mesh/refine.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Rows on which the nearest contact is all there is, and how long a sphere may stay where it is on a mesh.
+// Rows in which the nearest contact is the only one, and the safe displacement of cached contacts.
 #include "mesh/row_kinds.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-// Sheets that are plane, nearly plane, uneven, rough, and folded so that a sphere between two layers of one
+// Open surfaces: plane, nearly plane, uneven, rough, and folded so that a sphere between two layers of one
 // patch touches both; curved walls and solids.
 std::vector<SurfaceMesh> meshes() {
   TriangleMesh folded = hills(12, 0.01, 9);
@@ -104,7 +104,7 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
   CHECK(clear > 2000);
 }
 
-// The other triangle lies past the edge from (0, 0, 0) to (1, 0, 0) and rises from there, or is higher by
+// The other triangle lies beyond the edge from (0, 0, 0) to (1, 0, 0) and rises from there, or is higher by
 // less than the uncertainty.
 TEST_CASE("beside an edge a sphere stays over a triangle while what lies past the edge is farther") {
   int stands = 0, wrong = 0;

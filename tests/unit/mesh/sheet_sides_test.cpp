@@ -1,4 +1,4 @@
-// A contact with a sheet keeps the side on which it began, and pushes back there, until it ends.
+// A contact with an open surface keeps the side on which it began, and pushes to that side until it ends.
 #include "mesh/sheet_sides.hpp"
 
 #include <algorithm>
@@ -16,12 +16,12 @@ namespace {
 
 constexpr Real kRadius = 1;
 
-// A sphere on its way past a sheet.
+// A sphere that penetrates an open surface.
 class Passage {
  public:
   explicit Passage(const SurfaceMesh& mesh) : mesh_(mesh) {}
 
-  // Its contacts with the centre there.
+  // Contacts with the centre at c.
   const std::vector<MeshContact>& at(Vec3 c) {
     contacts_ = contacts_at(mesh_, c, kRadius);
     contacts_.resize(static_cast<std::size_t>(
@@ -30,12 +30,12 @@ class Passage {
     for (const MeshContact& contact : contacts_) sides_.add(sided_feature(mesh_.view(), contact));
     return contacts_;
   }
-  // In small steps to there.
+  // Contacts after a path from `from` to `to` in small steps.
   const std::vector<MeshContact>& go(Vec3 from, Vec3 to) {
     for (int k = 1; k < 200; ++k) at(from + (k / 200.0) * (to - from));
     return at(to);
   }
-  Vec3 force() const {  // over the stiffness [m]
+  Vec3 force() const {  // sum of forces over the stiffness [m]
     Vec3 sum;
     for (const MeshContact& contact : contacts_) sum += (kRadius - contact.distance) * contact.normal;
     return sum;
@@ -50,7 +50,7 @@ class Passage {
 // 4 m wide, its free edge along the y axis at x = 0.
 SurfaceMesh half_plane() { return sheet_mesh(plate({-4, -2, 0}, {4, 0, 0}, {0, 4, 0}, 5, 5)); }
 
-// A sphere without its pole, which makes it a sheet: facets, edges and corners of one smooth patch.
+// A sphere without its pole, which makes it an open surface: facets, edges and corners of one smooth patch.
 SurfaceMesh dome(Real radius, bool inwards) {
   TriangleMesh mesh = icosphere(3, radius);
   std::erase_if(mesh.triangles, [&](const auto& t) { return mesh.vertices[t[0]].z < -0.9 * radius; });
@@ -70,7 +70,7 @@ TEST_CASE("beyond a flat open surface the distance becomes negative, from either
       CHECK(contacts[0].normal == Vec3{0, 0, side});
     }
     CHECK(passage.at({-1.5, 0, -1.01 * side}).empty());
-    // What begins now begins on the other side.
+    // A contact that begins now is on the other side.
     CHECK(near(passage.at({-1.5, 0, -0.9 * side})[0].distance, 0.9, {.absolute = 1e-15}));
   }
 }
@@ -124,7 +124,7 @@ TEST_CASE(
   const auto& up = passage.go({-1, 0, -0.6}, {-1, 0, 0.5});
   CHECK(near(up[0].distance, -0.5, {.absolute = 1e-14}));
   CHECK(up[0].normal == Vec3{0, 0, -1});
-  // Past the sheet and over its free edge it lies beside that as any that came there.
+  // Beyond the surface and past its free edge the sphere touches the edge, whatever its path was.
   const auto& beside = passage.go({-1, 0, 0.5}, {0.3, 0, 0.4});
   REQUIRE(beside.size() == 1);
   CHECK(near(beside[0].distance, 0.5, {.absolute = 1e-14}));
@@ -142,7 +142,7 @@ TEST_CASE("past one face of a roof the other does not act from within, and takes
     const Vec3 on_left = Real(0.5) * left + Vec3{0, 1.9, 0};
     passage.go(on_left + 0.9 * normal, on_left - 0.1 * normal);
     Vec3 c = on_left - 0.1 * normal;
-    for (const Real x : {-0.2, 0.2, -0.2}) {  // in the attic, just below the roof
+    for (const Real x : {-0.2, 0.2, -0.2}) {  // inside the roof, just below it
       const Vec3 from = std::exchange(c, {x, 1.9, -std::tan(turn / 2) * 0.2 - 0.1});
       const auto& contacts = passage.go(from, c);
       REQUIRE(contacts.size() == 1);

@@ -1,4 +1,4 @@
-// Shells of one mesh that cut through each other, touch, or lie inside each other.
+// Shells of one mesh that intersect, touch, or lie inside each other.
 #include "mesh/shell_crossings.hpp"
 
 #include "mesh/mesh_checks.hpp"
@@ -53,7 +53,7 @@ TEST_CASE("boxes that overlap cross, wherever one corner of each lies") {
     const ShellCrossing found = crossings(two).front();
     CHECK((found.shell[0] == 0 && found.shell[1] == 1));
     CHECK((found.triangle[0] < 12 && found.triangle[1] >= 12));
-    // On the surface of both.
+    // On the surfaces of both shells.
     for (const Vec3 p : {found.position, found.position - shift})
       CHECK(std::max({std::abs(p.x) - 0.05, std::abs(p.y) - 0.05, std::abs(p.z) - 0.02}) ==
             Approx(0).margin(1e-12));
@@ -74,7 +74,7 @@ TEST_CASE("of three shells those that cross are named") {
   const TriangleMesh chain = with(with(slab(), slab(), {0.06, 0.01, 0.01}), slab(), {0.12, 0.02, 0.02});
   CHECK(crossings(chain).size() == 2);
   CHECK(crossing_text(chain).ends_with("; so do 1 more pairs of shells"));
-  // One that is misplaced beside two that cross.
+  // A misplaced shell beside two that intersect.
   const Texts troubles = mesh_troubles(with(three, box_mesh({{0.01, 0.01, 0.01}}), {}), false);
   REQUIRE(troubles.size() == 1);
   CHECK(troubles[0].starts_with("a shell lies inside another"));
@@ -85,7 +85,7 @@ TEST_CASE("shells that touch do not cross, and weigh what each of them does") {
   for (const Vec3 shift :
        {Vec3{0.02, 0.03, 0.04}, {0.1, 0.02, 0.01}, {0.1, 0.05, 0.04}, {0, 0, 0.04}, {0.5, 0, 0}}) {
     CAPTURE(shift.x, shift.y, shift.z);
-    // Each solid has corners of its own where the two share positions.
+    // Each solid has its own corners where the two coincide.
     const TriangleMesh two = with(slab(), refined(slab(), 0.07), shift);
     for (const TriangleMesh& mesh : {two, moved(two, turned, {0.3, 0.1, -0.7})}) {
       CHECK(crossings(mesh).empty());
@@ -93,7 +93,7 @@ TEST_CASE("shells that touch do not cross, and weigh what each of them does") {
       CHECK(crossing_text(mesh).empty());
       CHECK(mesh_volume(mesh) == Approx(8e-4).epsilon(kAccumulatedRoundOff));
     }
-    // As a file of 7 digits has them.
+    // Coordinates rounded to the 7 digits of a file.
     TriangleMesh rounded = moved(two, turned, {0.3, 0.1, -0.7});
     for (Vec3& v : rounded.vertices)
       v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -116,8 +116,8 @@ TEST_CASE("cavities are right, solids inside solids are not, also where they tou
   };
   CHECK(is_inside(with(slab(), ball, {0.02, 0.01, 0})));
   CHECK(is_inside(with(slab(), half, {0, 0, 0.01})));      // with a face in the top
-  CHECK(is_inside(with(slab(), half, {0.025, 0, 0.01})));  // and in a side
-  // One box twice, the second of smaller triangles.
+  CHECK(is_inside(with(slab(), half, {0.025, 0, 0.01})));  // with a face in a side, too
+  // One box twice, the second with smaller triangles.
   const Texts twice = mesh_troubles(with(slab(), refined(slab(), 0.03), {}), false);
   REQUIRE(twice.size() == 1);
   CHECK(twice[0].find("inside") != std::string::npos);

@@ -1,4 +1,4 @@
-// A row of triangles that several look at together.
+// A row of triangles queried by several threads together.
 #include "mesh/team.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// Angles in a deck that look like degrees.
+// Angles in a deck that appear to be in degrees.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -35,7 +35,7 @@ const std::string kPlanar = "bodies=[{name=\"b\",mass=1.0,inertia=0.1,position=[
 const std::string kSlide =
     "joints=[{name=\"hinge\",type=\"translational\",bodies=[\"ground\",\"arm\"],axis=[1,0,0],point=[0,0,0]}]";
 
-// How many of the warnings say so.
+// Number of warnings about it.
 std::ptrdiff_t found(const std::vector<std::string>& overrides,
                      const std::string& text = "angles are in radians") {
   const std::vector<std::string> warnings = model_warnings(kDeck, overrides);
@@ -62,7 +62,7 @@ TEST_CASE("constant angles of more than a revolution are warned of") {
 TEST_CASE("limits of joints are warned of where they are angles and whole numbers") {
   CHECK(found({kStop + "lower=-90.0,upper=90.0}]"}) == 2);
   CHECK(found({kStop + "lower=-1.5707963267948966,upper=1.57}]"}) == 0);
-  CHECK(found({kStop + "lower=-31.41592653589793,upper=31.4}]"}) == 0);  // of five turns
+  CHECK(found({kStop + "lower=-31.41592653589793,upper=31.4}]"}) == 0);  // of five revolutions
   CHECK(found({kStop + "lower=-90.0,upper=90.0}]", kSlide}) == 0);       // in metres
 }
 

@@ -1,4 +1,4 @@
-// Keys of surfaces that attract each other: what they become, what the search must reach, what is refused.
+// Keys of cohesion: the resulting laws, the search range, and refusals.
 #include <algorithm>
 #include <numbers>
 #include <string>
@@ -51,8 +51,8 @@ TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with JK
   const KelvinVoigt& law = neck.contact.law(0, 0);
   CHECK((law.adhesion_work == 0.5 && law.neck));
   CHECK(near(restitution_of(law.damping_ratio, true), 0.6, {.relative = kRoundOff}));
-  CHECK(neck.rotates());  // a neck turns with its partners
-  // The largest reach is that of a sphere on a plane; they are looked for a quarter farther.
+  CHECK(neck.rotates());  // a JKR contact rotates with its partners
+  // The largest interaction range is that of a sphere on a plane; the search range is a quarter larger.
   const Real on_plane = JkrLaw(law).of_pair({0.02, kInfinity, 1, 1}).reach();
   CHECK(near(neck.contact.reach, 1.25 * on_plane, {.relative = 1e-8}));
   CHECK(neck.contact.reach > JkrLaw(law).of_pair({0.02, 0.02, 1, 1}).reach());
@@ -61,7 +61,7 @@ TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with JK
   const Model dmt = model_of(hertz("work_of_adhesion = 0.5\nadhesion = \"dmt\"\n"));
   CHECK((!dmt.contact.law(0, 0).neck && dmt.contact.reach == 0 && !dmt.rotates()));
   CHECK(!model_of(hertz("work_of_adhesion = 0.0\n")).contact.law(0, 0).attracts());
-  // A neck is stiffer than the bare contact.
+  // A JKR contact is stiffer than one without cohesion.
   CHECK(pair_limits(neck)[0].explicit_step <
         pair_limits(model_of(hertz("friction = 0.0\n")))[0].explicit_step);
 }

@@ -10,7 +10,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = kUlp;  // of places of up to 1 m [m]
+constexpr Real kRoundOff = kUlp;  // of positions up to 1 m [m]
 
 const std::string kDeck = kSmallDeck + R"(
 [[bodies]]

@@ -1,4 +1,4 @@
-// Bushings as a deck makes them.
+// Bushings built from a deck.
 #include <fmt/format.h>
 
 #include "model/checks/memory.hpp"
@@ -67,7 +67,7 @@ TEST_CASE("a bushing has its point and axes in both bodies, and its matrices") {
   CHECK(b.body[0] == kGround);
   CHECK(near(b.point[0], Vec3{0, 0, 0.5}, {.absolute = 1e-15}));
   CHECK(near(b.point[1], Vec3{0, 0.1, 0.5}, {.absolute = 1e-15}));
-  // z along y and x along z, so y along x; the body is turned by a quarter about z.
+  // z along y and x along z, so y along x; the body is rotated by a quarter revolution about z.
   for (int side = 0; side < 2; ++side) {
     const auto global = [&](Vec3 own) {
       return to_global_direction(model, b.body[side], rotation_matrix(b.marker[side]) * own);
@@ -83,7 +83,7 @@ TEST_CASE("a bushing has its point and axes in both bodies, and its matrices") {
 }
 
 TEST_CASE("a bushing between markers is the one at their point and axes") {
-  // On the body from an origin beside its centre of mass, whose axes the marker's are.
+  // On the body from an origin off its centre of mass, in whose frame the marker is.
   const std::string markers =
       kDeck +
       "[[bodies]]\nname = \"arm\"\nkind = \"spatial\"\nmass = 1.0\nposition = [1.0, 0.0, 0.0]\n"

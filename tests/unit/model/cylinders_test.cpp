@@ -1,6 +1,6 @@
-// Cylinders as a deck makes them: a line of free length, a motor on it, and stops.
-#include "model/checks/memory.hpp"
-#include "model/derived/connections.hpp"
+// Cylinders built from a deck: a line of free length, a motor on it, and limits.
+#include "model/connections.hpp"
+#include "model/memory.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -1,4 +1,4 @@
-// Every deck in input/ loads, builds and says what the paper's cases say.
+// Every deck in input/ loads and builds, with the values of the paper's cases.
 #include <filesystem>
 
 #include "support/catch.hpp"
@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 2 * kUlp;  // of places of up to 3 m [m]
+constexpr Real kRoundOff = 2 * kUlp;  // of positions up to 3 m [m]
 
 const std::string kInput = std::string(SCREE_SOURCE_DIR) + "/input";
 

@@ -190,7 +190,7 @@ TEST_CASE("random groups keep clear of planes, and a box alone has the positions
   const std::string box = "min = [-0.5, -0.5, -0.5]\nmax = [0.5, 0.5, 0.5]\n";
   check_free(model_of(kSpace + plane + group(300, box)));
   const Model bare = model_of(kSpace + group(300, box));
-  // A region around the box cuts nothing off it, but counts tries otherwise: the positions are the same.
+  // A region around the box cuts nothing off, but counts tries differently: the positions are the same.
   const Model within = model_of(
       kSpace + group(300, box + "cylinder_radius = 1.5\nends = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]\n"));
   for (std::size_t i = 0; i < bare.particles.size(); ++i)

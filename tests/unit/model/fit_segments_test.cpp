@@ -1,5 +1,5 @@
-// How finely round meshes are cut where the deck leaves it out.
-#include "model/builder/fit_segments.hpp"
+// Default segments of round meshes where the deck does not give them.
+#include "model/fit_segments.hpp"
 
 #include <fmt/format.h>
 
@@ -50,12 +50,12 @@ TEST_CASE("segments that are left out follow the smallest particle") {
   CHECK(segments(kSpace + kRod + grains("0.1")) == 32);
   CHECK(segments(kSpace + kRod + grains("0.02")) == 72);
   CHECK(segments(kSpace + kRod + grains("0.5")) == 16);
-  // The smallest that may be drawn, of any group.
+  // The smallest radius that may be drawn, of any group.
   CHECK(segments(kSpace + kRod + grains("{ kind = \"uniform\", min = 0.02, max = 0.3 }")) == 72);
   CHECK(segments(kSpace + kRod + grains("0.3") +
                  "[[particles]]\nkind = \"list\"\npositions = [[1, 0, 1.5]]\nmass = 0.1\nradius = 0.02\n") ==
         72);
-  // Named ones are taken as named.
+  // Segments given in the deck are used.
   CHECK(segments(kSpace + mesh("kind = \"cylinder\"\nradius = 1.0\nlength = 0.5\nsegments = 7") +
                  grains("0.02")) == 7);
   CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0"), "levels") == 3);
@@ -77,7 +77,7 @@ TEST_CASE("the mesh has the segments of the resolved deck, and reports its facet
   CHECK(again.fingerprint() == whole.fingerprint());
   CHECK(with_fitting_segments(again).fingerprint() == whole.fingerprint());
   CHECK_FALSE(model_of(whole.resolved_text()).meshes.front().is_fitted);
-  // Nothing is fitted without particles, or where the deck names the number.
+  // Nothing is fitted without particles, or where the deck gives the number.
   CHECK(model_of(kSpace + kRod).meshes.front().fitting.empty());
   CHECK(model_of(kSpace + kRod).meshes.front().surface->triangles.size() == 4 * 48);
   CHECK(model_of(deck, {"meshes.m.segments=8"}).meshes.front().deviation ==

@@ -1,4 +1,4 @@
-// Bodies given by frames beside their centres of mass, by solids and by two axes; markers, and the joints and
+// Bodies given by frames off their centres of mass, by solids and by two axes; markers, and the joints and
 // forces that refer to them.
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ const std::string kSpace =
     "[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = 1e-3\ncontrol = "
     "\"fixed\"\n";
 const std::string kMass = "mass = 2.0\ninertia_tensor = [0.2, 0.3, 0.4, 0.0, 0.0, 0.0]\n";
-// By a quarter turn about z.
+// By a quarter revolution about z.
 const std::string kQuarter = "rotation_axis = [0, 0, 1]\nrotation_angle = 1.5707963267948966\n";
 
 std::string body(const std::string& name, const std::string& keys) {
@@ -34,7 +34,8 @@ std::string marker(const std::string& name, const std::string& on, const std::st
 std::string joint(const std::string& type, const std::string& keys = "markers = [\"m\", \"n\"]\n") {
   return fmt::format("[[joints]]\nname = \"j\"\ntype = \"{}\"\n{}", type, keys);
 }
-// a, and b turned by a quarter, both with their origins at one point; a marker m on a, n on b.
+// Body a, and b rotated by a quarter revolution, both with their origins at one point; a marker m on a, n on
+// b.
 std::string marked(const std::string& on_a, const std::string& on_b) {
   return kSpace + body("a", kMass) + body("b", kMass + kQuarter + "center_of_mass = [0.0, 0.1, 0.0]\n") +
          marker("m", "a", on_a) + marker("n", "b", on_b);
@@ -86,7 +87,7 @@ TEST_CASE("two axes make an orientation") {
   const Mat3 both = axes("x_axis = [0.0, 2.0, 0.0]\nz_axis = [3.0, 0.0, 0.0]\n");
   CHECK(norm(both * Vec3{1, 0, 0} - Vec3{0, 1, 0}) < kRoundOff);
   CHECK(norm(both * Vec3{0, 0, 1} - Vec3{1, 0, 0}) < kRoundOff);
-  // z is kept where they are not quite perpendicular.
+  // z is kept where the axes are not quite perpendicular.
   const Mat3 nearly = axes("x_axis = [1.0, 0.0, 5e-7]\nz_axis = [0.0, 0.0, 1.0]\n");
   CHECK(norm(nearly * Vec3{0, 0, 1} - Vec3{0, 0, 1}) < kRoundOff);
   CHECK(norm(nearly * Vec3{1, 0, 0} - Vec3{1, 0, 0}) < kRoundOff);
@@ -115,7 +116,7 @@ TEST_CASE("mass, centre and inertia from solids") {
   CHECK(near(a.inertia_tensor.xx, 13 + 24, {.relative = 1e-14}));
   CHECK(near(a.inertia_tensor.yy, 10 + 21 + 24 * 4, {.relative = 1e-14}));
   CHECK(near(a.inertia_tensor.zz, 5 + 21 + 24 * 4, {.relative = 1e-14}));
-  // A planar body: the moment about z alone; in 2D a disc is a cylinder.
+  // A planar body has the moment about z alone; in 2D a disc is a cylinder.
   const Body disc =
       model_of(
           kSmallDeck +
@@ -172,7 +173,7 @@ TEST_CASE("markers that do not coincide are refused with their distance") {
   const std::string along_x = "z_axis = [1, 0, 0]\n", same = "z_axis = [0, -1, 0]\n";
   CHECK(contains(model_error(marked(along_x + "local_point = [0, 0, 0.5]\n", same) + joint("revolute")),
                  "joints.j.markers = [\"m\", \"n\"]: the two sides of joint \"j\" do not meet"));
-  // Parallel, but against each other: the rows of Phi would hold.
+  // Parallel, but opposite: the rows of Phi would be satisfied.
   CHECK(contains(model_error(marked(along_x, "z_axis = [0, 1, 0]\n") + joint("cylindrical")),
                  "must point in the same direction at t = 0; they are off by 180 degrees, allowed are "
                  "5.7e-05 degrees; turn "

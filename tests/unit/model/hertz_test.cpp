@@ -1,4 +1,4 @@
-// Hertz's law from a deck: moduli of the materials, restitutions of their pairs, and what is refused.
+// Hertz's law from a deck: moduli of the materials, restitutions of their pairs, and refusals.
 #include <cmath>
 
 #include "model/checks/limits.hpp"
@@ -84,7 +84,7 @@ TEST_CASE(
   const Model model = model_of(kSpace + kSteel + kRubber + kGrains + kLarge + steel_pair("") +
                                pair_of("rubber", "steel", "") + pair_of("rubber", "rubber", ""));
   const std::vector<PairLimit> limits = pair_limits(model);
-  REQUIRE(limits.size() == 2);  // a single large one meets no other
+  REQUIRE(limits.size() == 2);  // a single large one has no partner of its kind
   const Real modulus[] = {model.contact.law(0, 0).effective_modulus,
                           model.contact.law(0, 1).effective_modulus};
   const Real radius[] = {0.01, 0.016}, mass[] = {0.05, 0.2 / 2.1};  // R*, m*
@@ -96,7 +96,7 @@ TEST_CASE(
                {.relative = kRoundOff}));
   }
   CHECK(near(limits[0].explicit_step, 2 / std::sqrt(8 * limits[0].stiffness / 0.1), {.relative = kRoundOff}));
-  // Damping shortens it.
+  // Damping shortens the step.
   CHECK(
       pair_limits(model_of(kSpace + kSteel + kGrains + steel_pair("restitution = 0.3\n")))[0].explicit_step <
       0.7 * limits[0].explicit_step);

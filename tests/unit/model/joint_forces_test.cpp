@@ -1,6 +1,6 @@
-// Motors, springs and limits on joints, and couplers, as a deck makes them.
-#include "model/checks/memory.hpp"
-#include "model/derived/connections.hpp"
+// Motors, springs and limits on joints, and couplers, built from a deck.
+#include "model/connections.hpp"
+#include "model/memory.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

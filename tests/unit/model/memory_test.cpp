@@ -1,5 +1,5 @@
-// What a model takes is compared with what is free before it is built.
-#include "model/checks/memory.hpp"
+// The memory needed by a model is compared with the free memory before it is built.
+#include "model/memory.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -8,7 +8,7 @@ namespace scree {
 
 namespace {
 
-// Every rank of the host asks for as much.
+// Every rank of the host needs as much.
 class SixteenRanks : public Share {
  public:
   int size() const override { return 16; }

@@ -1,5 +1,5 @@
-// Meshes of bodies on planes: which touch, how stiff they lie, and what is refused.
-#include "model/derived/mesh_corners.hpp"
+// Meshes of bodies on planes: their contacts, stiffness, and refusals.
+#include "model/mesh_corners.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ std::string deck(const std::string& mesh, const std::string& more = "") {
 }
 const std::string kCube = "kind = \"box\"\nsize = [0.2, 0.2, 0.2]\n";
 
-// A box of wood and a floor of stone, of which each has a law with itself.
+// A box of wood and a floor of stone, each with a law for itself.
 std::string two_materials(const std::string& contact) {
   std::string text = deck(kCube);
   text.replace(
@@ -47,13 +47,13 @@ const std::vector<std::string> kTwoMaterials = {"bodies.b.meshes.0.material=wood
 
 TEST_CASE("a body oscillates on all corners of a face at once") {
   constexpr Real kStiffness = 1e5;
-  // Turned about an edge of its face: 4 K (a/2)^2 over m a^2 / 6.
+  // Rotated about an edge of its face: 4 K (a/2)^2 over m a^2 / 6.
   const Model cube = model_of(deck(kCube + "refine = 0.05\n"));
   CHECK(near(fastest_on_corners(cube, false).frequency, std::sqrt(6 * kStiffness / 4), {.relative = 1e-6}));
   CHECK(fastest_on_corners(cube, false).is_exact);
   CHECK(near(largest_corner_radius(cube), std::sqrt(6 * 0.04 / (4 * std::numbers::pi_v<Real>)),
              {.relative = 1e-9}));
-  // The faster with more corners: sqrt(N).
+  // The frequency grows with the number of corners as sqrt(N).
   for (const int corners : {24, 96}) {
     const Model disc = model_of(
         deck(fmt::format("kind = \"cylinder\"\nradius = 0.1\nlength = 0.1\nsegments = {}\n", corners)));

@@ -1,4 +1,4 @@
-// Meshes as decks give them: placed, refined, weighed, counted.
+// Meshes from decks: position, refinement, mass, counts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ TEST_CASE("a body made of a box of triangles weighs what the box does") {
                    "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }"));
   check_equal(body(box), whole);
   check_equal(body(box, {"meshes.made.refine=0.03"}), whole);
-  // Placed by the solid instead of by the mesh.
+  // Positioned by the solid instead of by the mesh.
   check_equal(body(body_of("kind = \"box\"\nsize = [0.1, 0.2, 0.3]",
                            "{ kind = \"mesh\", mesh = \"made\", density = 800.0, offset = [0.1, 0.2, 0.3], "
                            "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }")),
@@ -223,7 +223,7 @@ TEST_CASE("bodies of closed lines weigh what is inside times a depth, or their o
   const Body turned = line_body(",quaternion=[0.6,0,0,0.8]");
   CHECK(turned.inertia == Approx(line_body("").inertia).epsilon(1e-12));
   CHECK(norm(turned.center_of_mass) == Approx(norm(line_body("").center_of_mass)).epsilon(1e-12));
-  // Refined far beyond what can be cut into triangles as a polygon.
+  // Refined far beyond the number of corners that can be triangulated as a polygon.
   std::vector<std::string> fine = of_line("");
   fine.push_back("meshes.line.refine=1e-4");
   CHECK(model_of(kSmallLine, fine).bodies.front().inertia == line_body("").inertia);
@@ -261,7 +261,8 @@ radius = 0.1
 mass = 1.0
 )";
   const Model coarse = model_of(deck), fine = model_of(deck, {"meshes.floor.refine=0.01"});
-  // The skin is 0.2 radii; half squares of the same size, the disc in reach and what its border cuts.
+  // The skin is 0.2 radii; half squares of the same size, those inside the disc of the range and those cut
+  // by its border.
   const Real within = std::sqrt(0.12 * 0.12 - 0.1 * 0.1);
   const SurfaceMesh& mesh = *fine.meshes.front().surface;
   const auto count = static_cast<Real>(mesh.triangles.size());

@@ -1,5 +1,5 @@
-// Warnings of meshes: too fine for the particles, folds that contacts are too soft for, shells that cross.
-#include "model/checks/mesh_plausibility.hpp"
+// Warnings about meshes: too fine for the particles, folds too sharp for soft contacts, intersecting shells.
+#include "model/mesh_plausibility.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,7 +52,7 @@ std::vector<std::string> of(const std::string& text, const std::string& deck,
   return found;
 }
 
-// A line in the x-y plane that turns by the angle, with a disc.
+// A line in the x-y plane that bends by the angle, with a disc.
 std::string line(Real degrees) {
   const Real t = std::tan(degrees * M_PI / 360);
   return fmt::format(
@@ -82,7 +82,7 @@ TEST_CASE("the estimated number of nearby triangles is that counted at random po
     Real counted = 0;
     constexpr int kPlaces = 2000;
     for (int k = 0; k < kPlaces; ++k) {
-      // Beside the middle of the mesh, away from its border.
+      // Near the middle of the mesh, away from its border.
       const Vec3 plane{0.6 * share() - 0.3, 0.6 * share() - 0.3, radius};
       const Real around = 2 * M_PI * share();
       const Vec3 p = surface.sheet ? plane
@@ -130,7 +130,7 @@ TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of
     CHECK(warned(1.01 * enough).empty());
   }
   CHECK(of("its faces turn inwards", line(29), {"contact.pairs.0.stiffness=1e3"}).empty());
-  // They fall no farther than from where the highest starts: from 0.8 m, from below.
+  // They fall at most from the height of the highest start: from 0.8 m, from below.
   const auto falls = [](Real height) {
     return of("its faces turn inwards", line(45),
               {"particles.g.velocity=[0, 0]", "gravity=[0, -9.81]", "contact.pairs.0.stiffness=3e4",
@@ -139,7 +139,7 @@ TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of
   };
   CHECK(falls(0.8) == 1);
   CHECK(falls(-0.3) == 0);
-  // Also by their weight at rest, and of bodies.
+  // Also by their static weight, and of bodies.
   CHECK(of("its faces turn inwards", line(45),
            {"particles.g.velocity=[0, 0]", "gravity=[0, -1e-9]", "contact.pairs.0.stiffness=1e-6"})
             .size() == 1);
@@ -147,7 +147,7 @@ TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of
            {"walls=[]", "bodies=[{name=\"b\",mass=1.0,inertia=1.0,position=[0,0],meshes=[{mesh=\"m\"}]}]",
             "contact.pairs.0.stiffness=1e3"})
             .size() == 1);
-  // A mesh that nothing has.
+  // A mesh that no body or wall uses.
   CHECK(of("its faces turn inwards", line(45), {"walls=[]", "contact.pairs.0.stiffness=1e3"}).empty());
 }
 

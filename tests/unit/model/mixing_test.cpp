@@ -1,5 +1,5 @@
-// Pairs of materials that the deck does not give: the rules, what becomes of every key, and what is refused.
-#include "model/builder/mixing.hpp"
+// Pairs of materials that the deck does not give: the rules, the result for every key, and refusals.
+#include "model/mixing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ std::string deck_of(const std::string& rule, const std::string& of_a, const std:
                     pair_of("a", "a", of_a) + pair_of("b", "b", of_b));
 }
 
-// What a pair that was made and one whose keys are given have in common: all.
+// All values of a derived pair and of one with given keys must agree.
 void check_alike(const Model& made, const Model& given) {
   const KelvinVoigt &x = made.contact.law(0, 1), &y = given.contact.law(0, 1);
   CHECK((x.normal_stiffness == y.normal_stiffness && x.normal_damping == y.normal_damping));
@@ -86,7 +86,7 @@ TEST_CASE("the rules of mixing") {
     CHECK((mixed(rule, 0.3, 0.3) == 0.3 && mixed(rule, 0, 0) == 0));
   }
   CHECK((mixed(Mixing::geometric, 0, 0.5) == 0 && mixed(Mixing::harmonic, 0.5, 0) == 0));
-  // At one force the overlap is the mean of those of the like pairs.
+  // At equal force the overlap is the mean of those of the like pairs.
   for (const Real n : {1.0, 1.5, 2.0}) {
     const Real a = 3e5, b = 8e4, force = 7, k = in_series(a, b, n);
     const auto overlap = [&](Real stiffness) { return std::pow(force / stiffness, 1 / n); };
@@ -111,7 +111,7 @@ TEST_CASE("a pair that is not given follows from the like ones, key by key") {
                 "largest_overlap = 0.02\nimpact_speed = 2.0\n");
   check_becomes("arithmetic", soft + "friction = 0.25\ntangential_damping_ratio = 0.5\n",
                 hard + "friction = 0.75\n", both + "friction = 0.5\ntangential_damping_ratio = 0.25\n");
-  // The one that is left out is 2/7 of 3.5e5.
+  // The default is 2/7 of 3.5e5.
   check_becomes("minimum", "stiffness = 3.5e5\nfriction = 0.25\ntangential_stiffness = 3e5\n",
                 "stiffness = 3.5e5\nfriction = 0.25\n",
                 "stiffness = 3.5e5\nfriction = 0.25\ntangential_stiffness = 1.5e5\n");
@@ -125,7 +125,7 @@ TEST_CASE("a pair that is not given follows from the like ones, key by key") {
                 both +
                     "friction = 0.5\nrolling_friction = 0.375\nrolling_damping_ratio = 0.5\n"
                     "rolling_stiffness = 0.375\nrolling_damping = 1e-3\n");
-  // Twisting that is left out has the friction.
+  // Twisting friction defaults to friction.
   check_becomes("arithmetic", soft + "friction = 0.5\nrolling_friction = 0.25\n",
                 hard + "friction = 0.5\nrolling_friction = 0.25\ntwisting_friction = 0.25\n",
                 both + "friction = 0.5\nrolling_friction = 0.25\ntwisting_friction = 0.375\n");
@@ -164,7 +164,7 @@ TEST_CASE("derived pairs are listed in the model as keys, in the order of the ma
 }
 
 TEST_CASE("every key of a pair is mixed") {
-  // One that is new must find its place in combined_pair, and in this list.
+  // A new key must be handled in combined_pair, and be in this list.
   const std::vector<std::string> known = {"materials",
                                           "stiffness",
                                           "largest_overlap",

@@ -1,4 +1,5 @@
-// Keys of 0 that mean nothing are as if they were left out, in implicit steps, too; velocities across planes.
+// Keys of 0 that mean nothing are equivalent to absent keys, in implicit steps, too; velocities across
+// planes.
 #include <fmt/format.h>
 
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
-// The chance of a random place that random groups are judged by, against places tried.
-#include "model/derived/generators.hpp"
+// The probability of a free random position, by which random groups are checked, against positions tried.
+#include "model/generators.hpp"
 #include "physics/plausible.hpp"
 #include "physics/random_packing.hpp"
 #include "support/catch.hpp"
@@ -28,7 +28,7 @@ Packing packing(int dimension, Real fraction, Real smallest, Real length) {
   return p;
 }
 
-// The share of random places, away from the walls, that are free for a radius among those placed.
+// The fraction of random positions, away from the walls, that are free for a radius among those positioned.
 Real tried_chance(const Packing& p, Real radius) {
   constexpr int kTried = 20000;
   RandomNumbers random(7);
@@ -55,7 +55,8 @@ TEST_CASE("the probability of a free random position") {
     int dimension;
     Real fraction, smallest, length;
   };
-  // The groups are judged with twice the chance. The box is smaller for the centres than for the fraction.
+  // The groups are checked with twice the probability. The box is smaller for the centres than for the
+  // fraction.
   for (const Case& one :
        {Case{2, 0.3, 1, 120}, Case{2, 0.42, 1, 120}, Case{3, 0.15, 1, 36}, Case{3, 0.22, 1, 36},
         Case{2, 0.4, 0.4, 100}, Case{3, 0.22, 0.5, 32}, Case{3, 0.3, 0.2, 20}}) {

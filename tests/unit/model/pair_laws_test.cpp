@@ -1,5 +1,5 @@
-// What the keys of a pair become: restitution beside a stiffness, stiffness from a largest overlap or from
-// moduli in 2D, rolling and twisting; and what is refused.
+// Results of the keys of a pair: restitution beside a stiffness, stiffness from a largest overlap or from
+// moduli in 2D, rolling and twisting; and refusals.
 #include <fmt/format.h>
 
 #include <numbers>

@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-// A folder of its own that is gone at the end.
+// A temporary folder.
 class Folder {
  public:
   Folder() : path_(std::filesystem::temp_directory_path() / "scree_particle_file_test") {

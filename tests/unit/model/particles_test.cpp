@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = kUlp;  // of places of up to 1 m [m]
+constexpr Real kRoundOff = kUlp;  // of positions up to 1 m [m]
 
 std::string deck_3d(const std::string& particles) {
   return "[space]\ndimension = 3\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = 1e-4\n"
@@ -153,7 +153,7 @@ mass = 1.0
 }
 
 TEST_CASE("random groups without room are refused before a position is tried") {
-  // Trying would take 10^9 places for the last of them.
+  // Random tries would need 10^9 positions for the last of them.
   const auto error = [](const std::string& count, const std::string& radius) {
     return model_error(deck_3d(kRandom3d),
                        {"particles.spheres.count=" + count, "particles.spheres.radius=" + radius,

@@ -1,4 +1,4 @@
-// Decks that can be computed but can hardly be meant, one after the other; and numbers that cannot be
+// Decks that can be computed but are hardly intended, one after the other; and numbers that cannot be
 // computed with.
 #include "model/checks/plausibility.hpp"
 
@@ -82,7 +82,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       spheres +
       "[[meshes]]\nname = \"m\"\nkind = \"rectangle\"\nsize = [0.5, 0.5]\noffset = [0, 0, "
       "-0.4]\n[[walls]]\nname = \"w\"\nmesh = \"m\"\n";
-  // Grains, and a floor of another material.
+  // Particles, and a floor of another material.
   const std::string two_materials =
       kSmallDeck +
       "[[materials]]\nname = \"grain\"\n[[materials]]\nname = \"ground\"\n[[contact.pairs]]\nmaterials = "
@@ -150,7 +150,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {two_materials,
        {kFloor, kGravity, "space.wall_material=ground"},
        "contact \"grain\" on \"grain\": the stiffness is too low for impacts at 6.32 m/s"},
-      {two_materials, {kGravity}, ""},  // all fall alike
+      {two_materials, {kGravity}, ""},  // all fall together
       {sheet,
        {"contact.pairs.0.stiffness=1e3", "particles.d.velocity=[4, 0, 0]", "contact.pairs.0.damping=0"},
        ""},
@@ -210,7 +210,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
   for (const Case& one : cases) {
     CAPTURE(one.deck, one.overrides, one.warning);
     std::vector<std::string> warnings = model_warnings(one.deck, one.overrides);
-    // Steps against contact times are another file's subject.
+    // Steps against contact times are covered by another file.
     std::erase_if(warnings, [](const std::string& text) {
       return text.starts_with("time.") && !contains(text, "end /");
     });

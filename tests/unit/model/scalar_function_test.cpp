@@ -40,10 +40,10 @@ TimeFunction monotone_table(std::vector<Real> times, std::vector<Real> values) {
   return function;
 }
 
-// Rate and acceleration do not jump.
+// Checks that rate and acceleration do not jump.
 void check_smooth(const ScalarFunction& f, std::initializer_list<Real> points) {
   constexpr Real kShort = 1e-9;
-  constexpr Real kTurn = 3e-8;  // what the acceleration changes by in that time, relative
+  constexpr Real kTurn = 3e-8;  // relative change of the acceleration in that time
   for (const Real t : points) {
     const TimeValue before = f(t - kShort), after = f(t + kShort);
     CHECK(near(after.rate - before.rate, 2 * kShort * f(t).acceleration, {.absolute = 32 * kRoundOff}));
@@ -54,7 +54,8 @@ void check_smooth(const ScalarFunction& f, std::initializer_list<Real> points) {
 // The function's rate and acceleration against differences of its value and rate.
 void check_derivatives(const ScalarFunction& f, Real t) {
   constexpr Real kStep = 1e-5;
-  // Central differences cut off this, times the next derivative but one; of all functions here at most:
+  // Truncation of central differences is this times the next derivative but one; of all functions here at
+  // most:
   constexpr Real kTruncation = kStep * kStep / 6, kThird = 4e3, kFourth = 1e5;
   CAPTURE(t);
   CHECK(near(f(t).rate, (f(t + kStep).value - f(t - kStep).value) / (2 * kStep),
@@ -136,7 +137,7 @@ TEST_CASE("a motion that holds and then moves: monotone holds, the splines do no
       CHECK(f(t).acceleration == 0);
     }
   }
-  // In between it is the smooth step.
+  // Between the points it is the smooth step.
   for (const Real t : {0.55, 0.6, 0.7}) {
     CHECK(near(f(t).value, step_function(0, 1.5, 0.5, 0.8, t).value, {.relative = kRoundOff}));
     CHECK(near(f(t).acceleration, step_function(0, 1.5, 0.5, 0.8, t).acceleration,
@@ -177,7 +178,7 @@ TEST_CASE("monotone tables never overshoot, are twice continuously differentiabl
       CHECK(near(before.acceleration, after.acceleration,
                  {.absolute = 1.5e-7 * steep / (times[i + 1] - times[i])}));
     }
-    // What follows the next point does not matter.
+    // Points after the next one do not matter.
     std::vector<Real> changed = values;
     changed[8] += 3;
     changed.pop_back();
@@ -210,7 +211,7 @@ TEST_CASE("how far a spline leaves the values at its points") {
 }
 
 TEST_CASE("tables of smooth data: the error's order") {
-  // Of sin t on [0, 1.2], where it rises: the largest error in the middle of the segments.
+  // Errors for sin t on [0, 1.2], where it rises: the largest in the middle of the segments.
   const auto error = [](Interpolation interpolation, int segments) {
     std::vector<Real> times, values;
     for (int i = 0; i <= segments; ++i) {
@@ -283,7 +284,7 @@ TEST_CASE("functions are the same until a time where no value before it differs 
   CHECK_FALSE(linear(first).same_until(linear(bent), 1.1));
   CHECK(linear(first).same_until(linear(first), 5));
   CHECK_FALSE(linear(first).same_until(with(Interpolation::monotone, first), 0.5));
-  // The natural spline through more points is another one from the start; the monotone one is local.
+  // The natural spline through more points differs from the start; the monotone one is local.
   CHECK_FALSE(with(Interpolation::natural, first).same_until(with(Interpolation::natural, longer), 0.5));
   CHECK(with(Interpolation::monotone, first).same_until(with(Interpolation::monotone, longer), 1));
   CHECK_FALSE(with(Interpolation::monotone, first).same_until(with(Interpolation::monotone, longer), 1.1));

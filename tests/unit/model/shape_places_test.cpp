@@ -1,5 +1,5 @@
-// Rows and arrays of shapes, and what collides with nothing.
-#include "model/derived/shape_places.hpp"
+// Rows and arrays of shapes, and shapes without contacts.
+#include "model/shape_places.hpp"
 
 #include <algorithm>
 
@@ -111,7 +111,7 @@ TEST_CASE("shapes without contacts touch nothing, wherever they are") {
   CHECK(model_of(with_shape("count = 2, spacing = [0.5, 0.0]", 2, "collides = false\n"))
             .bodies.front()
             .drawn_shapes.size() == 2);
-  // Of several materials only what touches must have one.
+  // With several materials only shapes with contacts must have one.
   const std::string materials = "[[materials]]\nname = \"a\"\n[[materials]]\nname = \"b\"\n";
   CHECK(contains(model_error(with_shape("collides = true") + materials), "material: missing"));
   CHECK(model_error(with_shape("collides = false") + materials).empty());

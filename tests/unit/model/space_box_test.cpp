@@ -1,5 +1,5 @@
-// What lies inside the space, and beyond which of its sides.
-#include "model/derived/space_box.hpp"
+// Points inside the domain, and beyond which of its sides others are.
+#include "model/space_box.hpp"
 
 #include <limits>
 

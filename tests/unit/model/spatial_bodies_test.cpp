@@ -19,7 +19,7 @@ const std::string kSpace =
     "[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = 1e-3\ncontrol = "
     "\"fixed\"\n";
 
-// Two bodies a, turned, and b.
+// Two bodies: a, rotated, and b.
 std::string two_bodies(const std::string& more = "") {
   return kSpace +
          "[[bodies]]\nname = \"a\"\nkind = \"spatial\"\nmass = 1.0\ninertia_tensor = [0.2, 0.3, 0.4, 0.01, "

@@ -251,7 +251,7 @@ TEST_CASE("beside explicit particles the bodies' step must be short against thei
       model_error(deck, with_step("7.1e-4")),
       "a body on a contact oscillates with 1000 rad/s; with velocity-verlet particles the bodies' step "
       "must be at most 0.0007 s"));
-  // Two that meet each other alone, and move against half of the mass.
+  // Two bodies with contacts between each other alone, and the reduced mass of half of one.
   const std::string two = deck + "[[bodies]]\nname = \"other\"\nposition = [-0.5, 0.2]\nmass = 0.01\n" +
                           "inertia = 1e-5\nshapes = [{ radius = 0.05 }]\n";
   const auto alone = [&](const std::string& step) {

@@ -1,5 +1,5 @@
-// Overlaps with meshes at the start, and random groups that keep clear of them.
-#include "model/derived/start_meshes.hpp"
+// Overlaps with meshes at the start, and random groups clear of them.
+#include "model/start_meshes.hpp"
 
 #include <fmt/format.h>
 
@@ -57,7 +57,7 @@ std::string at(const std::string& positions) {
   return "[[particles]]\nkind = \"list\"\nradius = 0.05\nmass = 1.0\npositions = " + positions + "\n";
 }
 
-// The finding without the words around it.
+// The finding without the surrounding text.
 std::string overlap(const std::string& deck) {
   const std::string message = model_error(deck);
   const std::size_t first = message.find(": particle");
@@ -77,7 +77,7 @@ TEST_CASE("overlaps with meshes of walls: face, edge, corner, and any depth insi
   CHECK(finding("[[0.19, 0, 0]]") == rock + "1.2 of the smaller radius");
   CHECK(finding("[[0.1, 0, 0]]") == rock + "2 of the smaller radius");
   CHECK(finding("[[0, 0, 0]]") == rock + "2 of the smaller radius");
-  // A sheet has two sides, and no inside.
+  // An open surface has two sides, and no inside.
   CHECK(finding("[[0.3, 0, -0.84]]") ==
         "particle 0 and wall \"floor\" overlap at t = 0 by 0.2 of the smaller radius");
   CHECK(finding("[[0.3, 0, -0.76]]") ==
@@ -89,7 +89,7 @@ TEST_CASE("overlaps with meshes of bodies that are rotated, moved, and across pe
   const auto finding = [&](const std::string& positions) {
     return overlap(kSpace + kTurned + at(positions));
   };
-  // The edge of the cube, which is turned by 45 degrees, points along x.
+  // The edge of the cube, which is rotated by 45 degrees, points along x.
   CHECK(finding("[[0.5, 0.84, 0.5]]").empty());
   CHECK(contains(finding("[[0.5, 0.82284271247461901, 0.5]]"),
                  "particle 0 and body \"crate\" overlap at t = 0 by 0.2 of"));

@@ -1,5 +1,5 @@
-// How fast the surfaces are that the deck moves, and what follows for stiffness and step.
-#include "model/derived/surface_speeds.hpp"
+// Speeds of driven surfaces, and the resulting stiffness and step.
+#include "model/surface_speeds.hpp"
 
 #include <fmt/format.h>
 
@@ -69,7 +69,7 @@ TEST_CASE("walls count with the fastest that they move along their normals") {
   };
   is(kPlate + along(x, ramp), 6, round_off);
   is(kPlate + along("[-1, 0, 0]", ramp), 6, round_off);
-  // A plate that moves along itself has edges that hit what is in their way.
+  // A plate that moves in its plane has edges that hit particles in their path.
   is(kPlate + along(y, ramp), 6, round_off);
   is(kPlane + along(y, ramp), 0, round_off);
   is(kPlane + along("[0, 3, 4]", ramp), 4.8, round_off);
@@ -87,7 +87,7 @@ TEST_CASE("walls count with the fastest that they move along their normals") {
   // About its own edge at y = -0.2: the other edge is 0.4 m from it.
   is(kPlate + about(z, "[-0.1, -0.2, 0]", ramp), 2.4, round_off);
   is(kPlane + about(x, "[0, 0, -0.5]", ramp), 6 * std::sqrt(1 + 1.5 * 1.5), 0.2);
-  // Two at once: the plate swings while it is carried.
+  // Combined motion: the plate swings while it is carried.
   is(kPlate + about(z, "[-0.1, -0.2, 0]", ramp) + along(x, ramp), 8.4, 0.01);
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("a stiffness too low for a wall's speed is warned of, and a step in wh
   CHECK(passes("1e-4") == 0);
 }
 
-// Whatever its mass, a body that a driver moves gives way to no contact.
+// Whatever its mass, a driven body does not yield to contacts.
 TEST_CASE("the mass of a body held by a driver or a fixed joint affects neither steps nor warnings") {
   const auto paddle = [](Real mass, const std::string& joint) {
     return kSpheres +
@@ -194,7 +194,7 @@ TEST_CASE("the mass of a body held by a driver or a fixed joint affects neither 
   };
   CHECK(soft(1e-5) == 1);
   CHECK(soft(1e3) == 1);
-  // A hinge alone holds nothing still.
+  // A revolute joint alone fixes nothing.
   const std::string hinge = "type = \"revolute\"\naxis = [0, 0, 1]\n";
   CHECK(model_of(paddle(1e-5, hinge), is_explicit).time.step <
         model_of(paddle(1e3, hinge), is_explicit).time.step);

@@ -1,5 +1,5 @@
-// Who may touch whom, and the sizes of what touches.
-#include "model/derived/touching.hpp"
+// Which particles and shapes may have contacts, and their sizes.
+#include "model/touching.hpp"
 
 #include "support/catch.hpp"
 
@@ -7,7 +7,8 @@ namespace scree {
 
 namespace {
 
-// Bodies 0 to 4 with a shape each but body 3; 0-1 by a joint, 1-2 by two springs, 4 joined to the ground.
+// Bodies 0 to 4 with a shape each except body 3; 0-1 by a joint, 1-2 by two springs, 4 connected to the
+// ground.
 Model five_bodies() {
   Model model;
   model.bodies.resize(5);
@@ -50,7 +51,7 @@ TEST_CASE("bodies may touch where two that have shapes are not connected") {
   Model model = five_bodies();
   CHECK(TouchRule(model).bodies_may_touch());
   for (const std::size_t b : {2u, 4u})
-    model.bodies[b].shapes.clear();  // 0 and 1 are left, which a joint connects
+    model.bodies[b].shapes.clear();  // 0 and 1 remain, which a joint connects
   CHECK_FALSE(TouchRule(model).bodies_may_touch());
   model.bodies[3].shapes = {{{}, 0.1, 0}};
   CHECK(TouchRule(model).bodies_may_touch());

@@ -18,7 +18,7 @@ using namespace scree;
 
 namespace {
 
-// Values that a detour through decimals or a compare would change.
+// Values that a conversion to decimals or a comparison would change.
 Checkpoint awkward_checkpoint() {
   Checkpoint checkpoint;
   checkpoint.reals["particles/velocity"] = {0.1,
@@ -43,7 +43,7 @@ TEST_CASE("a checkpoint returns bit for bit") {
   ScratchDirectory scratch;
   const Checkpoint written = awkward_checkpoint();
   write_checkpoint(scratch / "c.h5", written);
-  write_checkpoint(scratch / "c.h5", written);  // over the first
+  write_checkpoint(scratch / "c.h5", written);  // overwrites the first one
   const Checkpoint read = read_checkpoint(scratch / "c.h5");
   CHECK(read.reals.size() == written.reals.size());
   for (const auto& [name, values] : written.reals) CHECK(same_bits(read.real_array(name), values));
@@ -87,7 +87,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What reading a file with these bytes says; "" if it is read.
+// The message for a file with these bytes; "" if it is read.
 std::string refusal(const std::string& bytes) {
   const ScratchDirectory scratch;
   std::ofstream(scratch / "c.h5", std::ios::binary) << bytes;

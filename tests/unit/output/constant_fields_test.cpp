@@ -1,4 +1,4 @@
-// Fields that never change of a point, in snapshots whose points leave.
+// Time-constant fields of particles in snapshots from which particles escape.
 #include <tuple>
 
 #include "base/error.hpp"

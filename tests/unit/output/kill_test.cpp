@@ -1,4 +1,4 @@
-// What a killed or failing run leaves behind.
+// Files left by a killed or failing run.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -31,8 +31,8 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; 
 // A disk that is full behind this offset of a file. Unlike under a limit on its size, the file may be longer.
 static off_t disk_end = std::numeric_limits<off_t>::max();
 
-// Places at which a process may be killed: before its writes, and on either side of an exchange of names. It
-// kills itself at the one that is so many ahead (0: at none), so that no clock decides what is met.
+// Points at which a process may be killed: before its writes, and on either side of an exchange of names. It
+// kills itself at the one that is so many ahead (0: at none), so that no clock decides which one it is.
 static long places_passed = 0, places_to_death = 0;
 
 static void pass_place() {
@@ -66,7 +66,7 @@ extern "C" int renameat2(int from_folder, const char* from, int to_folder, const
 
 namespace {
 
-// A counter that parent and child see.
+// A counter shared by parent and child.
 class SharedCounter {
  public:
   SharedCounter() {
@@ -109,15 +109,15 @@ void limit_file_size(rlim_t bytes) {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-// Also where there is none, as after a restart that has cut snapshots off.
+// Also where there is no document, as after a restart that has cut off all snapshots.
 bool ends_its_document(const std::string& path) {
   std::ifstream file(path);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   return !file.is_open() || text.ends_with("</Xdmf>\n");
 }
 
-// Runs append() in a child, twice and on to its death at the given share (0 to 1) of an append's places.
-// acknowledge(): after each. Returns its exit status.
+// Runs append() in a child, twice and on until its death at the given fraction (0 to 1) of the points of an
+// append. acknowledge(): called after each. Returns its exit status.
 int die_within(double share, const std::function<std::function<void()>()>& begin,
                const std::function<void()>& acknowledge) {
   return wait_for(start_child([&] {
@@ -209,7 +209,7 @@ TEST_CASE("a full disk is an error, and what was written stays") {
       try {
         write_checkpoint(scratch / "c.h5", checkpoint);
       } catch (const IoError&) {
-        std::exit(4);  // with the handlers that run at exit
+        std::exit(4);  // runs the handlers at exit
       }
     }));
     REQUIRE(WIFEXITED(status));
@@ -238,7 +238,7 @@ TEST_CASE("a full disk is an error, and what was written stays") {
 }
 
 TEST_CASE("a history that the disk has no room for holds every flushed row") {
-  // Whichever write of an update is the one that fails.
+  // Any write of an update may be the one that fails.
   for (off_t end = 20000; end < 40000; end += 1111) {
     CAPTURE(end);
     ScratchDirectory scratch;

@@ -1,4 +1,4 @@
-// Who may write into a folder of results.
+// Permission to write into a folder of results.
 #include "output/results_folder.hpp"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ std::string read(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What is thrown as an InputError; empty where nothing is.
+// The message of an InputError; empty where none is thrown.
 std::string refusal(const std::function<void()>& action) {
   try {
     action();
@@ -41,7 +41,7 @@ std::string refusal(const std::function<void()>& action) {
   return {};
 }
 
-// A process that has claimed the folder, until it is killed.
+// A process that holds the folder until it is killed.
 class Holder {
  public:
   explicit Holder(const std::string& folder) {
@@ -125,7 +125,7 @@ TEST_CASE("an entry with the lock's name that is not a file is refused, and is n
     if (is_folder)
       fs::create_directory(path);
     else
-      REQUIRE(mkfifo(path.c_str(), 0666) == 0);  // which would have a reader wait
+      REQUIRE(mkfifo(path.c_str(), 0666) == 0);  // a reader of which would block
     const auto message_of_use = [&](const auto& use) {
       try {
         ResultsFolder folder({scratch.path(), "", true});
@@ -179,7 +179,7 @@ TEST_CASE("where the system's lock is not available, the text of the file decide
     LockOwner now = self;
     owner.host = "another", owner.job = now.job = "17", now.job_start = "1";
     CHECK(is_over(owner, now, LockState::unknown, false));
-    CHECK(is_over(owner, now, LockState::held, false));  // by a server that does not know yet
+    CHECK(is_over(owner, now, LockState::held, false));  // by a server whose information is not up to date
     CHECK(!is_over(owner, now, LockState::held, true));
     now.job_start = owner.job_start;
     CHECK(!is_over(owner, now, LockState::unknown, false));
@@ -217,7 +217,7 @@ TEST_CASE("results of another run are refused, or removed as a whole when that i
   CHECK(fs::exists(scratch / "history.h5"));  // nothing is lost before the run begins
   bold.clear();
   const fs::directory_iterator files(scratch.path());
-  CHECK(std::distance(begin(files), end(files)) == 2);  // the lock and the notes
+  CHECK(std::distance(begin(files), end(files)) == 2);  // the lock and the log
   CHECK(fs::exists(scratch / "notes.txt"));
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("a restart continues in its own folder, and spares others") {
     ResultsFolder own({scratch.path(), scratch / "other/../checkpoint.h5", false});
     own.check(), own.claim(), own.clear();
     CHECK(own.continues());
-    // One that belongs to steps which are taken anew is set aside.
+    // A checkpoint of steps that are repeated is set aside.
     CHECK((fs::exists(scratch / "checkpoint.h5") && fs::exists(scratch / "checkpoint_end.h5.earlier")));
     CHECK(!fs::exists(scratch / "checkpoint_end.h5"));
     CHECK(!fs::exists(scratch / "history.h5.tmp"));
@@ -241,7 +241,7 @@ TEST_CASE("a restart continues in its own folder, and spares others") {
   });
   CHECK(message.find("history.h5, checkpoint.h5") != std::string::npos);
   CHECK(message.find("continues them") == std::string::npos);
-  // A checkpoint that was copied into an empty folder is where a run begins: it stays.
+  // A checkpoint that was copied into an empty folder is the start of a run: it stays.
   ResultsFolder copied({scratch / "other", scratch / "other/checkpoint.h5", false});
   copied.check(), copied.claim(), copied.clear();
   CHECK(!copied.continues());
@@ -260,7 +260,7 @@ TEST_CASE("links in the folder are not followed") {
   HistoryWriter history(scratch.path(), {{"", "time", "s", "time"}}, true, 0);
   SnapshotWriter snapshots(scratch.path(), {.title = "title", .keep = 0});
   for (int step = 0; step < 3; ++step) {
-    // As if one were put there while the run goes on.
+    // As if another process put one there during the run.
     for (const char* name : {"particles.xdmf.tmp", "bodies.xdmf.tmp"})
       if (!fs::is_symlink(scratch / name)) fs::create_symlink(elsewhere / "victim", scratch / name);
     PredictableSnapshot(step, 5, 2).append_to(snapshots);

@@ -45,7 +45,7 @@ TEST_CASE("the run record holds what was run and with what") {
   CHECK(holds(text, R"("status" : "failed: \"quoted\" \\ text")"));
   CHECK(holds(text, R"("exit_code" : 3)"));
   CHECK(holds(text, R"("loop_seconds" : 2.5)"));   // this start
-  CHECK(holds(text, R"("loop_seconds" : 3.75)"));  // all of them
+  CHECK(holds(text, R"("loop_seconds" : 3.75)"));  // all starts
   CHECK((holds(text, R"("steps" : 7)") && holds(text, R"("steps" : 15)")));
   CHECK(holds(text, R"("device_memory_kib" : 4)"));
   CHECK(holds(text, R"("steps" : 1234567890123)"));

@@ -1,4 +1,4 @@
-// A directory that lives as long as its test, and snapshots with values that a reader can predict.
+// A directory for the duration of a test, and snapshots with values that a reader can predict.
 #pragma once
 
 #include <unistd.h>
@@ -34,7 +34,7 @@ class ScratchDirectory {
   std::string path_;
 };
 
-// Snapshot `step` with n points: every value says where it belongs.
+// Snapshot `step` with n points: every value encodes its position.
 struct PredictableSnapshot {
   PredictableSnapshot(int step, int n, int shapes) : time(0.25 * step) {
     for (int i = 0; i < n; ++i) {
@@ -49,7 +49,7 @@ struct PredictableSnapshot {
     for (int i = 0; i < shapes; ++i) vector.push_back({value(step, i), 0, 1}), number.push_back(step);
   }
   static Real value(int step, int i) { return 1000.0 * step + i; }
-  // Of its points [first, first + count).
+  // The points [first, first + count).
   ParticleSnapshot particles(std::size_t first, std::size_t count) const {
     const auto reals = [&](const std::vector<Vec3>& v) {
       return reinterpret_cast<const Real*>(v.data() + first);

@@ -22,7 +22,7 @@ SnapshotWriter surface_writer(const ScratchDirectory& scratch, int keep,
   return {scratch.path(), {.title = "title", .keep = keep, .triangles = triangles}};
 }
 
-// Of snapshots from the writer's next one to `end`, whose values say where they belong.
+// Snapshots from the writer's next one to `end`, whose values encode their positions.
 void write_surfaces(SnapshotWriter& writer, int end) {
   for (int step = writer.snapshots(); step < end; ++step) {
     const Real v = PredictableSnapshot::value(step, 0);
@@ -33,7 +33,7 @@ void write_surfaces(SnapshotWriter& writer, int end) {
   }
 }
 
-// Contacts and links, with values that say where they belong.
+// Contacts and joints, with values that encode their positions.
 const WantedLines kLinesWanted{true, {"overlap", "kind"}, 0, {"spring", "pin"}};
 
 SnapshotWriter line_writer(const ScratchDirectory& scratch, int keep,

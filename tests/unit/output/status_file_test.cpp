@@ -1,4 +1,4 @@
-// What a run leaves for others to see while it goes on.
+// The status that a run publishes while it goes on.
 #include "output/status_file.hpp"
 
 #include <filesystem>

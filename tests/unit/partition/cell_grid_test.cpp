@@ -1,4 +1,4 @@
-// Every point of the space and its margin has one cell; cells are as large as asked.
+// Every point of the domain and its margin has one cell; cells have at least the size asked for.
 #include "partition/cell_grid.hpp"
 
 #include "model/derived/random.hpp"

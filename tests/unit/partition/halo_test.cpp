@@ -1,4 +1,4 @@
-// Ghosts: which images a point near periodic sides has, where they stand, how they follow their originals.
+// Ghosts: the images of a point near periodic sides, their positions, and their updates from the originals.
 #include "partition/halo.hpp"
 
 #include <set>

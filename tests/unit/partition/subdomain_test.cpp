@@ -1,4 +1,4 @@
-// Moving by periods is exact, and what lies inside or beyond a wall.
+// Shifts by periods are exact; points inside or beyond a wall.
 #include "partition/subdomain.hpp"
 
 #include <cmath>
@@ -78,9 +78,9 @@ TEST_CASE("a particle's position is sound unless it is not finite or crossed the
         Vec3 p = s.min + 0.25 * period;
         p.*axis += moved;
         const Vec3 start = p;
-        ImageCount image{3, -5, 7};  // counts go on from where they are
+        ImageCount image{3, -5, 7};  // counts continue from their values
         const bool sound = wrap_if_sound(s.min, period, drifts, p, image);
-        // One that drifts keeps its coordinates, which a restart then has, too.
+        // A ballistic particle keeps its coordinates, also over a restart.
         if (drifts && sound) CHECK((p == start && image.x == 3 && image.y == -5 && image.z == 7));
         return sound;
       };
@@ -95,7 +95,7 @@ TEST_CASE("a particle's position is sound unless it is not finite or crossed the
       }
     }
   }
-  // A side need not be a multiple of the quantum: on it a point may lie outside by round-off.
+  // A side need not be a multiple of the quantum: a point on it may be outside by round-off.
   for (const Real side : {0.17, 0.1, 0.3, 1e-3}) {
     const Subdomain uneven(space_of(2, {side, 0, 0}, {1, 1, 0}, Boundary::periodic));
     for (const Real x : {side, 1.0}) {

@@ -1,4 +1,4 @@
-// The neck of Johnson, Kendall and Roberts against its curve, and pulls on top of other laws.
+// JKR contacts against their curve, and attractive forces on top of other laws.
 #include "physics/cohesion.hpp"
 
 #include "physics/contact_law.hpp"
@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kTable = 1e-13;  // the 15 digits of the tables, less where an overlap is near the break
+constexpr Real kTable = 1e-13;  // the 15 digits of the tables, less near the pull-off point
 constexpr Real kRoundOff = 16 * kUlp;
 
 JkrPair jkr_pair(const ReferenceTable::Row& row) {
@@ -51,9 +51,9 @@ TEST_CASE("JKR: contact radius, force, stiffness, energy") {
     const auto& head = points.rows().at(row.word("set") == "a" ? 0 : 1);
     const JkrPair law = jkr_pair(head);
     const Real d = row["d"];
-    if (!(d > -law.reach() * (1 - 1e-12))) continue;  // the break itself: see above
+    if (!(d > -law.reach() * (1 - 1e-12))) continue;  // the pull-off point itself: see above
     CAPTURE(row.word("set"), d);
-    // Near the break an error of d grows as the root of the distance to it falls.
+    // Near the pull-off point the error of d grows as the root of the distance to it falls.
     const Real digits = kTable / std::min<Real>(1, std::sqrt(1 + d / law.reach()));
     CHECK(near(law.contact_radius(d), row["a"], {.relative = digits}));
     CHECK(near(law.elastic(d), row["F"], {.relative = digits, .absolute = digits * law.pull_off}));
@@ -109,7 +109,9 @@ TEST_CASE("an attractive force on top of another law, with and without range") {
   CHECK(near(law.load({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
 }
 
-TEST_CASE("an attractive force without history is a law of the instant, in double and single, and of implicit steps") {
+TEST_CASE(
+    "an attractive force without history is a law of the instant, in double and single, and of implicit "
+    "steps") {
   const ContactLaw<AttractedLaw<HertzLaw>> law{{HertzLaw(100, 0.1, true), 0.5, 2, 0}};
   static_assert(!decltype(law)::kMoves);
   const PairSize size{2, 2, 1, 1};
@@ -121,7 +123,7 @@ TEST_CASE("an attractive force without history is a law of the instant, in doubl
   const PairStateOf<float, Vec3f> single{
       {0.1f, 3.9f, {0, 3.9f, 0}, 1 / 3.9f}, {0.1f, -0.3f, 0}, {2, 2, 1, 1}};
   CHECK(near(in_double(law.load(single).force), load.force, {.relative = 1e-5}));
-  // Undamped, touching on a straight way: the impulse's work is the energy.
+  // Undamped, touching on a straight path: the impulse's work is the energy.
   const auto undamped = AttractedLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
   const Real touching = step_contact_force(undamped, {-0.01, 1, 0.02, 1, 0.03}).force;
   CHECK(near(touching / 2 * 0.03, undamped.energy(0.02), {.relative = kRoundOff}));

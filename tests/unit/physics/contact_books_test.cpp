@@ -1,5 +1,5 @@
-// What a contact over a step adds to the energy ledger: the law's dissipation against the law integrated in
-// fine parts, and what is left for the integrator.
+// Contributions of a contact over a step to the energy ledger: the law's dissipation against the law
+// integrated in fine parts, and the remainder for the integrator.
 #include "physics/contact_books.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace scree {
 namespace {
 
 constexpr Real kRoundOff = 4 * kUlp;
-constexpr int kParts = 200000;              // of the way that is integrated
-constexpr Real kTruncation = 1.0 / kParts;  // one of them lies over a jump
+constexpr int kParts = 200000;              // of the path that is integrated
+constexpr Real kTruncation = 1.0 / kParts;  // one of them contains a jump
 
 constexpr Real kStep = 1e-3, kReach = 2e-4;  // [s], [m]
 
@@ -59,7 +59,7 @@ void for_each_step(const Visit& visit) {
         for (const Real rate1 : {-0.4, 0.0, 0.2}) visit(ContactStep{overlap0, rate0, overlap1, rate1, kStep});
 }
 
-// Work of the law's own loss along a path with a given rate at each moment; the middle of small parts.
+// Work of the law's own loss along a path with a given rate at each instant, at the middle of small parts.
 template <class Overlap, class Rate>
 Real integrated(const BookedLaw& law, const Overlap& overlap, const Rate& rate) {
   Real sum = 0;
@@ -82,7 +82,7 @@ TEST_CASE("the dissipation of a contact over a step is the law's loss along its 
       CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
       const Real dissipated = law.dissipation(law.law, c);
       if (holds(law, c.overlap0, c.rate0) && holds(law, c.overlap1, c.rate1)) {
-        // In contact all the while, at a rate that changes evenly: the damper alone.
+        // In contact throughout, at a linearly changing rate: the damper alone.
         const Real mean_square = (c.rate0 * c.rate0 + c.rate0 * c.rate1 + c.rate1 * c.rate1) / 3;
         CHECK(near(dissipated, law.law.normal_damping * mean_square * c.h, {.relative = kRoundOff}));
         return;
@@ -117,7 +117,7 @@ TEST_CASE("work, elastic energy, dissipation and the integrator's part add up") 
     });
 }
 
-// The linear law without damping, on the straight way of an impact: step_contact_force is made for that.
+// The linear law without damping, on the straight path of an impact, for which step_contact_force is exact.
 TEST_CASE("the integrator does nothing to an undamped linear contact that opens or closes") {
   for (const BookedLaw& law : kLaws) {
     if (law.law.exponent != 1 || law.law.normal_damping > 0) continue;

@@ -15,7 +15,7 @@ namespace {
 constexpr Real kRoundOff = 4 * kUlp;
 constexpr Real kTruncation = 5e-10;  // of central differences over 1e-6, and their round-off, relative
 
-// A law and the policy that computes it, for loops over both.
+// A law and the policy that evaluates it, for loops over both.
 struct LawCase {
   const char* name;
   KelvinVoigt law;

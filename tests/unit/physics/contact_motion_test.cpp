@@ -1,4 +1,4 @@
-// How contacts move and what they remember turns: symmetry, lengths, rigid turns, momentum.
+// Contact kinematics and the transport of histories: symmetry, lengths, rigid rotations, momentum.
 #include "physics/contact_motion.hpp"
 
 #include "physics/orientation.hpp"
@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-// Of a body that turns evenly for this long.
+// Rotation of a body at constant angular velocity after this time.
 Quaternion turned_in(Vec3 omega, Real time) {
   const Real half = norm(omega) * time / 2, s = std::sin(half) / norm(omega);
   return {std::cos(half), s * omega.x, s * omega.y, s * omega.z};
@@ -61,7 +61,7 @@ TEST_CASE("a contact gives no linear and no angular momentum") {
 
 TEST_CASE("the power of force and torques is that of the spring over the slip") {
   RandomNumbers random;
-  constexpr Real h = 1e-8;  // so short that nothing turns
+  constexpr Real h = 1e-8;  // so short that nothing rotates
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, h, false);
     const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(100, 0, false), {40, 1e9, 0}};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real kRoundOff = 8 * kUlp;
 constexpr Real kTruncation = 1e-9;  // of central differences over 1e-6, and their round-off, relative
-constexpr int kParts = 200000;      // of a way that is integrated
+constexpr int kParts = 200000;      // of a path that is integrated
 constexpr Real kInfinite = std::numeric_limits<Real>::infinity();
 constexpr Real kStep = 1e-4, kReach = 1e-4;  // [s], [m]
 
@@ -103,7 +103,7 @@ TEST_CASE("a contact that parts evenly is cut where its force is zero") {
 TEST_CASE("over a step Hertz's force is continuous at touch, and its work is that of law and damper") {
   for (const auto& law : kLaws) {
     CAPTURE(law.damping_factor, law.tension);
-    for (const Real share : {1e-9, 1e-3, 1.0}) {  // of the reach, behind a gap
+    for (const Real share : {1e-9, 1e-3, 1.0}) {  // fractions of kReach, after a gap
       CAPTURE(share);
       const ContactStep c = step_between(-0.5 * kReach, share * kReach, 2);
       const StepContactForce f = step_contact_force(law, c);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Real kRoundOff = 8 * kUlp;
 
-// Largest difference of the numbers, of the sign that has w >= 0.
+// Largest difference of the components, with the sign that has w >= 0.
 Real difference(Quaternion a, const Quaternion& b) {
   if (a.w < 0) a = Real(-1) * a;
   return std::max({std::abs(a.w - b.w), std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});

@@ -1,4 +1,4 @@
-// Two spheres that touch and move at random, for tests of what must hold for all.
+// Two spheres in contact with random motion, for properties that hold for all laws.
 #pragma once
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Numbers in [-1, 1), the same ones each time.
+// Numbers in [-1, 1), reproducible.
 class RandomNumbers {
  public:
   Real operator()() { return static_cast<Real>(engine_()) / 2147483648.0 - 1; }
@@ -26,7 +26,7 @@ struct RandomContact {
   Vec3 spin_i, spin_j;
 };
 
-// Of partners i and j of sizes around 1; swapped: the same contact seen from j.
+// A contact of partners i and j of sizes around 1; swapped: the same contact seen from j.
 inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped) {
   const Vec3 place[2] = {random.vector(), random.vector()};
   const Vec3 velocity[2] = {random.vector(), random.vector()}, spin[2] = {random.vector(), random.vector()};

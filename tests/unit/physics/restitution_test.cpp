@@ -1,4 +1,4 @@
-// Restitution from damping and back, against the closed forms in 40 digits.
+// Restitution from damping and the inverse, against closed forms in 40 digits.
 #include "physics/restitution.hpp"
 
 #include "support/catch.hpp"
@@ -35,7 +35,7 @@ TEST_CASE("restitution at the ends: without damping 1, critically damped and bey
   CHECK(restitution_of(1, true) == 0);
   CHECK(restitution_of(3, true) == 0);
   CHECK(restitution_of(1, false) == std::exp(-2.0));
-  // No step where one form of the time goes over into the other.
+  // No jump where one form of the time changes into the other.
   for (const Real beside : {1 - kUlp, 1 - 1e-9, 1 + kUlp, 1 + 1e-9})
     CHECK(near(restitution_of(beside, false), std::exp(-2.0), {.relative = 2e-9}));
   for (const Real e : {1e-12, 1e-3, 1 - 1e-12})

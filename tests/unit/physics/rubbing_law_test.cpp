@@ -1,4 +1,4 @@
-// Laws with friction and rolling: what they remember, their limits and moments, their energy.
+// Laws with friction and rolling: their histories, limits and moments, their energy.
 #include <array>
 
 #include "physics/cohesion.hpp"
@@ -26,7 +26,7 @@ ContactHistory written_and_read(const ContactHistory& history) {
   return Law::read_history([&](int k) { return numbers.at(static_cast<std::size_t>(k)); });
 }
 
-// Of a moment, along the normal.
+// Component of a moment along the normal.
 Real twist_of(Vec3 moment, const ContactMotion& c) { return dot(moment, c.normal1); }
 
 }  // namespace
@@ -58,7 +58,7 @@ TEST_CASE("a contact that opens forgets, and a force that is cut holds nothing")
   const ContactOutcome open = law.load(c.pair, c.history);
   CHECK((open.load.force == Vec3{} && open.load.torque_i == Vec3{} && open.history.spring == Vec3{}));
   c = contact_of(random, 0.05, false);
-  const Real parting = 2 * 100 * c.pair.geometry.overlap;  // of a damping of 1
+  const Real parting = 2 * 100 * c.pair.geometry.overlap;  // the force of a damping of 1 at separation
   c.pair.velocity =
       c.pair.velocity + (parting + c.pair.geometry.rate(c.pair.velocity)) * c.pair.geometry.normal();
   ContactLaw<LinearLaw, LinearSlider, Both> damped = law;
@@ -78,7 +78,7 @@ TEST_CASE("forces and moments stay within their limits") {
     const Vec3 n = c.pair.motion.normal1;
     const Real normal = dot(out.load.force, n), d = c.pair.geometry.overlap;
     CHECK(norm(across(out.load.force, n)) <= mu * normal * (1 + kRoundOff));
-    // What friction leaves of the torques is the rolling law's.
+    // The torque beyond that of friction is the rolling law's.
     const Vec3 moment = out.history.moment;
     const Real radius = c.pair.size.effective_radius(), a = std::sqrt(radius * d);
     CHECK(norm(across(moment, n)) <= mu_roll * radius * normal * (1 + kRoundOff));
@@ -92,7 +92,7 @@ TEST_CASE("rolling and twisting springs take their stiffness from the contact") 
     RandomContact c = contact_of(random, 1e-3, false);
     c.pair.motion.overlap0 = c.pair.geometry.overlap;  // nothing grows or shrinks
     const Real radius = c.pair.size.effective_radius(), a = std::sqrt(radius * c.pair.geometry.overlap);
-    // Limits out of reach.
+    // Limits that are never reached.
     const ContactLaw<HertzLaw, MindlinSlider, Both> law{
         HertzLaw(100, 0, false), {40, 1e6, 0}, {{1e-2, 0, 2.25, 0}, {1e6}}};
     const ContactOutcome out = law.load(c.pair, {});
@@ -109,7 +109,7 @@ TEST_CASE("rolling and twisting springs take their stiffness from the contact") 
     CHECK(near(springs.friction, rubs, {.relative = 1e-12}));
     CHECK(near(springs.rolling, rolls, {.relative = 1e-12}));
     CHECK(springs.sum() == springs.friction + springs.rolling);
-    // From rest, without losses, it is the springs' work.
+    // From rest and without losses, it is the work of the springs.
     CHECK(std::abs(out.friction.sum() + out.rolling.sum()) <= 1e-12 * energy);
   }
   const ElasticPlasticRolling given{0.3, 0, 0, 7};

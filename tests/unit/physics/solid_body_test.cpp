@@ -1,4 +1,4 @@
-// Mass, centre of mass and inertia of solids against numbers worked out by hand.
+// Mass, centre of mass and inertia of solids against values computed by hand.
 #include "physics/solid_body.hpp"
 
 #include <numbers>
@@ -78,7 +78,7 @@ TEST_CASE("half a box is a box and its other half") {
 }
 
 TEST_CASE("a rotated tensor") {
-  // By a quarter turn about z, x goes to y; products change with it.
+  // A quarter revolution about z takes x to y, and the products accordingly.
   const Mat3 quarter = rotation_matrix(exponential({0, 0, kPi / 2}));
   check_near(turned_tensor(quarter, {1, 2, 3, 4, 5, 6}), {4, -2, -5, 1, 3, 6});
 }

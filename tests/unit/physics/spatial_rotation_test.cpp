@@ -1,4 +1,4 @@
-// The tangent of rotation vectors and how it changes, from tiny rotations to nearly whole turns.
+// The tangent of rotation vectors and its change, from tiny rotations to nearly whole revolutions.
 #include "physics/spatial_rotation.hpp"
 
 #include "support/catch.hpp"
@@ -28,7 +28,7 @@ TEST_CASE("how the inverse tangent changes is its derivative, by series and in c
     const Vec3 numeric = (1 / (2 * kStep)) * (at(kStep) - at(-kStep));
     CHECK(near(inverse_tangent_change(u, on) * change, numeric, {.absolute = 1e-8}));
   }
-  // Where the series ends the two forms agree.
+  // Both forms agree at the end of the series' range.
   const Vec3 below = (0.25 - 1e-13) * along, above = (0.25 + 1e-13) * along;
   CHECK(near(inverse_tangent_change(below, on) * change, inverse_tangent_change(above, on) * change,
              {.absolute = 1e-12}));

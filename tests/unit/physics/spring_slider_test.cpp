@@ -1,4 +1,4 @@
-// A spring with a slider and a dashpot: what it remembers, what acts, and where the energy goes.
+// A spring with a slider and a dashpot: history, force and energy.
 #include "physics/spring_slider.hpp"
 
 #include "random_contact.hpp"
@@ -18,7 +18,7 @@ struct RandomStep {
   Real h = 0.1;
 };
 
-// Of all kinds: sticking and sliding, stiffening and weakening, with and without dashpot.
+// Steps of all kinds: sticking and sliding, stiffening and softening, with and without dashpot.
 RandomStep random_step(RandomNumbers& random) {
   RandomStep out;
   const Real k = 2 + random(), limit = 1.5 + random();
@@ -74,7 +74,7 @@ TEST_CASE("a spring that sticks keeps its force while it stiffens, and loses wit
   CHECK(near(spring_step({3, 5, 0, 1}, old, {}, 1).spring, Real(0.6) * old, {.relative = kRoundOff}));
   // From 0, as the root of the overlap: two thirds.
   CHECK(near(spring_step({3, 0, 0, 1}, {}, {0.1, 0, 0}, 1).spring, Vec3{0.2, 0, 0}, {.relative = kRoundOff}));
-  // Exactly where a radius grows with the root of the overlap, in one step or in parts.
+  // Exact where a radius grows with the root of the overlap, in one step or in parts.
   const auto grown = [](int parts) {
     Vec3 spring;
     for (int k = 0; k < parts; ++k) {

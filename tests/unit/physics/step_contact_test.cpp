@@ -1,4 +1,4 @@
-// A contact over a step that opens or closes it: continuity, energy, derivatives.
+// A contact over a step in which it opens or closes: continuity, energy, derivatives.
 #include "physics/step_contact.hpp"
 
 #include <cmath>
@@ -22,9 +22,9 @@ struct StepLaw {
   ContactForce (*at_instant)(const KelvinVoigt&, Real, Real);
   Real (*energy)(const KelvinVoigt&, Real);
 
-  // [J]; 0 across a gap.
+  // Elastic energy [J]; 0 without contact.
   Real stored(Real overlap) const { return overlap > 0 ? energy(law, overlap) : 0; }
-  // At the start of the step [N].
+  // Force at the start of the step [N].
   Real start(const ContactStep& c) const {
     return c.overlap0 > 0 ? at_instant(law, c.overlap0, c.rate0).force : 0;
   }
@@ -50,8 +50,8 @@ const StepLaw kLaws[] = {
     step_law<PowerLaw>("n = 1.5, tension, undamped", 1e8, 0, 1.5, true),
 };
 
-// A step from overlap0 to overlap1 whose rates fit the straight line and the trapezoidal rule, as those of
-// HHT with hht_alpha = 0 do: (rate0 + rate1) / 2 = (overlap1 - overlap0) / h.
+// A step from overlap0 to overlap1 whose rates are consistent with the straight line and the trapezoidal
+// rule, as in HHT with hht_alpha = 0: (rate0 + rate1) / 2 = (overlap1 - overlap0) / h.
 ContactStep step_between(Real overlap0, Real overlap1, Real rate0) {
   return {overlap0, rate0, overlap1, 2 * (overlap1 - overlap0) / kStep - rate0, kStep};
 }
@@ -69,9 +69,9 @@ const ContactStep kTouching[] = {step_between(-kReach, kReach, 0.3),
 const ContactStep kReleasing[] = {step_between(kReach, -kReach, -0.3),
                                   step_between(0.1 * kReach, -kReach, -0.2),
                                   step_between(kReach, -0.1 * kReach, -0.1), step_between(kReach, 0, -0.1)};
-// Closed and pushing all the time.
+// In compression throughout.
 const ContactStep kLasting = step_between(kReach, 1.2 * kReach, 0.05);
-// The cut force of a damped contact is zero before the overlap is.
+// The clipped force of a damped contact is zero before the overlap is.
 const ContactStep kFading = step_between(kReach, 0.01 * kReach, 0);
 
 bool fades_early(const StepLaw& law) { return !law.law.tension && law.law.normal_damping > 0; }
@@ -103,7 +103,7 @@ TEST_CASE("the force is continuous where a contact touches at the end of the ste
       CAPTURE(law.name, gap);
       const Real tiny = 1e-9 * kReach;
       const StepContactForce f = law.over_step(law.law, step_between(-gap, tiny, 0.2));
-      // No more than its slope allows.
+      // At most what its slope permits.
       CHECK(f.force >= 0);
       CHECK(f.force <= 2 * (law.law.normal_stiffness + 2 * law.law.normal_damping / kStep) * tiny);
     }
@@ -130,7 +130,7 @@ TEST_CASE("the force is continuous where a contact without tension releases") {
     for (const Real overlap1 : {0.3 * kReach, 0.0, -0.2 * kReach}) {
       CAPTURE(law.name, overlap1);
       ContactStep c{kReach, -0.1, overlap1, 0, kStep};
-      // The rate at which the law's force is zero at the end, or that force grows with overlap1 alone.
+      // The rate at which the law's force is zero at the end, or that force depends on overlap1 alone.
       if (law.law.normal_damping > 0) {
         const Real slope0 = law.at_instant(law.law, kReach, 0).stiffness;
         const Real elastic = overlap1 > 0 ? law.at_instant(law.law, overlap1, 0).force : slope0 * overlap1;
@@ -149,7 +149,7 @@ TEST_CASE("the force is continuous where a contact without tension releases") {
   }
 }
 
-// For the linear law the energy that a cut contact leaves is exact too.
+// For the linear law the energy of a clipped contact is exact too.
 TEST_CASE("without damping, the step's work is the change of the elastic energy") {
   for (const StepLaw& law : kLaws) {
     if (law.law.normal_damping > 0) continue;
@@ -166,11 +166,14 @@ TEST_CASE("without damping, the step's work is the change of the elastic energy"
   }
 }
 
-// On a sphere between the faces of a plate the nearer face acts: the contact with one ends at the overlap at
-// which that with the other begins. The last two do not move along their normals while they act.
-TEST_CASE("contacts that change over do the work of their elastic energies, and their dissipation is accounted for") {
+// A sphere between the faces of a plate has contact with the nearer face: the contact with one ends at the
+// overlap at which that with the other begins. The last two do not move along their normals while in
+// contact.
+TEST_CASE(
+    "contacts that change over do the work of their elastic energies, and their dissipation is accounted "
+    "for") {
   struct Change {
-    Real gone0, gone1, come0, come1;  // overlaps
+    Real gone0, gone1, come0, come1;  // overlaps of the contact that ends and of the one that begins
   };
   for (const StepLaw& law : kLaws)
     for (const Change& c : {Change{0.9, 1.2, 1.15, 0.95}, Change{1, 1.01, 1.5, 0.2}, Change{0.9, 0.9, 1, 0.6},

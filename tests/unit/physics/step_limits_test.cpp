@@ -1,4 +1,4 @@
-// The step limits against the oscillators that they are made for.
+// The step limits against the oscillators for which they are derived.
 #include "physics/step_limits.hpp"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ TEST_CASE("velocity Verlet is stable below its limit and not above") {
 
 namespace {
 
-// Directions to the neighbours of a disc in the triangular lattice or a sphere in the face-centred cubic one,
-// and whether the neighbour is of the next layer.
+// Directions to the neighbours of a disc in the triangular lattice or a sphere in the face-centred cubic
+// one, and whether the neighbour belongs to the next layer.
 struct Neighbor {
   Vec3 direction;
   bool next_layer;
@@ -74,7 +74,7 @@ std::vector<Neighbor> densest_lattice(int dimension) {
   return out;
 }
 
-// Force and torque on a particle of radius and mass 1 whose contacts, with hardly any overlap, are opened by
+// Force and torque on a particle of radius and mass 1 whose contacts, of nearly zero overlap, are changed by
 // a small motion of it and of its neighbours.
 ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 way, Vec3 turn) {
   ContactLoadOf<Real, Vec3> sum{};
@@ -95,7 +95,7 @@ ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 
 }  // namespace
 
 TEST_CASE("the highest modes of the densest lattices of particles with friction") {
-  constexpr Real kSmall = 1e-6, kNearly = 5e-3;  // the overlap's share, and the way's
+  constexpr Real kSmall = 1e-6, kNearly = 5e-3;  // size of the overlap, and of the displacement
   for (const int dimension : {2, 3})
     for (const Real slip : {0.0, 0.2, 0.8}) {
       CAPTURE(dimension, slip);

@@ -21,7 +21,8 @@ struct RandomStep {
   Real end_limit = 0;
 };
 
-// Of all kinds; old forces beyond the limit, too, and steps of many times the way to it.
+// Steps of all kinds, also with old forces beyond the limit, and many times longer than the displacement to
+// it.
 RandomStep random_step(RandomNumbers& random) {
   RandomStep out;
   const Real k = 2 + random();
@@ -97,7 +98,7 @@ TEST_CASE("in an implicit step a dashpot acts beside a spring within its limit, 
   CHECK(acting_at({1, 1, 0, 10}, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
 }
 
-// A slip that turns back while the limit falls: the spring sticks, slides, lets go, and slides on as the
+// A slip that reverses while the limit falls: the spring sticks, slides, releases, and slides again as the
 // limit reaches it.
 TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones as steps shrink") {
   const auto way_to = [](Real t) { return 0.12 * std::sin(3.5 * t); };
@@ -136,7 +137,7 @@ TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones 
 }
 
 TEST_CASE("while a spring with slider sticks, steps of half the size quarter the error") {
-  // A way that swings: T = sin(t) from 0 to 2, stiffness 1.
+  // An oscillating displacement: T = sin(t) from 0 to 2, stiffness 1.
   const auto error = [](int steps) {
     const Real h = 2.0 / steps;
     Vec3 spring;

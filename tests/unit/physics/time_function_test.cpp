@@ -63,7 +63,7 @@ TEST_CASE("an eased ramp is constant, speeds up smoothly, and continues at its r
   CHECK(f(0.625).rate == -1.5);
   CHECK(f(0.625).acceleration == -3 / 0.25 * 1.5);
   for (int i = 1; i < 25; ++i) check_derivatives(f, 0.5 + 0.01 * i, 3e-8);
-  // Class C2: value and rate are met at both ends, and the acceleration vanishes there as s.
+  // Class C2: value and rate are matched at both ends, and the acceleration vanishes there as s.
   for (const Real t : {0.5, 0.75}) {
     const TimeValue before = f(t - 1e-9), after = f(t + 1e-9);
     CHECK(near(before.value, after.value, {.absolute = 1e-8}));

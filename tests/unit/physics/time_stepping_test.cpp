@@ -47,7 +47,7 @@ TEST_CASE("Newmark is exact for a constant acceleration and a mean for a changin
     const Vec3 dx = newmark_displacement(c, h, kVelocity, kStart, kEnd);
     CHECK(near(dx, h * kVelocity + (h * h) * ((0.5 - c.newmark_beta) * kStart + c.newmark_beta * kEnd),
                kVectors));
-    CHECK(newmark_displacement(c, h, kVelocity.x, kStart.x, kEnd.x) == dx.x);  // the same for a number
+    CHECK(newmark_displacement(c, h, kVelocity.x, kStart.x, kEnd.x) == dx.x);  // the scalar version agrees
   }
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("HHT's residual vanishes for forces that fit the accelerations") {
     const HhtCoefficients c = hht_coefficients(alpha);
     const Vec3 a1 = (1 / kMass) * ((1 + alpha) * f1 - alpha * f0);
     CHECK(norm(hht_residual(c, kMass, a1, f1, f0)) <= kRoundOff * norm(f1));
-    // The acceleration after an event is the one that fits the force there.
+    // The acceleration after an event is consistent with the force there.
     const Vec3 f2{1, 2, 3};
     const Vec3 after = a1 + hht_event_acceleration(c, kMass, f1, f2);
     CHECK(norm(hht_residual(c, kMass, after, f2, f0)) <= kRoundOff * norm(f0));
@@ -95,7 +95,7 @@ TEST_CASE("the integrator takes nothing out without numerical damping") {
   CHECK(std::abs(loss) <= kRoundOff * kinetic_energy(kMass, kVelocity));
 }
 
-// One particle on a spring, many steps: the loss booked is the energy that is gone.
+// One particle on a spring, many steps: the loss accounted for is the missing energy.
 TEST_CASE("the integrator's loss is the energy that an oscillator misses") {
   const Real stiffness = 400, h = 0.02;
   for (const Real alpha : kAlphas) {

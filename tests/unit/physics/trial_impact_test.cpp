@@ -1,4 +1,4 @@
-// What steps make of an impact, against the exact rebound.
+// Impacts in discrete steps against the exact rebound.
 #include "physics/trial_impact.hpp"
 
 #include <numbers>
@@ -14,11 +14,11 @@ namespace scree {
 
 namespace {
 
-constexpr Real kExact = 2e-4;  // of the speed: what the short steps of the exact rebound err
+constexpr Real kExact = 2e-4;  // of the speed: error of the short steps of the exact rebound
 
 // One disc of 1 kg on a wall, K = 1e7 N/m.
 struct Case {
-  Real ratio;  // of its damping
+  Real ratio;  // ratio to its damping
   bool tension = true;
   Real hht_alpha = 0;
   bool resolve_events = true;
@@ -69,7 +69,7 @@ TEST_CASE("trial impacts err as whole runs do: the table of impacts at any step"
   CHECK(near(verlet({0.2}, 0.05).normal_error, 0.032, {.relative = kDigits}));
 }
 
-// The force at the end of the step stands for all of it: the paper's form, at the paper's step.
+// The force at the end of the step is used for the whole step: the paper's form, at the paper's step.
 TEST_CASE("trial impacts know whether contact events are resolved") {
   const Real share = 1e-3 / Case::touch();
   CHECK(near(implicit({0.0016, true, 0, false}, share).normal_error, 0.43, {.relative = 0.05}));
@@ -85,7 +85,7 @@ TEST_CASE("trial impacts in fine steps are exact, at the order of their method")
     CHECK(near(implicit(damped, 1e-3).mean.restitution, e, {.absolute = kExact}));
     CHECK(near(verlet(damped, 1e-3).mean.restitution, e, {.absolute = kExact}));
     // A dashpot that jumps at touch is resolved by the implicit steps, and of first order in the others; but
-    // with tension what they err at touch and at release can cancel.
+    // with tension their errors at touch and at release can cancel.
     const auto order = [](Real coarse, Real fine) { return std::log2(coarse / fine); };
     const auto bias = [&](Real mean) { return std::abs(mean - e); };
     CHECK(near(
@@ -122,7 +122,8 @@ TEST_CASE("a trial impact on a plane finds the exact rebound, with friction") {
         {R, kInfinity, m, kInfinity}, m, 0.4 * m * R * R, kInfinity, std::cos(angle), std::sin(angle)};
     const auto trials = explicit_trials(law, impact, touch);
     const TrialResult result = trials.with(touch / 50);
-    // From the slip u at the contact: a change of the sphere's velocity by w turns it by 5/2 w.
+    // From the slip u at the contact: a change of the sphere's velocity by w changes its spin velocity by
+    // 5/2 w.
     const Real across = std::sin(angle) + (row["u"] - std::sin(angle)) / 3.5;
     CAPTURE(row["angle_deg"], row["e"]);
     CHECK(near(result.exact.restitution, row["e"], {.absolute = kExact}));
@@ -140,7 +141,7 @@ TEST_CASE("a trial impact of two spheres, damped after Hertz; spheres that stick
   CHECK(near(explicit_trials(law, impact, touch).with(1e-6).exact.restitution, 0.7, {.absolute = kExact}));
   const ContactLaw<JkrLaw> sticky{{1e9, 1, 2e4}};
   const Real making = sticky.normal.of_pair(size).making_loss();
-  REQUIRE(making > size.effective_mass() / 2);  // more than the motion has
+  REQUIRE(making > size.effective_mass() / 2);  // more than the kinetic energy
   CHECK(explicit_trials(sticky, impact, touch).with(1e-5).mean.restitution == 0);
 }
 

@@ -1,5 +1,5 @@
-// What energies are measured by, and when a run warns of what the time integration did to them.
-#include "run/report/balance.hpp"
+// The reference of energy errors, and warnings of energy errors of the time integration.
+#include "run/balance.hpp"
 
 #include <algorithm>
 #include <set>
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// 1 kJ was exchanged, of which the integrator takes `taken` and the ledger misses `missed` [J].
+// 1 kJ was exchanged, of which the integrator takes `taken` and the ledger lacks `missed` [J].
 BalanceState balance_of(Real taken, Real missed) {
   BalanceState balance;
   balance.open = true, balance.start = 5003, balance.start_integrator = 3, balance.exchanged = 1000;
@@ -26,7 +26,7 @@ Model model_with(ParticleIntegrator particles, StepControl control) {
   return model;
 }
 
-// Energy goes to and fro between the entries of these ledgers.
+// Energy is transferred between the entries of these ledgers.
 Ledger moving(Real kinetic) {
   Ledger ledger;
   ledger.kinetic = kinetic;
@@ -50,10 +50,11 @@ TEST_CASE("losses of bodies that exchange little count from 1 % of their energy 
   for (const Real sign : {1, -1}) {
     CHECK(balance_warning(balance_of(sign * 49, 0), {5000, sign * 49, 0}, hht).empty());
     CHECK_FALSE(balance_warning(balance_of(sign * 51, 0), {5000, sign * 51, 0}, hht).empty());
-    // What particles lost is not the bodies', whatever these hold; nor is what nobody booked.
+    // Losses of particles do not count as the bodies', whatever energy these have; nor does a missing
+    // energy.
     CHECK_FALSE(balance_warning(balance_of(sign * 49, 0), {5000, sign * 38, 0}, hht).empty());
     CHECK_FALSE(balance_warning(balance_of(0, sign * 11), {5000, 0, 0}, hht).empty());
-    // Together they change little, one by one more.
+    // Each changes little alone, one of them more together.
     CHECK(balance_warning(balance_of(0, 0), {5000, sign * 49, 0}, hht).empty());
   }
 }
@@ -115,7 +116,7 @@ TEST_CASE("where next to nothing was exchanged the last bits of the energies are
   BalanceState balance = balance_of(0, 0);
   balance.exchanged = 1e-9, balance.last.kinetic += 1e-9;
   CHECK(balance_warning(balance, {}, hht).empty());
-  // Energies of 1e-20 J, of bodies whose forces could do 1 J.
+  // Energies of 1e-20 J, of bodies whose forces have a scale of 1 J.
   balance = BalanceState{true, 0, 0, 1e-20, 0, {}, moving(4e-21)};
   CHECK(balance_warning(balance, {0, 0, 1e-9}, hht).empty());
   CHECK_FALSE(balance_warning(balance, {0, 0, 1e-21}, hht).empty());
@@ -156,7 +157,7 @@ TEST_CASE(
   bodies.driver_work = 1;
   ledger.gravitational = 1e9, ledger.carried_out = 1e9;
   ledger.dissipated_force_elements = 0.25, ledger.dissipated_contacts = 0.125;
-  for (const Real kinetic : {16, 3}) {  // rows leave nothing behind
+  for (const Real kinetic : {16, 3}) {  // rows leave no trace
     add_row(balance, ledger, extremes_at(kinetic, 104, bodies), bodies);
     CHECK(balance.exchanged == std::max(kinetic, Real(9)) + 0.5 + 6 + 7 + 0.375);
   }
@@ -193,7 +194,7 @@ TEST_CASE("the energies are sampled after numbers of steps that follow from the 
       samples.push_back(next_energy_sample(steps, implicit));
     CHECK(samples.front() == (implicit ? 4 : 128));
     CHECK(samples.back() - samples[samples.size() - 2] == (implicit ? 8 : 1024));
-    for (std::size_t k = 1, wrong = 0; k < samples.size(); ++k) {  // from wherever one goes on
+    for (std::size_t k = 1, wrong = 0; k < samples.size(); ++k) {  // whichever sample is wrong
       for (const std::int64_t from : {samples[k - 1], (samples[k - 1] + samples[k]) / 2, samples[k] - 1})
         wrong += next_energy_sample(from, implicit) != samples[k];
       if (k + 1 == samples.size()) CHECK(wrong == 0);

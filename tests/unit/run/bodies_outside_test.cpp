@@ -1,5 +1,5 @@
-// Bodies that leave the space are counted by their centres.
-#include "run/report/bodies_outside.hpp"
+// Bodies outside the domain are counted by their centres.
+#include "run/bodies_outside.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"

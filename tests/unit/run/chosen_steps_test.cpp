@@ -1,4 +1,4 @@
-// The step that is chosen where a deck leaves it out, and the integrator.
+// The default step and the default integrator.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,12 +20,12 @@ namespace {
 class RandomDecks {
  public:
   explicit RandomDecks(unsigned seed) : engine_(seed) {}
-  // Spheres or discs between walls, of any law, and what they may meet besides.
+  // Spheres or discs between walls, with any law, and further contact partners.
   std::string next();
 
  private:
   Real between(Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(engine_); }
-  // Evenly in its logarithm.
+  // Uniform in the logarithm.
   Real of_size(Real low, Real high) { return std::exp(between(std::log(low), std::log(high))); }
   bool maybe(Real chance) { return between(0, 1) < chance; }
   std::string law(bool spheres, Real radius, Real mass, Real speed);
@@ -98,7 +98,7 @@ std::string RandomDecks::next() {
   deck += fmt::format("[time]\nend = 1.0\n[integrator]\nparticles = \"velocity-verlet\"\nsubsteps = {}\n",
                       maybe(0.3) ? 4 : 1);
   const std::string one = law(spheres, radius, mass, speed);
-  // Moduli with which spheres overlap by a share of a per cent to some per cent.
+  // Moduli with which spheres overlap by a fraction of a per cent to some per cent.
   const std::string moduli = contains(one, "stiffness")
                                  ? ""
                                  : fmt::format("young_modulus = {}\npoisson_ratio = 0.3\n",
@@ -162,7 +162,7 @@ TEST_CASE("a step that is chosen is neither refused nor warned about, and keeps 
     for (const PairLimit& limit : explicit_pairs(one.model)) CHECK(h <= kStableShare * limit.explicit_step);
     CHECK(one.model.time.step <= body_step_limit(one.model).good_step());
     CHECK(suits_explicit(one.model, one.model.time.step));
-    // No step that a person would write is much shorter than it must be.
+    // No default step is much shorter than necessary.
     longest_trials += contains(one.of("step")->reason, "trial rebounds");
   }
   CHECK(longest_trials > 10);
@@ -242,7 +242,7 @@ mass = 0.1
     CHECK(model.of("particles") == nullptr);
     CHECK((model.of("step") != nullptr) == (named == std::string("velocity-verlet")));
   }
-  // The refusal of an integrator names both keys that call for it.
+  // The refusal of an integrator names both keys that require it.
   CHECK(
       contains(model_error(deck, {friction, "contact.pairs.0.rolling_friction=0.1", "time.control=adaptive"}),
                "needs integrator.particles = \"velocity-verlet\""));

@@ -1,5 +1,5 @@
-// The contacts that snapshots show say of each particle what other outputs say, and leave no trace.
-#include "run/record/contact_network.hpp"
+// The contacts in snapshots agree with other outputs for each particle, and leave no trace.
+#include "run/contact_network.hpp"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ constexpr Real kRoundOff = 1e-11;  // of forces of up to some 100 N, and of leng
 
 bool with_surface(const ContactLine& line) { return line.second >= kFirstSurfaceId; }
 
-// By particle.
+// Sums per particle.
 struct Sums {
   Sums(const ContactLines& of, std::size_t particles) : force(particles), contacts(particles) {
     for (const ContactLine& line : of.lines) {
@@ -58,7 +58,7 @@ void check_line(const ContactLine& line, const Model& model, const std::vector<V
   REQUIRE(near(norm(c.branch), std::abs(reach - c.overlap), {.absolute = kRoundOff}));
 }
 
-// Forces of the state that the backend has are those at its instant.
+// Forces of the state on the backend are those at its instant.
 ContactLines check_lines(const Model& model, Backend& backend) {
   ContactLines lines = backend.reports().contact_lines();
   const BoxOutput output(backend);
@@ -102,8 +102,7 @@ TEST_CASE("lines of contacts add up to forces on particles and walls, and each c
   }
 }
 
-TEST_CASE(
-    "lines of frictional, rolling and adhesive contacts have their springs, and move nothing") {
+TEST_CASE("lines of frictional, rolling and adhesive contacts have their springs, and move nothing") {
   for (const RubbingKind& kind : kRubbingKinds)
     for (const BoxCase& c : kRubbingBoxes) {
       CAPTURE(kind.name, c.name);

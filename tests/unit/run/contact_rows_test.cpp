@@ -1,6 +1,6 @@
-// What contacts remember returns from a checkpoint bit for bit, enters the hash, and is refused where it
-// cannot be; where nothing is remembered a checkpoint has nothing of it.
-#include "run/state/contact_rows.hpp"
+// Contact histories return from a checkpoint bit for bit, enter the hash, and are refused where they are
+// inconsistent; without histories a checkpoint has none.
+#include "run/contact_rows.hpp"
 
 #include "base/error.hpp"
 #include "dem/history/history_slots.hpp"
@@ -84,7 +84,7 @@ TEST_CASE("a checkpoint has rows of contacts only with a law with history") {
   for (const auto& [name, rows] : pack(state).real_rows) CHECK_FALSE(contains(name, "contacts"));
   for (const auto& [name, rows] : pack(state).integer_rows) CHECK_FALSE(contains(name, "contacts"));
   CHECK(unpack(pack(state)).contacts.numbers == 0);
-  // Both are checkpoints of the same model; one with a part of the rows is none.
+  // Both are checkpoints of the same model; one with a part of the rows is not.
   const Model model;
   const auto trouble = [&](const Checkpoint& checkpoint) -> std::string {
     try {
@@ -120,7 +120,7 @@ TEST_CASE("the hash covers contact histories, and nothing else where there are n
     other.contacts.values[k] = -other.contacts.values[k];
     CHECK(state_hash(other, true) != hash);
   }
-  State moved = state;  // a contact goes to the next particle
+  State moved = state;  // a contact is assigned to the next particle
   ++moved.contacts.offsets[1];
   CHECK(state_hash(moved, true) != hash);
   State none = state;

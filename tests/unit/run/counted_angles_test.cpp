@@ -1,4 +1,4 @@
-// Angles of joints in space in checkpoints, and in those of a version that did not count their turns.
+// Angles of spatial joints in checkpoints, and in those of a version that did not count revolutions.
 #include <string>
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace scree {
 
 namespace {
 
-// A wheel turns at 100 rad/s.
+// A wheel rotates at 100 rad/s.
 const std::string kDeck = R"(
 [space]
 dimension = 3

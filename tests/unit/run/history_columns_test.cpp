@@ -20,7 +20,7 @@ Model recorded_model() {
   return model;
 }
 
-// Every number another one.
+// All numbers differ.
 HistorySample distinct_sample() {
   HistorySample s;
   s.time = 1, s.step = 2;
@@ -120,7 +120,7 @@ TEST_CASE("a column's value is that of its name") {
   CHECK(found == expected);
 }
 
-// A quarter turn about z: the marker's x is the global y.
+// A quarter revolution about z: the marker's x is the global y.
 TEST_CASE("reactions between spatial bodies, also along the axes of the marker") {
   HistorySample sample = distinct_sample();
   sample.reactions[0] = {"pin", {1, 2, 3}, {4, 5, 6}, BodyKind::spatial, exponential({0, 0, M_PI / 2})};

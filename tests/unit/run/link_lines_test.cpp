@@ -1,5 +1,5 @@
-// The lines that snapshots show of joints and force elements.
-#include "run/record/link_lines.hpp"
+// The lines of joints and force elements in snapshots.
+#include "run/link_lines.hpp"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-// What snapshots tell of triangles.
-#include "run/record/mesh_surfaces.hpp"
+// Fields of triangles in snapshots.
+#include "run/mesh_surfaces.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// A ball that comes down on a box of small triangles and slides over it.
+// A ball that falls on a box of small triangles and slides over it.
 const std::string kBall = R"(
 [space]
 dimension = 3
@@ -50,7 +50,7 @@ velocity = [0.3, 0.0, -0.4]
 surface_fields = ["sliding_work", "wear_depth", "impact_work"]
 )";
 
-// A disc that rests on the second segment of a line, on a belt that wears.
+// A disc that rests on the second segment of a line, on a conveyor with wear.
 const std::string kDisc = R"(
 gravity = [0.0, -10.0]
 [space]
@@ -99,7 +99,7 @@ TEST_CASE("in 2D a segment has its load and its wear per length, however large t
     SimulationRun run(model);
     run.run();
     const MeshSurfaces surfaces(model);
-    // One of the two triangles of the segment has it all.
+    // One of the two triangles of the segment has the whole value.
     const std::vector<Index>& numbers = model.meshes[0].surface->original;
     const auto second = static_cast<Index>(std::ranges::find(numbers, 2) - numbers.begin());
     const std::vector<TriangleLoad> loads{{0, second, 10, {1, 0, 0}}};
@@ -118,7 +118,8 @@ TEST_CASE("in 2D a segment has its load and its wear per length, however large t
   }
 }
 
-TEST_CASE("a snapshot has the dissipated work and the wear that the deck asks for, where there are contacts") {
+TEST_CASE(
+    "a snapshot has the dissipated work and the wear that the deck asks for, where there are contacts") {
   const Model model = model_of(kBall);
   SimulationRun run(model);
   run.run();

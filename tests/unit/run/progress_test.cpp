@@ -1,5 +1,5 @@
-// What a run says of how far it is.
-#include "run/report/progress.hpp"
+// The progress line.
+#include "run/progress.hpp"
 
 #include <cmath>
 
@@ -31,7 +31,7 @@ TEST_CASE("the progress line has all known quantities, and no others") {
         "t = 0.25 of 1 s (25 %), 3 min 20 s left, 1000 steps, h = 2.50e-04 s, 17 contacts, 4.5e+04 "
         "particle-steps/s, balance 1e-09");
   p.time = 0.99999;
-  CHECK(percent_text(p) == "99 %");  // not done yet
+  CHECK(percent_text(p) == "99 %");  // not finished yet
 }
 
 TEST_CASE("a rate is that of the last seconds, not of the whole run") {

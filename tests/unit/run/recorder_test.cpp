@@ -1,5 +1,5 @@
-// The files are the same whether snapshots are written at once or beside later steps.
-#include "run/record/recorder.hpp"
+// The files are the same whether snapshots are written at once or during later steps.
+#include "run/recorder.hpp"
 
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ namespace scree {
 
 namespace {
 
-// Two discs fly into a third; a body hangs on a pin among them.
+// Two discs move towards a third; a body hangs on a pin between them.
 const std::string kDeck = kSmallDeck + R"(
 [integrator]
 particles = "velocity-verlet"
@@ -74,12 +74,12 @@ class FailingReports : public Reports {
   bool failed = false;
 
  private:
-  void find_loads() override {}  // the other one's
+  void find_loads() override {}  // that of the other backend
 
   Reports& of_;
 };
 
-// Lets the recorder believe that the steps go on while it could write, and idles when the test says so.
+// Lets the recorder assume that steps continue while it could write, and idles when the test asks for it.
 class LateBackend : public CpuBackend {
  public:
   using CpuBackend::CpuBackend;
@@ -112,7 +112,7 @@ class Folder {
   std::string path_;
 };
 
-// A run by hand: the model's steps, and a recorder for their files.
+// A manual run: the model's steps, and a recorder for their files.
 template <class B>
 struct Recording {
   explicit Recording(const std::string& deck = kDeck) : model((petsc(), model_of(deck))) {
@@ -221,7 +221,7 @@ TEST_CASE("a snapshot of an asynchronous backend is written while it computes") 
   CHECK(run.times().empty());
   run.backend.idle();
   CHECK(run.times() == std::vector<Real>{0});
-  run.backend.idle();  // nothing is left to do
+  run.backend.idle();  // nothing is pending
   CHECK(run.recorder->snapshots_written() == 1);
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("late and immediate snapshots give the same files") {
   check_same_files(now.folder.path(), late.folder.path());
 }
 
-// Two balls on a body that turns, whose frame is beside its centre of mass, and one that touches nothing.
+// Two balls on a rotating body whose frame is off its centre of mass, and a ball without contacts.
 TEST_CASE("shapes and centre of a spatial body are fixed in its frame, which snapshots store") {
   Recording<CpuBackend> run(R"(
 [space]
@@ -316,7 +316,7 @@ shapes = [{ radius = 0.1 }, { radius = 0.07, offset = [0.0, 0.0, 2.0], collides 
   CHECK(norm(vec(points, 14) - vec(points, 2)) > 0.2);
 }
 
-// A ball lies on a box that a body carries up, off the box's edges and diagonals; another one beside it.
+// A ball lies on a box that a body lifts, off the box's edges and diagonals; another one is beside the box.
 TEST_CASE("pressure on a mesh is stored per triangle, at its position") {
   Recording<CpuBackend> run(R"(
 [space]

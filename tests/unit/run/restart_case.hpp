@@ -1,4 +1,4 @@
-// A deck that tests of restarts run, read checkpoints of, and have refused.
+// A deck that tests of restarts run, whose checkpoints they read and refuse.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct RestartCase {
     options.backend = "cpu", options.overwrite = true;
     options.resolved_deck = deck.resolved_text(), options.fingerprint = deck.fingerprint();
   }
-  // Into a folder; what a failed one says.
+  // Runs into a folder; returns the message of a failure.
   std::string run(const std::string& directory, const std::string& restart = "", bool allow_changes = false) {
     options.output_directory = directory, options.restart = restart, options.allow_changes = allow_changes;
     log = Log(true);

@@ -1,6 +1,6 @@
-// What a restart refuses: damaged checkpoints, datasets of wrong lengths, other decks; and what
-// --allow-changes goes on with.
-#include "run/restart/restart.hpp"
+// Refusals of restarts: damaged checkpoints, datasets of wrong lengths, other decks; and restarts with
+// --allow-changes.
+#include "run/restart.hpp"
 
 #include <bit>
 #include <filesystem>
@@ -82,7 +82,7 @@ const std::string kLongerTable =
     "30.0] "
     "}";
 
-// One run's last checkpoint; every test makes its own files from it.
+// The last checkpoint of one run; every test makes its own files from it.
 struct Written {
   Written() {
     Case whole;
@@ -98,7 +98,7 @@ const Written& written() {
   return once;
 }
 
-// The checkpoint with a change in one of its parts, sealed like any other.
+// The checkpoint with a change in one of its parts, sealed as usual.
 std::string changed(const ScratchDirectory& folder, const std::function<void(Checkpoint&)>& change) {
   Checkpoint checkpoint = read_checkpoint(written().path);
   change(checkpoint);
@@ -232,7 +232,7 @@ TEST_CASE("a checkpoint whose state has lost a bit is refused by its hash") {
   refused = 0;
   check_rows(&Checkpoint::real_rows), check_rows(&Checkpoint::integer_rows);
   CHECK(refused == 4 * std::ssize(whole.real_rows) + 4 * std::ssize(whole.integer_rows));
-  // Lengths are looked at before the state is.
+  // Lengths are checked before the state is.
   CHECK(contains(same.refusal(changed(folder, [](Checkpoint& c) { c.reals["bodies/velocity"].pop_back(); })),
                  "dataset /reals/bodies/velocity has 5 values; the deck's model has 6"));
   CHECK(contains(same.refusal(changed(folder, [](Checkpoint& c) { c.reals["bodies/velocity"][2] += 1e-9; })),
@@ -307,15 +307,15 @@ TEST_CASE("--allow-changes continues with other steps, forces and integrators, a
     const Checkpoint end = read_checkpoint(folder / "checkpoint_end.h5");
     CHECK(end.reals.at("clock/time")[0] == 0.025);
     CHECK(contains(end.text("changes"), "t = 0.02 s: "));
-    // What a model adds to the energies is no error of its balance.
+    // A change of the energies by the model is no error of its balance.
     CHECK(std::abs(end.reals.at("balance/start")[0]) < 100);
-    CHECK(other.run(folder.path(), folder / "checkpoint_end.h5") == "");  // the deck is the checkpoint's now
+    CHECK(other.run(folder.path(), folder / "checkpoint_end.h5") ==
+          "");  // the deck of the checkpoint is now this one
     CHECK(contains(read_checkpoint(folder / "checkpoint_end.h5").text("changes"), "t = 0.02 s: "));
   }
 }
 
-TEST_CASE(
-    "a restart continues with the checkpoint's radii and masses, with another deck with that deck's") {
+TEST_CASE("a restart continues with the checkpoint's radii and masses, with another deck with that deck's") {
   const std::vector<std::string> spread = {
       "particles.discs.radius={ kind = \"uniform\", min = 0.09, max = 0.11 }",
       "particles.discs.mass={ kind = \"uniform\", min = 1.0, max = 2.0 }"};

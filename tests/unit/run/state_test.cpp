@@ -1,5 +1,5 @@
-// The state returns from its packed form bit for bit, and says what is missing.
-#include "run/state/state.hpp"
+// The state returns from its packed form bit for bit, and missing parts are reported.
+#include "run/state.hpp"
 
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-// Numbers that decimal text or a cast would spoil.
+// Numbers that decimal text or a cast would change.
 class AwkwardNumbers {
  public:
   Real real() {
@@ -122,7 +122,8 @@ TEST_CASE("works of triangles are hashed where there are some, and are otherwise
   CHECK(unpack(pack(other)).works.empty());
 }
 
-TEST_CASE("histories and losses of shapes' contacts are hashed where there are some, and otherwise not stored") {
+TEST_CASE(
+    "histories and losses of shapes' contacts are hashed where there are some, and otherwise not stored") {
   const State state = awkward_state();
   State other = state;
   other.shape_contacts.values[4] += 1;
@@ -166,7 +167,7 @@ TEST_CASE("angles of spatial joints have a dataset of their own, and their revol
   CHECK(same_bits(returned.bodies.position, state.bodies.position));
   CHECK(returned.bodies.counted_angles == 2);
   CHECK(pack(without).reals.count("bodies/counted_angles") == 0);
-  CHECK(state_hash(state, true) == state_hash(without, true));  // none has been round
+  CHECK(state_hash(state, true) == state_hash(without, true));  // no angle has completed a revolution
   state.bodies.position.back() -= 2 * M_PI;
   const std::uint64_t once = state_hash(state, true);
   CHECK(once != state_hash(without, true));
@@ -278,7 +279,7 @@ TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it"
   const State state = awkward_state();
   const Checkpoint whole = pack(state);
   for (const auto& [name, values] : whole.reals) {
-    if (name == kShapeRubbing) continue;  // a state without has lost nothing
+    if (name == kShapeRubbing) continue;  // a state without them has no losses
     Checkpoint partial = whole;
     partial.path = "some.h5";
     partial.reals.erase(name);

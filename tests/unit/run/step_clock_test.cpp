@@ -34,7 +34,7 @@ const IntervalCase kIntervals[] = {{0.1, 7e-5, 1e-3, 0.1 / 3, 0}, {0.1, 1e-3, 0.
                                    {0.05, 1, 0.01, 0.02, 0},      {1, 0.3, 0, 0, 0},
                                    {0.01, 1e-5, 1e-5, 1e-4, 0},   {1, 1.0 / 3, 1.0 / 3, 0, 0}};
 
-// The error, over the tolerance, that neither grows nor shrinks an adaptive step: 0.9 / cbrt(error) = 1.
+// The error, relative to the tolerance, at which an adaptive step is kept: 0.9 / cbrt(error) = 1.
 constexpr Real kSteady = 0.729;
 
 // Times at which each output was due, and the lengths of all steps.
@@ -117,7 +117,7 @@ TEST_CASE("a fixed step is never longer than asked and as long as the output tim
     model.output.history_interval = c.history;
     const ClockRun run(model);
     for (const Real h : run.steps) CHECK(h <= c.step * (1 + 1e-6));
-    // One step more per segment, at the most, than the step's length asks for.
+    // At most one step more per segment than the step's length requires.
     const Real segments = c.history > 0 ? static_cast<Real>(run.histories.size()) : 1;
     CHECK(static_cast<Real>(run.steps.size()) <= c.end / c.step + segments + 1e-9);
   }
@@ -153,7 +153,7 @@ TEST_CASE("a fixed step that fails is taken in halves and the grid is met again"
   clock.rejected_for_convergence("no");
   CHECK(clock.begin_step() == 0.125);
   clock.rejected_for_convergence("no");
-  // A quarter; then the second quarter; then the half that is left in one step.
+  // A quarter; then the second quarter; then the remaining half in one step.
   std::vector<Real> lengths;
   while (clock.time() < 0.25) {
     lengths.push_back(clock.begin_step());
@@ -186,7 +186,7 @@ TEST_CASE("an adaptive step grows and shrinks within limits") {
   const Model model = timed_model(1e6, 1, StepControl::adaptive);
   StepClock clock(model);
   CHECK(clock.begin_step() == 1);
-  clock.accepted(1e-30);  // no error to speak of: twice as long
+  clock.accepted(1e-30);  // negligible error: twice as long
   CHECK(clock.begin_step() == 2);
   clock.rejected_for_error(8);  // 0.9 / 2
   CHECK(near(clock.begin_step(), 0.9, {.relative = kRoundOff}));
@@ -210,7 +210,7 @@ TEST_CASE("a step cut short to land on an output time does not make the next one
   const ClockRun run(model);
   CHECK(run.steps.size() <= 16);
   CHECK(*std::min_element(run.steps.begin(), run.steps.end()) >
-        0.3);  // the last stretch is halved, not crumbled
+        0.3);  // the last stretch is halved, not cut into tiny steps
 }
 
 TEST_CASE("a step that cannot be shortened fails with the reason, the time and the key") {

@@ -1,5 +1,5 @@
-// How many explicit steps the loop takes at once.
-#include "run/loop/step_loop.hpp"
+// Number of explicit steps that the loop takes at once.
+#include "run/step_loop.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -30,7 +30,7 @@ Model model_with(std::int64_t particles, int substeps, int bodies = 0) {
   return model;
 }
 
-// A disc on its way, one output at the end.
+// A moving disc, one output at the end.
 const std::string kDeck = R"(
 [space]
 dimension = 2
@@ -54,7 +54,7 @@ mass = 1.0
 history_interval = 1.0
 )";
 
-// Calls before_steps(most) whenever it has to take steps.
+// Calls before_steps(most) whenever steps are taken.
 class WatchedRun : public ExplicitRun {
  public:
   WatchedRun(std::unique_ptr<ExplicitRun> run, std::function<void(Index)> before_steps)
@@ -73,8 +73,8 @@ class WatchedRun : public ExplicitRun {
   std::function<void(Index)> before_steps_;
 };
 
-// Says that it is mixed, or not; takes some time by a clock of its own for any number of steps, and keeps how
-// many it had to take at once.
+// Pretends to be mixed or not; takes some time by a clock of its own for any number of steps, and records
+// the numbers of steps.
 class SlowBackend : public CpuBackend {
  public:
   SlowBackend(const Model& model, bool mixed, double seconds)
@@ -118,7 +118,7 @@ struct SlowRun {
   std::optional<StepLoop> loop;
 };
 
-// Steps after which they end.
+// Steps after which the batches end.
 std::set<Index> ends_of(const std::vector<Index>& batches) {
   std::set<Index> ends;
   Index steps = 0;
@@ -126,7 +126,7 @@ std::set<Index> ends_of(const std::vector<Index>& batches) {
   return ends;
 }
 
-// Of a whole run.
+// The batches of a whole run.
 std::vector<Index> batches(bool mixed, double seconds) {
   SlowRun run(mixed, seconds);
   CHECK(run.loop->run() == LoopEnd::done);
@@ -147,7 +147,7 @@ TEST_CASE("in double a batch follows the clock: some 0.2 s of steps, one before 
 TEST_CASE("in mixed precision a batch follows from the deck, and a GPU takes well under a second for it") {
   struct Size {
     std::int64_t particles;
-    double step;  // seconds that an H200 takes
+    double step;  // seconds on an H200
   };
   for (const Size& size :
        {Size{1, 7e-6}, {10000, 7.4e-6}, {1000000, 75.7e-6}, {16000000, 1.06e-3}, {250000000, 1.66e-2}})
@@ -161,7 +161,7 @@ TEST_CASE("in mixed precision a batch follows from the deck, and a GPU takes wel
       CHECK(seconds < 0.7);
       CHECK(seconds > 0.02);
     }
-  // No step is cut, and the equations of 10,000 bodies, 19 ms, are not solved for minutes.
+  // No step is split, and the equations of 10,000 bodies, 19 ms, are not solved for minutes.
   CHECK(batch_length(model_with(100, 1000000), true, 1) == 1);
   CHECK(batch_length(model_with(100, 1, 10000), true, 1) == 32);
 }
@@ -194,7 +194,7 @@ TEST_CASE("the loop pauses after the step that reaches a time, and continues fro
     CHECK(parts.state.clock.time >= until);
     CHECK(parts.state.clock.time < until + 5.1e-5);
   }
-  CHECK(parts.loop->run(parts.state.clock.time) == LoopEnd::paused);  // there already: no step
+  CHECK(parts.loop->run(parts.state.clock.time) == LoopEnd::paused);  // already reached: no step
   CHECK(parts.loop->run() == LoopEnd::done);
   std::set<Index> ends = ends_of(whole.backend.batches);
   ends.insert({1, 2000, 2001, 10000});

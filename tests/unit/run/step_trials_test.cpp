@@ -1,5 +1,5 @@
-// What the report and the warning of a deck say of its steps.
-#include "run/report/step_trials.hpp"
+// Report and warning about a deck's step size.
+#include "run/step_trials.hpp"
 
 #include <fmt/format.h>
 
@@ -72,9 +72,10 @@ std::vector<StepTrial> trials_of(const std::vector<std::string>& overrides = {})
 
 }  // namespace
 
-TEST_CASE("trial impacts are made for every pair of materials with possible contacts, with its lightest partners") {
+TEST_CASE(
+    "trial impacts are made for every pair of materials with possible contacts, with its lightest partners") {
   const std::vector<StepTrial> trials = trials_of();
-  REQUIRE(trials.size() == 4);  // the one heavy particle does not meet another
+  REQUIRE(trials.size() == 4);  // the one heavy particle has no partner of its kind
   const Real step = 0.5 * std::numbers::pi * std::sqrt(0.1 / 1e5);  // half of light's contact with the floor
   const std::vector<StepTrial> coarse = trials_of({"time.step=" + std::to_string(step)});
   const Real damping_ratio = 20 / (2 * std::sqrt(0.1 * 1e5));
@@ -96,10 +97,10 @@ TEST_CASE("one warning for steps that misjudge rebounds by more than 5 %, with t
   CHECK(step_warning(model_of(kDeck)).empty());
   const std::string warning = step_warning(model_of(kDeck, {"time.step=3e-3"}));
   CAPTURE(warning);
-  CHECK(contains(warning, "time.step: with steps of 0.003 s the rebound of \"light\" on \"floor\""));
-  CHECK(contains(warning, "instead of restitution 0.7441; the error is at most 2 % with steps up to "));
-  CHECK(contains(warning, " s, and 0.01 % with time.control = \"adaptive\""));
-  // Slow impacts are short of acceleration, and steps that adapt become longer.
+  CHECK(contains(warning, "time.step: steps of 0.003 s misjudge rebounds of \"light\" on \"floor\" by "));
+  CHECK(contains(warning, "instead of 0.7441 of the speed; steps up to "));
+  CHECK(contains(warning, " keep within 2 %, time.control = \"adaptive\" within 0.01 %"));
+  // Slow impacts have little acceleration, so that adaptive steps become longer.
   const std::string slow = step_warning(
       model_of(kDeck, {"time.step=3e-3", "gravity=[0,0,0]", "particles.light.velocity=[0,0,-1e-3]"}));
   CAPTURE(slow);
@@ -120,7 +121,7 @@ TEST_CASE("explicit steps are tried with their substeps, and with friction") {
     CHECK(trial.rubs);
     CHECK(near(trial.step, 1e-4, {.relative = 1e-12}));
     const Real tangent = std::tan(trial.result.exact.angle()), e = trial.result.exact.restitution;
-    CHECK(tangent > (2 - (1 + e)) * 0.3 / e + 0.05);  // it does not slide all the time
+    CHECK(tangent > (2 - (1 + e)) * 0.3 / e + 0.05);  // it does not slide throughout
     CHECK(tangent < 2 * 0.3 / e);
     CHECK(contains(trial_lines(trial), "impact at 31 degrees: rebound at "));
   }
@@ -136,7 +137,7 @@ TEST_CASE("steps that adapt are tried at the length that they come to") {
   }
 }
 
-// Whole runs of one sphere and a floor.
+// Whole runs of a sphere and a floor.
 TEST_CASE("a trial impact is what a run makes of it") {
   const std::string deck = R"(
 [space]
@@ -187,7 +188,7 @@ mass = 1.0
     const ImplicitTrial trial(normal, method, impact, gap);
     same(rebound_of(trial, 1, h, 50), {whole.restitution, 0}, 1e-6);  // the iteration's tolerance
     for (const Real dashpot : {0.0, 0.2}) {
-      // Its jump at touch leaves a step without a solution, in which a run freezes the limits of friction.
+      // Its jump at touch leaves a step without a solution, in which a run lags the limits of friction.
       if (!resolved && dashpot > 0) continue;
       CAPTURE(resolved, dashpot);
       const ContactLaw<LinearLaw, LinearSlider> rubbing{normal, {2e4 / 7, 0.5, dashpot}};
@@ -201,7 +202,7 @@ mass = 1.0
   }
 }
 
-// A power law's rebound depends on the speed, and so does the contact's time in all but linear laws.
+// A power law's rebound depends on the speed, and so does the contact time of all but linear laws.
 TEST_CASE("impacts are tried at the speed of a fall where the law is not linear") {
   const std::vector<StepTrial> trials =
       trials_of({"contact.pairs.2.exponent=1.5", "contact.pairs.2.stiffness=1e8"});
@@ -209,8 +210,8 @@ TEST_CASE("impacts are tried at the speed of a fall where the law is not linear"
   CHECK(contains(trial_lines(trials[2]), "restitution at 6.32 m/s: "));
 }
 
-// A spring across the normal of K f/(1 + f) swings as fast as the one along it: the slip is turned round, and
-// the centres keep (1 - f)/(1 + f) of their velocity across.
+// A tangential spring of K f/(1 + f) oscillates as fast as the normal one: the slip is reversed, and the
+// centres keep (1 - f)/(1 + f) of their tangential velocity.
 TEST_CASE("the moment of inertia of a deck's particles is that of its trials") {
   for (const Real factor : {Real(0.25), Real(2) / 3}) {
     const Real across = (1 - factor) / (1 + factor);

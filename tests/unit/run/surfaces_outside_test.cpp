@@ -1,5 +1,5 @@
-// Surfaces beyond open sides, and particles that leave there.
-#include "run/report/surfaces_outside.hpp"
+// Surfaces beyond open sides, and particles that escape there.
+#include "run/surfaces_outside.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -30,7 +30,7 @@ std::string at_start(const std::vector<std::string>& overrides, const std::strin
   return outside_at_start(model_of(kDisc, all));
 }
 
-// Of one particle that leaves there while the disc is at rest where it is.
+// Message on one particle that escapes there while the disc is static at its position.
 std::string leaving_at(Vec3 position, std::vector<std::string> overrides) {
   overrides.push_back(kDrift);
   const Model model = model_of(kDisc, overrides);
@@ -51,8 +51,7 @@ TEST_CASE("shapes beyond open sides are warned of, those in periodic space and i
   CHECK(at_start({"bodies.disc.position=[0.65,0]"}, "space.leaving=error").empty());
 }
 
-TEST_CASE(
-    "walls of triangles whose motion crosses an open side are warned of, whatever their rotation") {
+TEST_CASE("walls of triangles whose motion crosses an open side are warned of, whatever their rotation") {
   const std::string line = "meshes=[{name='line',kind='line',points=[[-0.1,0.0],[0.1,0.0]]}]";
   for (const char* frequency : {"0.75", "3", "50", "100", "400"}) {
     CAPTURE(frequency);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
 
-// Whether a change of a value that had the bits of `value` is seen.
+// Whether a change of a value that had the bits of `value` is detected.
 template <class Value, class Change>
 bool sees(const Value& value, const Change& change) {
   Value changed = value;

@@ -1,4 +1,4 @@
-// What a table is told of a check is what the check demands and finds.
+// Values recorded for tables are those that a check requires and finds.
 #include "support/measured.hpp"
 
 #include <limits>

@@ -1,4 +1,4 @@
-// What the tests compare with fails where it should, and says by how much.
+// Comparisons of the tests fail where they should, and report by how much.
 #include "support/near.hpp"
 
 #include <sstream>
