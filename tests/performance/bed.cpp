@@ -1,8 +1,7 @@
-// Speed of explicit and implicit steps on settled beds, and what bodies cost on top. Usage: bed
-// --help.
-//
-// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around
-// batches of steps that return when the work is done, launches and waiting included; of ranks the longest.
+// Speed of explicit and implicit steps on settled beds, and the additional cost of bodies. Usage: bed
+// --help.  The CPU's times are CPU seconds. The GPU's, and those of several ranks of mpirun, are wall
+// seconds around batches of steps that return when the work is done, launches and waiting included; of ranks
+// the longest.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -24,14 +23,15 @@
 namespace scree {
 namespace {
 
-// Bodies and particles exchange in batches of this many steps: as long as those between two outputs of a run.
+// Bodies and particles exchange in batches of this many steps: as long as those between two outputs of a
+// run.
 constexpr Index kCoupledBatch = 1000;
-// The bed's own steps before anything is measured, implicit: the contacts adapt to the longer step.
+// Implicit steps of the bed before anything is measured: the contacts adapt to the longer step.
 constexpr int kImplicitWarmUp = 5;
 
 void measure_explicit(Model bed, Real h, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
-  // How often particles outside the space are looked for.
+  // How often particles outside the domain are searched.
   bed.integrator.substeps = bed.space.dimension == 3 ? 25 : 10;
   Run run(std::move(bed), options);
   Backend& backend = *run.backend;
@@ -54,7 +54,7 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
           take(options.rebuild);
           backend.list().build(skin, run.timers);
         }
-        backend.list().displacement();  // returns when all that was asked for is done
+        backend.list().displacement();  // returns when all queued work is done
       },
       [&] { builds = backend.list().builds(), timers = run.timers; });
   builds = backend.list().builds() - builds;
@@ -103,7 +103,7 @@ void measure_implicit(Model bed, const Options& options, BedReport& report) {
 
 struct CoupledSamples {
   Samples samples;
-  double iterations = 0;      // of the bodies' Newton loop per step
+  double iterations = 0;      // Newton iterations of the bodies per step
   std::vector<int> contacts;  // of the bodies' shapes, after each batch of the samples
   StageTimers timers;         // of all steps
   double steps = 0;
@@ -114,7 +114,7 @@ struct CoupledSamples {
   }
 };
 
-// What of a bed is taken: as it is, or with a hole or bodies in a part of it.
+// Variants of a bed: complete, or with a hole or bodies in a part of it.
 struct BedPart {
   std::string name;
   std::int64_t whole;  // particles of the plain bed
@@ -158,7 +158,7 @@ CoupledSamples sample_coupled(Model bed, const BedPart& part, const Options& opt
   return out;
 }
 
-// The bed as it is, without the particles in the bodies' way, and with the bodies there: the same steps.
+// The bed alone, without the particles at the bodies' positions, and with the bodies: the same steps.
 void measure_bodies(Model bed, const Options& options, BedReport& report) {
   const std::int64_t whole = bed.particles.totals.count;
   const Samples plain = sample_coupled(bed, {"plain", whole}, options, report).samples;
@@ -229,7 +229,7 @@ void measure_all(const Options& options) {
                   options.on_gpu() ? device_name() : processor_name(), options.backend, options.precision,
                   options.dimension, options.integrator, rebuild, options.friction),
       title_of(options), options.ranks);
-  // Bodies find their place on all of the bed.
+  // Bodies are positioned in the complete bed.
   const RanksShare share(options.with_bodies() ? Ranks() : options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();

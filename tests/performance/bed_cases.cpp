@@ -19,7 +19,7 @@ constexpr Real kSphereTile = 25, kSphereRadius = 0.5, kSphereDiameter = 1;  // w
 constexpr int kDiscRow = 100;
 constexpr Real kDiscRadius = 0.05, kDiscSpacing = 0.102, kDiscTile = kDiscRow * kDiscSpacing;  // [m]
 constexpr int kRowBodies = 20;
-// Of the plough: what it keeps from the walls at its start and its end, its height, deep within the bed [m],
+// Of the plough: its distance from the walls at its start and its end, its height, deep within the bed [m],
 // and its speed [m/s].
 constexpr Real kPloughMargin = 3, kPloughHeight = 5, kPloughSpeed = 2;
 
@@ -35,7 +35,7 @@ void add_particle(Model& model, Vec3 position, Real radius) {
   set.radius.push_back(radius), set.mass.push_back(1), set.material.push_back(0);
 }
 
-// The side of the space becomes a wall.
+// Makes the side of the domain a wall.
 void add_side(Model& model, Side side, Vec3 point, Vec3 normal) {
   model.space.boundary[side] = Boundary::wall;
   model.walls.push_back({fmt::format("side {}", static_cast<int>(side)), point, normal, 0});
@@ -57,12 +57,12 @@ Model disc_model(std::int64_t tiles, Real step, Real damping) {
   return model;
 }
 
-// Where body b of a row along x stands that is in the middle of the bed.
+// Position of body b of a row along x in the middle of the bed.
 Real row_x(const Model& bed, int b) {
   return 0.5 * (bed.space.min.x + bed.space.max.x) + (b - 0.5 * (kRowBodies - 1)) * kSphereDiameter;
 }
 
-// Spheres joined by spring-dampers, in the place of the particles that are in their way.
+// Spheres connected by spring-dampers, in place of the particles at their positions.
 void add_row(Model& bed, Real y, Real z) {
   for (int b = 0; b < kRowBodies; ++b) {
     Body body;
@@ -85,7 +85,7 @@ void add_row(Model& bed, Real y, Real z) {
       return dot(r, r) < kSphereDiameter * kSphereDiameter;
     });
   };
-  // All particles are alike: what goes with the positions is only made shorter.
+  // All particles are equal: the arrays besides the positions are only shortened.
   ParticleSet& set = bed.particles;
   set.position.erase(std::remove_if(set.position.begin(), set.position.end(), in_the_way),
                      set.position.end());
@@ -94,7 +94,7 @@ void add_row(Model& bed, Real y, Real z) {
   count_particles(set, bed.contact.materials());
 }
 
-// Between the ground and body b, where it stands, and along y if it has an axis; returns its index.
+// Between the ground and body b at its position, and along y if it has an axis; returns its index.
 int add_joint(Model& bed, JointKind kind, int b) {
   Joint joint;
   joint.name = fmt::format("joint.{}", b);
@@ -131,10 +131,10 @@ Model sphere_bed(const std::string& tile, std::int64_t particles, const Share& s
   model.contact.laws = {{2e5, 25, 1, false}};
   model.contact.skin = 0.1;
   model.time.end = 1, model.time.step = kSphereStep;
-  model.integrator.hht_alpha = -0.05;  // as decks have it if they do not say
+  model.integrator.hht_alpha = -0.05;  // as the default of decks
   const IdRange part = share.part(particles);
   model.particles.first_id = part.first;
-  // Column by column: with several ranks their parts are near to their boxes.
+  // Column by column: with several ranks their parts are near their boxes.
   for (GlobalId id = part.first; id < part.last; ++id) {
     const std::int64_t at = id / kTileParticles;
     const auto i = static_cast<std::size_t>(id % kTileParticles);
@@ -163,7 +163,8 @@ void add_net(Model& bed) {
   for (const Vec3& p : bed.particles.position)
     for (int b = 0; b < kRowBodies; ++b) level = std::max(level, touching_height(b, p));
   add_row(bed, middle.y, level - kSphereDiameter);
-  // Bodies move in planes of constant z, which gravity is normal to here: the net hangs sideways instead.
+  // Bodies move in planes of constant z, to which gravity is normal here: the net is loaded sideways
+  // instead.
   for (int b = 0; b < kRowBodies; ++b) {
     AppliedForce weight;
     weight.name = fmt::format("weight.{}", b);

@@ -1,4 +1,4 @@
-// The settled beds that bed.cpp measures on: a tile of 10,000 particles, repeated to the size wanted.
+// The settled beds measured by bed.cpp: a tile of 10,000 particles, repeated to the size wanted.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,27 @@ inline constexpr std::int64_t kTileParticles = 10000;
 
 // Spheres of diameter 1 and mass 1 on the floor z = 0 under gravity 1, walls at the sides. tile: file with
 // the centres in a square that repeats in x and y. particles: a multiple of kTileParticles, laid out as a
-// rectangle of tiles that is as near to a square as the number allows. share: whose part of them it makes.
+// rectangle of tiles that is as near to a square as the number permits. share: the part of them to make.
 Model sphere_bed(const std::string& tile, std::int64_t particles, const Share& share = {});
-inline constexpr Real kSphereStep = 1e-4;  // of velocity-Verlet [s]
+inline constexpr Real kSphereStep = 1e-4;  // step of velocity-Verlet [s]
 // h sqrt(K/m) = 1.2: the length of an implicit step [s].
 Real implicit_sphere_step(const Model& bed);
-// A taut row of 20 spheres joined by spring-dampers, its ends pinned, within the surface of the bed: one
-// diameter below where it would lie on it; the particles in its way are taken out. A constant sideways force
-// on each sphere keeps it moving among the particles.
+// A taut row of 20 spheres connected by spring-dampers, its ends pinned, within the surface of the bed: one
+// diameter below the surface; the particles at its position are removed. A constant sideways force on each
+// sphere keeps it moving among the particles.
 void add_net(Model& bed);
-// The same row deep within the bed, drawn through it by its ends at a steady speed, a fifth of a
-// diameter in a thousand steps. The bed's time ends where the plough comes near the wall.
+// The row deep within the bed, drawn through it by its ends at constant speed, a fifth of a diameter in a
+// thousand steps. The bed's time ends where the plough comes near the wall.
 void add_plough(Model& bed);
 
-// All contacts rub, with a tangential stiffness of 2/7 of the normal one, and the particles rotate.
+// All contacts have friction, with a tangential stiffness of 2/7 of the normal one, and the particles
+// rotate.
 void add_friction(Model& bed, Real friction);
 
 // Discs, periodic in x, tiles in a row. tile: of settled_discs.
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles);
-inline constexpr Real kDiscStep = 1e-5;  // of velocity-Verlet [s]
-// 100 x 100 discs that the CPU lets settle; takes some ten seconds.
+inline constexpr Real kDiscStep = 1e-5;  // step of velocity-Verlet [s]
+// 100 x 100 discs settled on the CPU; takes some ten seconds.
 std::vector<Vec3> settled_discs();
 
 }  // namespace scree

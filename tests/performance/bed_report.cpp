@@ -15,7 +15,7 @@
 namespace scree {
 namespace {
 
-// What one rank says of itself.
+// The data of one rank.
 struct OfRank {
   HaloSize halo;
   double imbalance = 0;
@@ -34,7 +34,7 @@ void note_step(const std::string& key, const Measured& m) {
                unit * m.slowest);
 }
 
-// The numbers of documents. memory: of all devices, over the particles [B].
+// The numbers for documents. memory: of all devices, per particle [B].
 void note_numbers(const std::string& title, const Measured& m, double memory, const HaloTimes& halo) {
   const std::string row = title + (m.bed.empty() ? "" : ", " + m.bed),
                     key = row + fmt::format("/{} ", m.size > 0 ? m.size : m.particles);
@@ -50,7 +50,7 @@ void note_numbers(const std::string& title, const Measured& m, double memory, co
   note("bed/" + key + "hidden", "%", 100 * (1 - halo.exposed / halo.seconds));
 }
 
-// Of one rank, without bodies: each stage's share of what all took.
+// For one rank without bodies: each stage's fraction of the total.
 void note_stages(const std::string& title, const Measured& m,
                  const std::array<double, static_cast<int>(Stage::count)>& seconds) {
   const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);

@@ -22,7 +22,7 @@ double seconds_now(const Options& options) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Of a bed that every rank has made whole, its part.
+// This rank's part of a bed that every rank has made as a whole.
 Model part_of(Model bed, const Ranks& ranks) {
   ParticleSet& set = bed.particles;
   if (std::ssize(set.position) < set.totals.count) return bed;

@@ -1,4 +1,4 @@
-// A bed on its backend, and the samples of the time that its steps take.
+// A bed on its backend, and samples of the time of its steps.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace scree {
 
-// Of bed's command line.
+// Options of bed's command line.
 struct Options {
   int dimension = 3;
   std::string backend = "cpu", precision = "double", integrator = "verlet";
@@ -60,9 +60,9 @@ struct Run {
 
 // "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
 std::string speed_text(const Samples& samples, std::int64_t particles);
-// What the arrays of this rank's backend hold of its GPU, per particle of the rank.
+// Memory of the arrays of this rank's backend on its GPU, per particle of the rank.
 void print_device_memory(Backend& backend);
-// Each stage's share of what all took between the two, and its time over the steps.
+// Each stage's fraction of the total between the two, and its time over the steps.
 void print_stages(const StageTimers& before, const StageTimers& after, double steps);
 
 }  // namespace scree

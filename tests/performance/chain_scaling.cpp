@@ -1,7 +1,7 @@
-// Processor time of one step for hanging chains of planar bodies and of bodies in space on hinges: it must
+// Processor time of one step for hanging chains of planar and spatial bodies on revolute joints: it must
 // grow linearly with the chain's length. The least of several repetitions, as other programs take time from
-// this one. Usage: chain_scaling [--planar | --space] [FILE.csv] [LENGTH ...]; the file gets a row per length
-// of the planar chain, for scaling_model.py.
+// this one. Usage: chain_scaling [--planar | --space] [FILE.csv] [LENGTH ...]; the file gets a row per
+// length of the planar chain, for scaling_model.py.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double seconds_since(std::clock_t start) {
 // A chain on revolute joints that hangs from a pin at the origin and starts at 30 degrees from the vertical.
 Model hanging_chain(int bodies) {
   Model model = empty_model();
-  // The trapezoidal rule (alpha = 0) is not stable for constraints that turn: see the README of src/mbs.
+  // The trapezoidal rule (alpha = 0) is not stable for rotating constraints: see the README of src/mbs.
   model.integrator.hht_alpha = -0.1;
   const Real c = std::cos(-M_PI / 3), s = std::sin(-M_PI / 3);
   for (int i = 0; i < bodies; ++i) {
@@ -47,7 +47,7 @@ Model hanging_chain(int bodies) {
   return model;
 }
 
-// The same of discs in space, whose hinges have the axis z.
+// The chain of spatial discs, whose revolute joints have the axis z.
 Model spatial_chain(int bodies) {
   Model model = spatial_model(-0.1);
   model.gravity = {0, -kGravity, 0};

@@ -1,5 +1,5 @@
-// The backend that the tests of this process run on: an argument of the test run, not of the test. The
-// environment variable SCREE_TEST_BACKEND says cpu (the default) or cuda; ctest has an entry for each.
+// The backend for the tests of this process: an argument of the test run, not of the test. The environment
+// variable SCREE_TEST_BACKEND is cpu (the default) or cuda; ctest has an entry for each.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Two bars for one error: what is promised, and some three times what was measured, so that a loss of digits
+// Two bars for one error: the promise, and some three times the measured value, so that a loss of digits
 // shows long before a promise is broken.
 #pragma once
 
@@ -9,22 +9,22 @@
 
 namespace scree {
 
-// Both in the unit of the error.
+// The bars, in the unit of the error.
 struct Bars {
-  Real promise;  // what the documents or the method say
+  Real promise;  // stated in the documents or by the method
   // The largest error seen when the test was written; of round-off, which compilers and libraries change,
   // three times that, and no less than some last places of the values.
   Real measured;
 };
 
-// What keeps() finds: true where an error is below both bars, and all that a failure must tell.
+// Result of keeps(): true where an error is below both bars, with all data for a failure's message.
 struct Kept {
   static constexpr Real kSpread = 3;  // of the error over machines, compilers and backends
 
   Real error;
   Bars bars;
 
-  bool promise() const { return std::abs(error) < bars.promise; }  // not where it is NaN
+  bool promise() const { return std::abs(error) < bars.promise; }  // false where it is NaN
   bool digits() const { return std::abs(error) <= kSpread * bars.measured; }
   explicit operator bool() const { return promise() && digits(); }
 };

@@ -19,8 +19,8 @@ inline bool same_bits(Real a, Real b) {
 }
 inline bool same_bits(std::integral auto a, std::integral auto b) { return a == b; }
 
-// Of a struct, for which fields() gives a tuple of its members: by structured binding, so that a member that
-// is forgotten here does not compile.
+// Bits of a struct, for which fields() gives a tuple of its members: by structured binding, so that a member
+// that is forgotten here does not compile.
 inline auto fields(const Vec3& v) {
   const auto& [x, y, z] = v;
   return std::tie(x, y, z);
@@ -29,7 +29,7 @@ template <class Struct>
 requires requires(const Struct& s) { fields(s); }
 bool same_bits(const Struct& a, const Struct& b);
 
-// Of all elements of two vectors, arrays or spans.
+// Compares all elements of two vectors, arrays or spans.
 template <std::ranges::range Range>
 bool same_bits(const Range& a, const Range& b) {
   const auto same = [](const auto& x, const auto& y) { return same_bits(x, y); };

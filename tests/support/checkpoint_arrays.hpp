@@ -5,7 +5,7 @@
 
 namespace scree {
 
-// The same values, the rows among the arrays: independent of the state or the file that they came from.
+// The checkpoint with its rows among the arrays: independent of the state or the file that it came from.
 inline Checkpoint with_rows_as_arrays(Checkpoint checkpoint) {
   const auto take = [](auto& rows_by_name, auto& arrays) {
     for (const auto& [name, rows] : rows_by_name) {

@@ -1,5 +1,5 @@
-// What contacts remember, found by brute force: beside a run, from nothing but where its particles and bodies
-// are after each step.
+// Contact histories by brute force, maintained beside a run from the positions of its particles and bodies
+// after each step.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class ContactBook {
   explicit ContactBook(const Model& model)
       : model_(model), subdomain_(model.space), planes_(wall_planes(model)) {}
 
-  // A step has led here. records: of all particles, in the order of their ids.
+  // Takes the result of a step. records: of all particles, in the order of their ids.
   void add_step(const std::vector<Particle>& records, const std::vector<BodyMotion>& motion) {
     now_.clear();
     for (const Particle& p : records) {
@@ -44,7 +44,7 @@ class ContactBook {
     std::swap(before_, now_);
   }
 
-  // Of these particles; the contacts of all others are forgotten.
+  // The contacts of these particles; all others are dropped.
   KeptContacts contacts(const std::vector<Particle>& records) {
     KeptContacts out;
     out.numbers = kNumbers;
@@ -69,12 +69,12 @@ class ContactBook {
     return out;
   }
 
-  // Contacts that have ended so far, and those that were seen with another image than when they began.
+  // Number of contacts that have ended so far, and of those seen with another image than at their start.
   int ended() const { return ended_; }
   int moved_on() const { return moved_on_; }
 
  private:
-  // Particle, partner, and how many periods the partner is on, both unwrapped: the same while they touch.
+  // Particle, partner, and how many periods apart they are, both unwrapped: constant during the contact.
   using Name = std::tuple<GlobalId, GlobalId, std::array<int, 3>>;
   struct Entry {
     std::int64_t key;  // with the image that both have in the periodic box
@@ -129,7 +129,7 @@ class ContactBook {
   int ended_ = 0, moved_on_ = 0;
 };
 
-// Where the two differ in a bit; "" if nowhere.
+// The first difference of a bit between the two; "" if there is none.
 inline std::string difference(const KeptContacts& a, const KeptContacts& b) {
   if (a.numbers != b.numbers || a.offsets != b.offsets)
     return "numbers of contacts: " + std::to_string(a.keys.size()) + " and " + std::to_string(b.keys.size());
@@ -143,8 +143,8 @@ inline std::string difference(const KeptContacts& a, const KeptContacts& b) {
   return "";
 }
 
-// Contacts between particles whose two sides do not mirror each other bit for bit; ids: of all particles, in
-// the order of the rows. kEven: the one of the numbers that does not change its sign.
+// Contacts between particles whose two sides are not mirrored bit for bit; ids: of all particles, in the
+// order of the rows. kEven: the number that does not change its sign.
 template <int kNumbers, int kEven = 3>
 int unmirrored(const std::vector<Particle>& particles, const KeptContacts& contacts) {
   std::map<std::tuple<GlobalId, GlobalId, std::int64_t>, std::span<const Real>> sides;

@@ -1,4 +1,4 @@
-// The lines that backends show of contacts, compared bit for bit.
+// The contact lines of backends, compared bit for bit.
 #pragma once
 
 #include <utility>
@@ -19,7 +19,7 @@ inline auto fields(const ContactLine& line) {
   return std::tie(first, second, start, contact);
 }
 
-// Of one rank, which has all particles of so many ids, in the order of the first particles.
+// Lines of one rank, which has all particles of so many ids, in the order of the first particles.
 inline std::vector<ContactLine> ordered_lines(Reports& reports, std::int64_t particles) {
   ContactLines lines = reports.contact_lines();
   const IdOrder order({}, particles, lines.global_id);

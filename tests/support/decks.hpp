@@ -1,4 +1,4 @@
-// Small decks for tests, and the message that a wrong one gets.
+// Small decks for tests, and the messages of wrong ones.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ struct Roots {
   Real reciprocal;
 };
 
-// Of each number, computed by the GPU.
+// Roots of each number, computed by the GPU.
 std::vector<Roots> roots_on_device(const std::vector<Real>& numbers);
 
 }  // namespace scree

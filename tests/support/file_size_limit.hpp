@@ -1,4 +1,4 @@
-// A disk that is full, for tests: files of this process cannot grow.
+// A simulated full disk for tests: files of this process cannot grow.
 #pragma once
 
 #include <signal.h>
@@ -8,13 +8,13 @@
 
 namespace scree {
 
-// How large this process may make a file, until the limit is lifted.
+// Limits the size of files that this process writes, for the lifetime of the object.
 class FileSizeLimit {
  public:
   static constexpr rlim_t kNone = RLIM_INFINITY;
 
   FileSizeLimit() {
-    signal(SIGXFSZ, SIG_IGN);  // a write past the limit fails
+    signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails
     getrlimit(RLIMIT_FSIZE, &before_);
   }
   ~FileSizeLimit() { lift(); }

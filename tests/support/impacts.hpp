@@ -11,7 +11,7 @@
 
 namespace scree {
 
-// Space and contact law of an impact of discs of radius 0.05 m and mass 1 kg.
+// Domain and contact law of an impact of discs of radius 0.05 m and mass 1 kg.
 inline std::string impact_deck(Real stiffness, Real damping, bool tension, Real exponent = 1) {
   return fmt::format(R"(
 [space]

@@ -1,4 +1,4 @@
-// Closed loops of hinges in space, whose constraints repeat each other.
+// Closed loops of spatial revolute joints, whose constraints are redundant.
 #pragma once
 
 #include <cmath>
@@ -34,8 +34,9 @@ inline Joint joint_along(const Model& model, JointKind kind, const std::string& 
 }
 
 // N loops of four bars side by side (the IFToMM library's N-four-bar): N + 1 bars stand on the ground at x =
-// 0 ... N, N couplers join their tops, which start with 1 m/s along x. With hinges everywhere each loop has
-// three rows too many; exact: each coupler has a ball at its left and a cylindrical joint at its right end.
+// 0 ... N, N couplers join their tops, which start with 1 m/s along x. With revolute joints everywhere each
+// loop has three redundant rows; exact: each coupler has a spherical joint at its left and a cylindrical
+// joint at its right end.
 inline Model bars(int loops, bool exact) {
   Model model = spatial_model(-0.1);
   model.gravity = {0, -kFall, 0};
@@ -69,13 +70,13 @@ inline Model bars(int loops, bool exact) {
 }
 
 // The motion of bars that stay parallel and of couplers between them, all of 1 m and 1 kg: theta'' = -k
-// cos(theta) from x, by Runge and Kutta's rule to round-off.
+// cos(theta) from x, by the Runge-Kutta method to round-off.
 class FallingBars {
  public:
   FallingBars(int rods, int couplers)
       : k_(kFall * (rods / Real(2) + couplers) / (rods / Real(3) + couplers)) {}
 
-  // Instants in increasing order [s].
+  // Must be called for increasing instants [s].
   Real angle(Real t) {
     const int steps = static_cast<int>(std::ceil((t - time_) / 1e-3));
     const Real h = steps > 0 ? (t - time_) / steps : 0;
@@ -96,8 +97,9 @@ class FallingBars {
   Real k_, angle_ = M_PI / 2, rate_ = -1, time_ = 0;
 };
 
-// Bricard's linkage: six links of 1 m along edges of a cube, the ground one of them, each hinge across the
-// two links that it joins. One row is too many at every place; exact: one hinge is a cylindrical joint.
+// Bricard's linkage: six links of 1 m along edges of a cube, the ground one of them, each revolute joint
+// normal to the two links that it joins. One row is redundant in every position; exact: one joint is
+// cylindrical.
 inline Model bricard(bool exact) {
   Model model = spatial_model(-0.1);
   model.gravity = {0, -kFall, 0};

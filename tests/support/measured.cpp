@@ -40,7 +40,7 @@ std::string number(Real value, int digits) {
   return out.str();
 }
 
-// What counts: the largest error, the least of what must be large; infinite where both ends do.
+// The value that counts: the largest error, or the least of what must be large; infinite where both ends do.
 Real value_of(const Row& row) {
   if (row.median) return *row.median;
   const bool below = !std::isinf(row.at_most), above = !std::isinf(row.at_least);
@@ -78,7 +78,7 @@ class Record {
     Row& row = found->second;
     if (is_new) return;
     row.least = std::min(row.least, number.value), row.most = std::max(row.most, number.value);
-    // Of different demands the one that all of them keep.
+    // Of different demands the one that all values satisfy.
     row.at_least = std::min(row.at_least, number.at_least);
     row.at_most = std::max(row.at_most, number.at_most);
   }
@@ -91,7 +91,7 @@ class Record {
   void measured_on_gpu(const std::string& name) { machine_ = name, backend_ = "cuda"; }
 
  private:
-  // Under another name first, so that the file is complete whenever it is there.
+  // Written under another name first, so that the file is complete whenever it exists.
   void write() const {
     std::filesystem::create_directories(folder_);
     std::string name = command_ + (backend_ == "cpu" ? "" : "-" + backend_);

@@ -1,6 +1,6 @@
-// Numbers of tests and benchmarks that documents show, with what is demanded of them. Where the environment
-// variable SCREE_MEASURED names a folder, the program leaves them there as it ends, a row per key in a file
-// that is named after its command line, for tests/support/measured.py. Elsewhere they go nowhere.
+// Numbers of tests and benchmarks for documents, with their bounds. Where the environment variable
+// SCREE_MEASURED names a folder, the program writes them there at its end, a row per key in a file named
+// after its command line, for tests/support/measured.py. Otherwise they are dropped.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ inline Bounded at_most(Real error, Real bound) { return {.value = std::abs(error
 inline Bounded at_least(Real value, Real bound) { return {.value = value, .at_least = bound}; }
 inline Bounded in_range(Real value, Real least, Real most) { return {value, least, most}; }
 
-// True where nothing differs, by the names of what does.
+// True where nothing differs, by the names of the differing parts.
 struct BitForBit {
   std::string differing;
   explicit operator bool() const { return differing.empty(); }
@@ -42,7 +42,7 @@ inline std::ostream& operator<<(std::ostream& out, const BitForBit& bits) {
 
 inline Bounded bounded(const Bounded& number) { return number; }
 inline Bounded bounded(const Kept& kept) { return at_most(kept.error, kept.bars.promise); }
-// In the unit of the values where an absolute bound is given, else over the expected one.
+// In the unit of the values where an absolute bound is given, otherwise relative to the expected one.
 template <class Value>
 Bounded bounded(const Nearness<Value>& near) {
   if (near.within.absolute > 0) return at_most(near.difference, near.within.absolute);
@@ -50,24 +50,24 @@ Bounded bounded(const Nearness<Value>& near) {
 }
 inline Bounded bounded(const BitForBit& bits) { return at_most(bits ? 0 : 1, 0); }
 
-// Keeps a number under a key, e.g. "valley/rise", with its unit; of all that a key is given, the least and
-// the most. Of a key that is put together the source writes out the beginning, up to the slash at least.
+// Records a number under a key, e.g. "valley/rise", with its unit; of all values under one key, the least
+// and the largest. Of a composed key the source contains the beginning, at least up to the slash.
 void note(const std::string& key, const std::string& unit, const Bounded& number);
-// The same of a value of which nothing is demanded.
+// Records a value without bounds.
 inline void note(const std::string& key, const std::string& unit, Real value) {
   note(key, unit, Bounded{.value = value});
 }
 
-// The same of samples, by their median.
+// Records the median of samples.
 void note_samples(const std::string& key, const std::string& unit, Real median, Real least, Real most);
 
-// The numbers from here on are a GPU's of this name, no longer those of the processor.
+// The numbers from here on are those of a GPU with this name instead of the processor's.
 void measured_on_gpu(const std::string& name);
 // The command line begins with mpirun.
 void measured_on_ranks(int ranks);
-std::string processor_name();  // of /proc/cpuinfo
+std::string processor_name();  // from /proc/cpuinfo
 
-// Notes what a check demands and finds, and returns it for CHECK().
+// Records the bounds and the result of a check, and returns it for CHECK().
 template <class Check>
 Check measured(const std::string& key, const std::string& unit, Check check) {
   note(key, unit, bounded(check));

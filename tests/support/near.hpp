@@ -10,26 +10,27 @@
 
 namespace scree {
 
-// From 1 to the next number: what round-off is counted in.
+// Distance from 1 to the next number, the unit of round-off.
 inline constexpr Real kUlp = std::numeric_limits<Real>::epsilon();
 // Relative difference of two evaluations of the same quantity in another order of operations: the round-off of
 // some thousand operations.
 inline constexpr Real kAccumulatedRoundOff = 1e-12;
 
-// How far a value may be from the expected one, by the larger of the two. What is not given is zero.
+// Largest distance of a value from the expected one, by the larger of the two bounds. An absent bound is
+// zero.
 struct Within {
   Real relative = 0;  // of the expected value's magnitude
   Real absolute = 0;  // in the unit of the values
 };
 
-// What near() finds: true where the value is near, and all that a failure must tell.
+// Result of near(): true where the value is near, with all data for a failure's message.
 template <class Value>
 struct Nearness {
   Value value, expected;
-  Real difference, magnitude;  // of the two; of the expected one
+  Real difference, magnitude;  // difference of the two; magnitude of the expected one
   Within within;
 
-  // NaN is near nothing, and what is infinite only itself, whatever the bounds.
+  // NaN is near nothing, and infinity only itself, whatever the bounds.
   explicit operator bool() const {
     return std::isfinite(difference) &&
            (difference <= within.relative * magnitude || difference <= within.absolute);

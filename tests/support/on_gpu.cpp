@@ -1,5 +1,5 @@
-// Runs a test program with the CUDA backend; where there is no usable GPU it says so and exits with the code
-// that ctest shows as skipped. Usage: on_gpu PROGRAM [ARGUMENTS]
+// Runs a test program with the CUDA backend; without a usable GPU it prints the reason and exits with the
+// code that ctest shows as skipped. Usage: on_gpu PROGRAM [ARGUMENTS]
 #include <unistd.h>
 
 #include <cstdio>

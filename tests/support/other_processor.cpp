@@ -1,5 +1,5 @@
-// A program that was built for instructions that no processor has: a bit that is always zero stands for them.
-// What it does beside the check of the processor shows whether anything ran before that.
+// A program built for instructions that no processor has, represented by a bit that is always zero. Its
+// output besides the check of the processor shows whether anything ran before the check.
 #include <cstdio>
 
 #include "base/processor.hpp"
@@ -15,7 +15,7 @@ struct SaysThatItRan {
 namespace scree {
 
 constinit const ProcessorFeature kWantedFeatures[] = {
-    {"SSE2", 1, 0, kEdx, 26, kAlways},  // every x86-64 has it
+    {"SSE2", 1, 0, kEdx, 26, kAlways},  // present in every x86-64
     {"THIS", 1, 0, kEdx, 10, kAlways},  // reserved, as the next one is
     {"THAT", 1, 0, kEdx, 20, kAlways},         {"VECTORS", 1, 0, kEdx, 10, kZmm},
     {"MORE", 0x7fffffff, 0, kEax, 0, kAlways},  // no processor has so many leaves

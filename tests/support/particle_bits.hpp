@@ -1,5 +1,5 @@
-// Particles compared bit for bit, and particles of which no two values are the same: both made from the table
-// of fields.
+// Particles compared bit for bit, and particles with all values different: both made from the table of
+// fields.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ inline std::string differing_fields(const Particle& a, const Particle& b) {
   return names;
 }
 
-// Of the first particle that differs.
+// The differing fields of the first particle that differs.
 inline std::string differing_fields(const std::vector<Particle>& a, const std::vector<Particle>& b) {
   if (a.size() != b.size())
     return std::to_string(a.size()) + " and " + std::to_string(b.size()) + " particles";
@@ -31,8 +31,8 @@ inline std::string differing_fields(const std::vector<Particle>& a, const std::v
 
 inline bool same_bits(const Particle& a, const Particle& b) { return differing_fields(a, b).empty(); }
 
-// Fills every field with numbers that no other field has, nor a particle of another number, as far as its
-// type tells so many apart, and that decimal text or a cast would spoil; those that are there.
+// Fills every field with numbers that occur in no other field and no other particle, as far as its type
+// permits, and that decimal text or a cast would change; only the present fields.
 inline void fill_fields(Particle& particle, std::int64_t number, const FieldsThere& there = {true, true}) {
   std::int64_t next = 100 * number;
   for_each_field([&](const ParticleField& field, auto member) {
@@ -50,7 +50,7 @@ inline void fill_fields(Particle& particle, std::int64_t number, const FieldsThe
   });
 }
 
-// Particles of a model with all fields filled but for what decides where they are and whom they touch.
+// Particles of a model with all fields filled, except those that determine positions and contacts.
 inline std::vector<Particle> filled_records(const Model& model) {
   std::vector<Particle> records = initial_records(model.particles, Subdomain(model.space));
   for (Particle& p : records) {

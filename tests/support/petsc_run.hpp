@@ -1,4 +1,4 @@
-// MPI and PETSc for test programs: started at the first use, ended when the program ends.
+// MPI and PETSc for test programs: started at the first use, finalized at the end of the program.
 #pragma once
 
 #include <mpi.h>
@@ -13,7 +13,7 @@ class PetscRun {
  public:
   PetscRun() {
     MPI_Init(nullptr, nullptr);
-    // Nothing asks for this option: it is what unused_options() must find.
+    // An unused option, which unused_options() must find.
     session_.emplace("test", std::vector<std::string>{"-mbs_misspelt", "7"});
   }
   ~PetscRun() {

@@ -11,7 +11,7 @@
 
 namespace scree {
 
-// Rows of numbers of a reference file; lines that do not start with a number are its head.
+// Rows of numbers of a reference file; lines that do not start with a number are its header.
 inline std::vector<std::vector<Real>> reference_rows(const std::string& name) {
   std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
   REQUIRE(file.good());

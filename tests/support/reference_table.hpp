@@ -1,4 +1,4 @@
-// Tables of tests/reference whose columns have names, some of them with words for cells.
+// Tables of tests/reference with named columns, some of them with text cells.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace scree {
 
-// The rows below the line of names; lines that start with # are remarks.
+// The rows below the line of names; lines that start with # are comments.
 class ReferenceTable {
  public:
-  // One row; throws where there is no such column, or where its cell is no number.
+  // One row; throws where there is no such column, or where its cell is not a number.
   class Row {
    public:
     Row(const ReferenceTable& table, std::vector<std::string> cells)
@@ -37,7 +37,7 @@ class ReferenceTable {
     std::vector<std::string> cells_;
   };
 
-  // tests/reference/NAME.
+  // Reads tests/reference/NAME.
   explicit ReferenceTable(const std::string& name) {
     std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
     for (std::string line; std::getline(file, line);) {

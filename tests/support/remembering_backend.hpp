@@ -1,4 +1,4 @@
-// The backends with a law that remembers.
+// Backends with a law with history.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ std::unique_ptr<Backend> make_remembering_cpu_backend(const Model& model, const 
                                           remembering_laws<kNumbers>(model), model.contact.materials()));
 }
 
-// In remembering_backend.cu, for 3 numbers and for 7; without CUDA in no_remembering_backend.cpp.
+// Defined in remembering_backend.cu, for 3 numbers and for 7; without CUDA in no_remembering_backend.cpp.
 template <int kNumbers>
 std::unique_ptr<Backend> make_remembering_cuda_backend(const Model& model, const Ranks& ranks);
 

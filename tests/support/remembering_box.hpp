@@ -1,5 +1,5 @@
-// A box of particles whose contacts remember, and bodies that go on and turn at their velocities: what is
-// lost shows.
+// A box of particles whose contacts have histories, and bodies that move and rotate at their velocities:
+// lost histories change the forces.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,17 @@
 
 namespace scree {
 
-inline constexpr int kRemembered = 7;  // numbers
+inline constexpr int kRemembered = 7;  // numbers per contact
 inline constexpr Real kMovingStep = 5e-4, kMovingSkin = 0.05;
 
 inline Model moving_box(const BoxCase& c, Leaving leaving) {
   Model model = random_box(c, 150, 21);
   model.integrator.particles = ParticleIntegrator::velocity_verlet;
   model.contact.skin = kMovingSkin;
-  model.parallel.imbalance = 0;  // boxes are cut anew with every list
+  model.parallel.imbalance = 0;  // boxes are recomputed with every list
   model.space.leaving = leaving;
   for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
-  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone have one place
+  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone do not repeat
     model.walls.resize(1);
     model.walls[0].normal = {0, 1, 0};
   }
@@ -36,7 +36,7 @@ struct RememberingBox {
   RememberingBox(const Model& of, const Ranks& on, Make make = make_remembering_backend<kRemembered>)
       : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make(model, on)) {}
 
-  // state: of this rank's share of the ids.
+  // state: of this rank's part of the ids.
   void start(const State& state) {
     backend->particles().load(state.particles, state.shapes);
     backend->particles().load_contacts(state.contacts);
@@ -52,13 +52,13 @@ struct RememberingBox {
     start(state);
     backend->particles().initial_forces();
   }
-  // To where their velocities take them in h [s], turns included.
+  // Moves bodies by their velocities over h [s], rotations included.
   void move_bodies(Real h) {
     for (BodyMotion& body : motion)
       body.position += h * body.velocity, body.angle += h * body.angular_velocity;
     backend->list().place_bodies(motion);
   }
-  // A run of so many steps, each with so many looks at the bodies after it; then the particles outside leave.
+  // Takes so many steps, each followed by so many queries of the bodies; then escaped particles are removed.
   void take_steps(Index steps, Real h = kMovingStep, int looks = 0) {
     const std::unique_ptr<ExplicitRun> run = backend->start_run(h);
     while (steps > 0) {
@@ -73,7 +73,7 @@ struct RememberingBox {
     if (!leavers.empty())
       backend->particles().take_out(leavers), backend->list().build(model.contact.skin, timers);
   }
-  // Of this rank, and in the order of the ids.
+  // State of this rank, in the order of the ids.
   State state() const {
     State state;
     state.particles = backend->particles().records();

@@ -1,5 +1,5 @@
-// A law that remembers, for tests: of each contact how it lay at all steps before, fading, for how many steps
-// it has been closed, and sums. What it remembers acts on the force, so that a run shows where it is lost.
+// A law with history, for tests: it stores for each contact its overlaps of all earlier steps, fading, the
+// number of steps in contact, and sums. The history acts on the force, so that a run shows where it is lost.
 #pragma once
 
 #include "physics/contact_law.hpp"
@@ -20,7 +20,7 @@ struct RememberingLaw : ContactLaw<LinearLaw> {
   static constexpr int kHistory = kNumbers;
   struct History {
     Vec3 overlaps;  // along the normal, fading: odd under exchange of the partners
-    Real rest[kNumbers - 3 + (kNumbers == 3)]{};  // the steps first, which are even
+    Real rest[kNumbers - 3 + (kNumbers == 3)]{};  // the number of steps first, which is even
   };
   template <class Load>
   struct Outcome {

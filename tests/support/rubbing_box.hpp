@@ -1,5 +1,5 @@
-// Boxes of particles that rub and roll on each other, on walls and on bodies, dense enough for contacts that
-// slide, that stick, that turn and that part.
+// Boxes of particles with friction and rolling resistance, in contact with each other, walls and bodies,
+// dense enough for contacts that slide, stick, rotate and open.
 #pragma once
 
 #include "physics/cohesion.hpp"
@@ -19,7 +19,7 @@ inline const BoxCase kRubbingBoxes[] = {
     {"3D, bodies, periodic", 3, 3, 0.3, false, true, 2, 1, false},
     {"3D, Hertz and Mindlin, bodies and walls", 3, 1, 0.3, true, true, 2, 1, false, 2e4}};
 
-// The model with friction, weak and strong, with a dashpot and without, and with particles that spin.
+// Adds friction, weak and strong, with and without a dashpot, and spins of the particles.
 inline Model rubbing(Model model) {
   RandomNumbers random(77);
   const bool flat = model.space.dimension == 2;
@@ -44,8 +44,8 @@ inline Model rubbing(Model model) {
 
 inline constexpr Real kHhtStep = 2e-4;
 
-// An implicit step, on a list of its own, in which the bodies move on; its limits are frozen after so many
-// iterations, if it needs more. Then the particles outside leave.
+// An implicit step, on a list of its own, in which the bodies move; its friction limits are lagged after so
+// many iterations, if it needs more. Then escaped particles are removed.
 inline void rubbing_hht_step(RememberingBox& box, Real h, int freeze_after) {
   box.backend->list().build(box.model.contact.skin, box.timers);
   const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, h);
@@ -77,8 +77,8 @@ inline Model hht_rubbing_box(const BoxCase& c, Leaving leaving) {
 
 inline Model moving_rubbing_box(const BoxCase& c, Leaving leaving) { return rubbing(moving_box(c, leaving)); }
 
-// The model with all that resists rolling and twisting, of which pairs of materials have different parts, and
-// without a damping but with a ratio.
+// Adds all rolling and twisting resistances, of which pairs of materials have different parts, with a
+// damping ratio in place of a damping.
 inline Model rolling(Model model) {
   const int count = model.contact.materials();
   for (int k = 0; k < count * count; ++k) {
@@ -95,8 +95,8 @@ inline Model rolling(Model model) {
   return model;
 }
 
-// The model with all of that, and with particles that stick: JKR's necks beside Hertz's law, else a pull with
-// a range. Pairs of materials differ; some do not stick.
+// Adds all of that and cohesion: JKR beside Hertz's law, otherwise an attractive force with a range. Pairs
+// of materials differ; some have none.
 inline Model sticky(Model model) {
   model = rolling(std::move(model));
   const int count = model.contact.materials();
@@ -120,7 +120,7 @@ inline int unmirrored_sticky(const std::vector<Particle>& particles, const KeptC
                                : unmirrored<6, 6>(particles, contacts);
 }
 
-// All boxes, with either way of leaving.
+// All boxes, with either policy for escaped particles.
 inline std::vector<std::pair<BoxCase, Leaving>> moving_cases() {
   std::vector<std::pair<BoxCase, Leaving>> cases;
   for (const BoxCase& c : kRubbingBoxes)
@@ -128,7 +128,7 @@ inline std::vector<std::pair<BoxCase, Leaving>> moving_cases() {
   return cases;
 }
 
-// What is put on a box of particles that rub, and what of a contact's numbers is even under exchange.
+// A variant of a box of particles with friction, and which of a contact's numbers is even under exchange.
 struct RubbingKind {
   const char* name;
   Model (*of)(Model);

@@ -1,4 +1,4 @@
-// A scratch folder that all ranks see.
+// A scratch folder visible to all ranks.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// Made and removed by rank 0.
+// Created and removed by rank 0.
 class SharedFolder {
  public:
   explicit SharedFolder(const Ranks& ranks) : ranks_(ranks) {
@@ -22,7 +22,7 @@ class SharedFolder {
     ranks.broadcast(std::span<char>(path));
     path_ = path;
   }
-  ~SharedFolder() { ranks_.any(false); }  // nobody reads any longer
+  ~SharedFolder() { ranks_.any(false); }  // no rank reads any longer
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
   const std::string& path() const { return path_; }
 

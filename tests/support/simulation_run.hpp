@@ -1,4 +1,4 @@
-// A model that runs in memory: the step loop and what it works on, without files.
+// A model that runs in memory: the step loop and its data, without files.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace scree {
 
-// Books the energies and counts what would be written.
+// Accounts for the energies and counts the outputs.
 class MemoryRecords : public Records {
  public:
   // particles, ledger: of the instant.
@@ -42,7 +42,7 @@ class MemoryRecords : public Records {
   EnergyExtremes now(const State& state) const {
     return extremes_at(particles_().inside.kinetic, ledger_().elastic_force_elements, state.bodies);
   }
-  // Half the sum of all entries' changes [J].
+  // Half the sum of the changes of all entries [J].
   static Real change_of_place(const Ledger& before, const Ledger& after) {
     const auto a = before.entries(), b = after.entries();
     Real sum = 0;
@@ -65,7 +65,7 @@ class SimulationRun {
     records_.history(state_, 0), records_.snapshot(state_);
     make_loop();
   }
-  // Continues from a state that complete_state() returned, of this model.
+  // Continues from a state of this model that complete_state() returned.
   SimulationRun(const Model& model, const State& state) : SimulationRun(model, true) {
     state_ = state;
     backend_->particles().load(std::exchange(state_.particles, {}), state_.shapes);
@@ -79,16 +79,17 @@ class SimulationRun {
   SimulationRun(const SimulationRun&) = delete;
   SimulationRun& operator=(const SimulationRun&) = delete;
 
-  // Steps until time.end; calls at_history after each history sample. Throws SimulationError as the run does.
+  // Steps until time.end; calls at_history after each history sample. Throws SimulationError as the run
+  // does.
   void run(const std::function<void()>& at_history = [] {}) { run_until(kInfinity, at_history); }
-  // As run(), until the step that reaches time t [s].
+  // Runs as run() does, until the step that reaches time t [s].
   void run_until(
       Real t, const std::function<void()>& at_history = [] {}) {
     records_.at_history = at_history;
     loop_->run(t);
     records_.at_history = [] {};
   }
-  // One accepted step; its length [s].
+  // Takes one accepted step; returns its length [s].
   Real step() {
     loop_->run(std::nextafter(time(), kInfinity));
     return last_step_;
@@ -103,7 +104,7 @@ class SimulationRun {
   Ledger ledger() {
     return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies, time());
   }
-  // What a history row holds of the contacts that the model records.
+  // The columns of a history row for the recorded contacts.
   std::vector<Real> contact_values() {
     std::vector<Real> values;
     for (const ContactSum& sum : target_contacts(model_, link_, state_, *backend_))
@@ -111,9 +112,9 @@ class SimulationRun {
                                    sum.torque.z, static_cast<Real>(sum.contacts)});
     return values;
   }
-  // At the last row: what the ledger fails to account for, and the energy that has changed its place from row
-  // to row [J]. The latter is what tests measure errors by; it counts from where this run began, and grows
-  // with the number of rows. A run measures by balance().exchanged.
+  // At the last row: the energy that the ledger fails to account for, and the energy exchanged between its
+  // entries from row to row [J]. The latter is the reference of errors in tests; it counts from where this
+  // run began, and grows with the number of rows. A run uses balance().exchanged.
   Real balance_error() const { return scree::balance_error(state_.balance); }
   Real exchanged() const { return records_.exchanged(); }
   const BalanceState& balance() const { return state_.balance; }

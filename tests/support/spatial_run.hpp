@@ -1,4 +1,4 @@
-// Spatial mechanisms of tests/reference/spatial, and runs beside their solutions.
+// Spatial mechanisms of tests/reference/spatial, and runs against their solutions.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ inline Body spatial_body(const std::string& name, Real mass, Vec3 inertia, Vec3 
   return body;
 }
 
-// Gravity of the references along z.
+// The references' gravity is along z.
 inline Model spatial_model(Real hht_alpha) {
   Model model = empty_model();
   model.gravity = {0, 0, -9.81};
@@ -46,7 +46,7 @@ struct SpatialErrors {
   Real position = 0, rotation = 0, velocity = 0, spin = 0, force = 0;
 };
 
-// Of forces that stand in columns of their own.
+// Error of forces with columns of their own.
 using ForceError = std::function<Real(const ReferenceTable::Row&, const std::vector<Reaction>&)>;
 
 inline SpatialErrors spatial_errors(const Model& model, const std::string& table, Real h, Real from = 0,
@@ -129,8 +129,8 @@ inline Model free_body(Real hht_alpha) {
   return model;
 }
 
-// Orientation of a joint's frame with z along `axis` and x across it, in the frame of the body whose axes
-// those are.
+// Orientation of a joint's frame with z along `axis` and x across it, in the frame of the body of these
+// axes.
 inline Quaternion marker_along(Vec3 axis, Vec3 across) {
   return quaternion_of(transposed({across, cross(axis, across), axis}));
 }
@@ -167,7 +167,7 @@ inline Model slider_crank_in_space(Real hht_alpha) {
   return model;
 }
 
-// Two gears on hinges, the second with a pinion for a rack on a spring.
+// Two gears on revolute joints, the second with a pinion for a rack on a spring.
 inline Model gears_in_space(Real hht_alpha) {
   Model model = spatial_model(hht_alpha);
   model.gravity = {0, -9.81, 0};

@@ -1,4 +1,4 @@
-// What backends hold and hand out, and whole states, compared bit for bit.
+// Data of backends, and whole states, compared bit for bit.
 #pragma once
 
 #include <string>
@@ -36,8 +36,8 @@ inline auto fields(const ContactWrenches& w) {
   return std::tie(wrench, stiffness, pairs);
 }
 
-// Names of the arrays that differ in a bit, or that only one of the two has; "" if there is none. Of states:
-// pack() lists all that they are.
+// Names of the arrays that differ in a bit, or that only one of the two has; "" if there are none. States
+// are compared by pack(), which lists all their parts.
 inline std::string differing_arrays(const Checkpoint& one, const Checkpoint& other) {
   const Checkpoint a = with_rows_as_arrays(one), b = with_rows_as_arrays(other);
   std::string names;

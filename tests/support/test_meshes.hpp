@@ -1,4 +1,4 @@
-// Meshes that tests of contacts share, places at random, and what a sphere touches on a mesh.
+// Meshes for tests of contacts, random positions, and the contacts of a sphere on a mesh.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class MeshRandom {
       if (square > 0.01 && square < 1) return (1 / std::sqrt(square)) * v;
     }
   }
-  // A turn of any size about any axis.
+  // A random rotation about a random axis.
   Mat3 turn() {
     const Vec3 x = direction(), z = unit_of(cross(x, direction()));
     return transposed(Mat3{x, cross(z, x), z});
@@ -51,7 +51,7 @@ inline void append(TriangleMesh& mesh, const TriangleMesh& other) {
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
 }
 
-// Every vertex through a function.
+// Applies a function to every vertex.
 template <class Function>
 TriangleMesh mapped(TriangleMesh mesh, const Function& function) {
   for (Vec3& v : mesh.vertices) v = function(v);
@@ -62,7 +62,7 @@ inline TriangleMesh turned(const TriangleMesh& mesh, const Mat3& turn) {
   return mapped(mesh, [&](Vec3 v) { return turn * v; });
 }
 
-// The other side up.
+// The mesh with inverted windings.
 inline TriangleMesh flipped(TriangleMesh mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
@@ -128,7 +128,7 @@ inline TriangleMesh strip(const std::vector<Vec3>& line, Real width, int rows) {
   TriangleMesh mesh;
   for (std::size_t i = 0; i + 1 < line.size(); ++i)
     append(mesh, plate(line[i], line[i + 1] - line[i], {0, width, 0}, 1, rows));
-  // plate() adds its sides to its corner: the far ends come out with another last bit.
+  // plate() adds its sides to its corner: the far ends have another last bit.
   const std::size_t n = 2 * static_cast<std::size_t>(rows + 1);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3 p = line[v / n + v % 2];
@@ -175,7 +175,7 @@ inline std::vector<MeshContact> contacts_at(const SurfaceMesh& mesh, Vec3 c, Rea
   return contacts_of_row(mesh, c, reach, triangles_near(mesh, c, reach));
 }
 
-// The sum of the overlaps along the normals: the force of a linear spring, over its stiffness [m].
+// The sum of the overlaps along the normals: the force of a linear spring over its stiffness [m].
 inline Vec3 push_on(const SurfaceMesh& mesh, Vec3 c, Real radius) {
   Vec3 sum;
   for (const MeshContact& contact : contacts_at(mesh, c, radius))
@@ -189,14 +189,14 @@ inline TriangleMesh hills(int n, Real height, unsigned seed) {
   return mapped(jittered_grid(n, seed), [&](Vec3 v) { return Vec3{v.x, v.y, random.in(0, height)}; });
 }
 
-// A ball whose radius varies from vertex to vertex, so that every ray from its centre meets it once.
+// A ball whose radius varies from vertex to vertex, so that every ray from its centre crosses it once.
 inline TriangleMesh potato(int level, Real variation, unsigned seed) {
   MeshRandom random(seed);
   return mapped(icosphere(level, 1), [&](Vec3 v) { return (1 + random.in(-variation, variation)) * v; });
 }
 
-// At random near a mesh, or where regions meet: over a vertex or a point of an edge along the normal of one
-// of the faces there.
+// A random position near a mesh, or at the border of regions: over a vertex or a point of an edge along the
+// normal of one of the faces there.
 inline Vec3 place_near(const SurfaceMesh& mesh, Real height, MeshRandom& random) {
   const MeshTriangle& triangle = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
   const Vec3 a = mesh.vertices[triangle.vertex[0]], b = mesh.vertices[triangle.vertex[1]];

@@ -1,4 +1,4 @@
-// Spheres between walls that friction holds.
+// Static spheres between walls, held by friction.
 #include <cmath>
 #include <numbers>
 
@@ -20,7 +20,7 @@ constexpr Real kGravity = 9.81;
 // The zigzag of the tables: radius, mass, stiffnesses; walls at x = 1e-6 and 0.033999.
 constexpr Real kRadius = 0.01, kMass = 0.01, kStiffness = 1e6, kSlipStiffness = 8e5, kWidth = 0.034,
                kOverlap = 1e-6;
-constexpr Real kRise = 2 * kRadius * 0.714142842854285;  // from one to the next
+constexpr Real kRise = 2 * kRadius * 0.714142842854285;  // height from one sphere to the next
 
 Pack<Law> zigzag(Real h) {
   std::vector<Grain> grains;
@@ -52,7 +52,7 @@ TEST_CASE("six spheres in a zigzag between rough walls: static forces, positions
   std::vector<Real> turned(start.size(), 0);
   for (int step = 0; step < 200000; ++step) {
     for (std::size_t i = 0; i < turned.size(); ++i) {
-      Grain& g = pack.grains[i];  // as in a thick liquid: no contact opens on the way to rest
+      Grain& g = pack.grains[i];  // strong viscous damping: no contact opens on the way to rest
       g.velocity = kDrag * g.velocity, g.spin = kDrag * g.spin;
       turned[i] += h * g.spin.y;
     }
@@ -106,7 +106,7 @@ TEST_CASE("a sphere clamped between two walls is held by friction above its limi
       }
       return std::pair{lowest, -pack.grains[0].position.z};
     };
-    // Dropped without damping it needs twice the friction of rest.
+    // Dropped without damping it needs twice the static friction.
     CHECK(near(fall_of(2.01 * row["mu_min"], 0, 3).first, row["lowest"], {.relative = 1e-4}));
     CHECK(fall_of(1.5 * row["mu_min"], 0, 3).first > 1.1 * row["lowest"]);
     CHECK(near(fall_of(2.01 * row["mu_min"], 0.5, 60).second, row["sag"], {.relative = 1e-12}));

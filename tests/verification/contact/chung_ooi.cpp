@@ -1,4 +1,4 @@
-// Chung and Ooi, tests 7 and 8: pairs of spheres that spin.
+// Chung and Ooi, tests 7 and 8: impacts of pairs of spinning spheres.
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -12,12 +12,12 @@ namespace {
 
 using Law = ContactLaw<HertzLaw, MindlinSlider>;
 
-// Test 8: onto a sphere five times as large at rest, a thousand times as dense and as stiff; in case B its
-// shear modulus is not.
+// Test 8: impact on a resting sphere five times as large, a thousand times as dense and as stiff; in case B
+// its shear modulus is not.
 struct OntoLarge {
   Grain small, large;
   Law law;
-  Vec3 velocity, spin;  // of the small one after it
+  Vec3 velocity, spin;  // of the small sphere after the impact
   Real contact_time;
 
   explicit OntoLarge(const ReferenceTable::Row& row) {

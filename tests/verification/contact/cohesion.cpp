@@ -1,4 +1,4 @@
-// Head-on impacts of surfaces that attract each other.
+// Head-on impacts of surfaces with cohesion.
 #include "physics/cohesion.hpp"
 
 #include "support/bars.hpp"
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// A sphere of radius R* and mass m* on a plane moves as two spheres do relative to each other.
+// A sphere of radius R* and mass m* on a plane has the relative motion of two spheres.
 template <class Normal>
 PlaneRun<ContactLaw<Normal>> head_on(const Normal& law, const ReferenceTable::Row& row, Real h) {
   const Real R = row["R_star"];
@@ -24,12 +24,12 @@ PlaneRun<ContactLaw<Normal>> head_on(const Normal& law, const ReferenceTable::Ro
           .h = h};
 }
 
-// Time in which an impact would be over without attraction, about.
+// Approximate duration of the impact without cohesion.
 Real impact_time(const ReferenceTable::Row& row) { return 3 * row["d_max"] / row["v"]; }
 
 struct NeckErrors {
-  Errors energy, overlap, force;  // of the rebound, over the impact's; largest overlap, and force there
-  Errors books;                   // over the impact's energy
+  Errors energy, overlap, force;  // of the rebound, relative to the impact; largest overlap, and force there
+  Errors books;                   // relative to the impact's energy
 };
 
 void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {

@@ -7,11 +7,11 @@
 
 namespace scree {
 
-// Of values that are each in units of their own scale.
+// Errors of values that are each scaled by their own unit.
 class Errors {
  public:
   void add(Real error) {
-    worst_ = std::abs(error) <= worst_ ? worst_ : std::abs(error);  // NaN stays
+    worst_ = std::abs(error) <= worst_ ? worst_ : std::abs(error);  // keeps NaN
     squares_ += error * error, ++count_;
   }
   Real worst() const { return worst_; }

@@ -1,5 +1,5 @@
-// Head-on impacts: restitution, largest overlap and force, duration, of every law that keeps the restitution
-// at all speeds.
+// Head-on impacts: restitution, largest overlap and force, duration, of every law whose restitution is
+// independent of speed.
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "verification/contact/errors.hpp"
@@ -10,9 +10,9 @@ namespace scree {
 
 namespace {
 
-constexpr Real kOneStep = 1 + 1e-9;  // how far a time that is counted in steps may be off
+constexpr Real kOneStep = 1 + 1e-9;  // error of a time that is counted in steps
 
-// Of the rebound's speed, over the approach's; of the others, relative.
+// Errors of the rebound's speed, over the approach's; of the others, relative.
 struct HeadOnErrors {
   Errors rebound, overlap, force, time;
 };
@@ -21,13 +21,13 @@ struct Known {
   Real restitution, overlap, force, time;
 };
 
-// overlap(): the run's; starts at touch.
+// overlap(): of the run, which starts at touch.
 template <class Run, class Overlap, class Rate>
 void add_head_on(Run& run, const Known& known, int limit, const Overlap& overlap, const Rate& rate,
                  HeadOnErrors& errors) {
   const Real speed = rate();
   Real largest = 0, force = 0;
-  int acting = 0;  // steps
+  int acting = 0;  // steps in which the force acts
   for (int k = 1; k <= limit && (k < 3 || run.closed); ++k) {
     run.step();
     acting += norm(run.outcome.load.force) > 0;
@@ -40,7 +40,7 @@ void add_head_on(Run& run, const Known& known, int limit, const Overlap& overlap
   errors.time.add(acting * run.h / known.time - 1);
 }
 
-// On a plane a sphere of mass m* and radius R* moves as two do relative to each other.
+// On a plane a sphere of mass m* and radius R* has the relative motion of two spheres.
 template <class Normal>
 void add_on_plane(const Normal& law, const Grain& grain, const Known& known, Real parts,
                   HeadOnErrors& errors) {

@@ -1,4 +1,4 @@
-// Impacts of a sphere on a rigid plane under the laws of Hertz and Mindlin: the tables' rows.
+// Impacts of a sphere on a rigid plane under the laws of Hertz and Mindlin: rows of the tables.
 #pragma once
 
 #include "verification/contact/plane_impacts.hpp"
@@ -20,7 +20,7 @@ inline Real hertz_time(Real stiffness, Real mass, Real speed) {
   return Real(2.94328) / speed * std::pow(Real(1.25) * mass * speed * speed / stiffness, Real(0.4));
 }
 
-// damping_ratio with the force cut at zero.
+// damping_ratio with the force clipped at zero.
 struct HertzImpact : PlaneImpact {
   HertzLaw normal;
   MindlinSlider tangential;

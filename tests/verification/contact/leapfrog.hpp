@@ -1,4 +1,4 @@
-// The smallest particle code: one sphere on a plane, or two spheres, under a contact law, by leapfrog steps.
+// A minimal particle code: one sphere on a plane, or two spheres, under a contact law, with leapfrog steps.
 #pragma once
 
 #include "physics/contact_law.hpp"
@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// A sphere with its velocities of the half step before.
+// A sphere with its velocities of the preceding half step.
 struct Grain {
   Vec3 position{};  // [m]
   Vec3 velocity{};  // [m/s]
@@ -19,12 +19,12 @@ struct Grain {
   Real energy() const { return kinetic_energy(mass, velocity) + rotational_energy(inertia, spin); }
 };
 
-// Force and torque of the last step over mass and inertia.
+// Force over mass and torque over inertia of the last step.
 struct GrainRates {
   Vec3 acceleration, spin_up;  // [m/s^2], [rad/s^2]
 };
 
-// What all contacts of a run have taken and given.
+// Sums over all contacts of a run.
 struct ContactSums {
   Real normal = 0;  // losses of the normal law [J]
   SpringLosses friction, rolling;
@@ -54,7 +54,7 @@ struct PlaneRun {
             grain.velocity + (h / 2) * rates.acceleration,
             {grain.radius, kInfinity, grain.mass, kInfinity}};
   }
-  // From velocities at the start to those of half a step later.
+  // Advances velocities at the start by half a step.
   void start() {
     const PairState state = pair();
     const ContactMotion rest =
@@ -72,7 +72,7 @@ struct PlaneRun {
     sums.add(outcome, h);
     kick(outcome, h);
   }
-  // At the end of the last step, half a step before the velocities of `grain`.
+  // Velocity at the end of the last step, half a step before that of `grain`.
   Vec3 velocity() const { return grain.velocity - (h / 2) * rates.acceleration; }
   Vec3 spin() const { return grain.spin - (h / 2) * rates.spin_up; }
 
@@ -120,7 +120,7 @@ struct PairRun {
   }
 };
 
-// Steps until a contact has closed and opened again, at most `limit` steps; returns whether it has.
+// Takes steps until a contact has closed and opened again, at most `limit` steps; returns whether it has.
 template <class Run>
 bool run_impact(Run& run, int limit) {
   bool met = false;

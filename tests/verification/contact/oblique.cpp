@@ -10,8 +10,8 @@ namespace {
 
 // All phases of a step in which a contact can begin are equally likely.
 constexpr Real kPhases[] = {0, 0.2, 0.4, 0.6, 0.8};
-// Least order with a dashpot that grows with the fourth root of the overlap: 5/4, less some scatter. Without
-// it the laws are of second order.
+// Smallest order with a dashpot that grows with the fourth root of the overlap: 5/4, less some scatter.
+// Without it the laws are of second order.
 constexpr Real kRootDashpot = 1.15;
 
 template <class Impact, class Which>

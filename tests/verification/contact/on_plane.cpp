@@ -20,14 +20,14 @@ Slider slider(Real stiffness, Real friction, Real damping_ratio) {
   return {LinearLaw(kRestStiffness, 0, false), {stiffness, friction, damping_ratio}};
 }
 
-// m_t = 2/7 m: what a step is compared with.
+// Period of slip with m_t = 2/7 m, the reference of step lengths.
 Real slip_period(Real mass, Real stiffness) { return swing_period(2 * mass / 7, stiffness); }
 
 struct RollingErrors {
-  Errors speed, place, loss;  // over v0; over x_roll; over the slider's loss
+  Errors speed, place, loss;  // relative to v0, to x_roll, and to the slider's loss
 };
 
-// After the slip a sphere swings about v = 5/7 v0: five periods of it.
+// After the slip a sphere oscillates about v = 5/7 v0: five periods of it.
 void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors& errors) {
   const Real v0 = row["v0"], t_roll = row["t_roll"], period = row["period"];
   const auto steps = std::ceil(t_roll / period * parts);

@@ -1,4 +1,4 @@
-// A sphere that lies on the plane z = 0, with its overlap at rest: its motion along x at given times.
+// A sphere on the plane z = 0 with its static overlap: its motion along x at given times.
 #pragma once
 
 #include <numbers>
@@ -9,7 +9,7 @@
 
 namespace scree {
 
-// Stiff against what the tables ask of the normal spring: nothing but to carry the weight.
+// Stiff in comparison with the tables' loads: the normal spring only carries the weight.
 inline constexpr Real kRestStiffness = 1e5;  // [N/m]
 
 // Gravity of a plane inclined by this angle [rad], down along +x.
@@ -18,7 +18,7 @@ inline Vec3 inclined_gravity(Real angle) {
   return {g * std::sin(angle), 0, -g * std::cos(angle)};
 }
 
-// The run of a sphere whose weight its normal spring carries from the start on.
+// Run of a sphere whose weight its normal spring carries from the start on.
 template <class Law>
 PlaneRun<Law> resting_run(const Law& law, Grain grain, Vec3 gravity, Real h) {
   grain.position = {0, 0, grain.radius + grain.mass * gravity.z / law.normal.normal_stiffness};
@@ -29,14 +29,14 @@ PlaneRun<Law> resting_run(const Law& law, Grain grain, Vec3 gravity, Real h) {
 
 struct OnPlane {
   Real t, x, v, w;     // [s], [m], [m/s], [rad/s]
-  Real spring, force;  // of the slider, and with the dashpot, against +x [N]
-  Real held, moment;   // of the rolling spring, and with the dashpot, against rolling along +x [N m]
+  Real spring, force;  // spring: of the slider; force: with the dashpot, against +x [N]
+  Real held, moment;  // held: of the rolling spring; moment: with the dashpot, against rolling along +x [N m]
 };
 
 template <class Law>
 OnPlane on_plane(const PlaneRun<Law>& run, Real t) {
   const ContactOutcome& out = run.outcome;
-  // About y the torque of the force is R T; the rest is the rolling law's.
+  // The force has the torque R T about y; the remainder is the rolling law's.
   const Real of_force = -run.grain.radius * out.load.force.x;
   return {t,
           run.grain.position.x,
@@ -56,12 +56,12 @@ inline OnPlane between(Real share, const OnPlane& a, const OnPlane& b) {
           between(share, a.held, b.held),     between(share, a.moment, b.moment)};
 }
 
-// Of a mass and a spring, what steps are compared with [s].
+// Period of a mass on a spring, the reference of step lengths [s].
 inline Real swing_period(Real inertia, Real stiffness) {
   return 2 * std::numbers::pi_v<Real> * std::sqrt(inertia / stiffness);
 }
 
-// Calls visit(state) for the times, which rise; between two steps along a straight line.
+// Calls visit(state) at increasing times, by linear interpolation between two steps.
 template <class Law, class Visit>
 void visit_times(PlaneRun<Law>& run, const std::vector<Real>& times, const Visit& visit) {
   OnPlane before = on_plane(run, 0), now = before;
@@ -74,7 +74,7 @@ void visit_times(PlaneRun<Law>& run, const std::vector<Real>& times, const Visit
   }
 }
 
-// The same for rows [first, second) of a table, among which its column t rises: visit(state, row).
+// Calls visit(state, row) for rows [first, second) of a table, whose column t increases there.
 template <class Law, class Visit>
 void visit_rows(PlaneRun<Law>& run, const ReferenceTable& table, std::pair<std::size_t, std::size_t> rows,
                 const Visit& visit) {

@@ -1,4 +1,4 @@
-// Some spheres between planes at rest, by leapfrog steps: all pairs are tried, each evaluated once.
+// A few spheres between static planes, by leapfrog steps: all pairs are tested, each evaluated once.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace scree {
 
 struct Plane {
-  Vec3 point, normal;  // unit, into its free side
+  Vec3 point, normal;  // normal: unit, into the free side
 };
 
 template <class Law>

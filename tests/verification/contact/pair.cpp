@@ -1,4 +1,4 @@
-// Two free spheres of unequal sizes that meet obliquely with spins.
+// Oblique impact of two free spinning spheres of unequal sizes.
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -26,8 +26,8 @@ Vec3 total_angular_momentum(const Run& run) {
 }
 
 struct PairErrors {
-  Errors motion;  // over the speed of approach of the surfaces, some 1 m/s
-  Errors loss;    // books against the motion's, over the kinetic energy
+  Errors motion;  // relative to the surfaces' speed of approach, some 1 m/s
+  Errors loss;    // accounted dissipation against the motion's, over the kinetic energy
 };
 
 template <class Impact>
@@ -67,7 +67,7 @@ TEST_CASE("two spheres in space with a linear spring and slider") {
     CHECK(keeps(coarse.motion.worst(), {.promise = 1e-3, .measured = 6.2e-5}));
     CHECK(keeps(fine.motion.worst(), {.promise = 3e-4, .measured = 2.1e-5}));
     CHECK(keeps(fine.loss.worst(), {.promise = 3e-4, .measured = 1.1e-5}));
-    CHECK(order_between(coarse.motion, fine.motion) > 1.6);  // 2 but for where in a step sliding begins
+    CHECK(order_between(coarse.motion, fine.motion) > 1.6);  // 2, but for where in a step sliding begins
     CHECK(order_between(coarse.loss, fine.loss) > 1.8);
   }
   // The return to the limit is along the force at the end of the step.
@@ -91,7 +91,7 @@ TEST_CASE("two spheres in space with a linear spring and slider") {
 
 namespace {
 
-// Everything at once.
+// All laws together.
 using Whole =
     ContactLaw<HertzLaw, MindlinSlider, RollingAndTwisting<ElasticPlasticRolling, MarshallTwisting>>;
 
@@ -105,11 +105,11 @@ struct WholeImpact : MindlinPairImpact {
   }
 };
 
-// The pair as its other partner sees it, with what that one remembers.
+// The pair as seen from its other partner, with that one's history.
 struct OtherSide {
   ContactHistory history;
 
-  // From the run's state before its step.
+  // Evaluated from the run's state before its step.
   ContactOutcome step(const PairRun<Whole>& run) const {
     PairRun<Whole> other{.law = run.law, .i = run.j, .j = run.i, .h = run.h};
     other.rates_i = run.rates_j, other.rates_j = run.rates_i;

@@ -1,4 +1,4 @@
-// Impacts of two free spheres in space: what pair_oblique_3d.csv says of them.
+// Impacts of two free spheres in space: rows of pair_oblique_3d.csv.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@ inline Vec3 vector(const ReferenceTable::Row& row, const std::string& name) {
   return {row[name + "x"], row[name + "y"], row[name + "z"]};
 }
 
-// Starts and ends at touch.
+// An impact from touch to separation.
 struct PairImpact {
   Grain i, j;
   Grain i_after, j_after;  // their velocities and spins
   Vec3 normal;             // at the start, from j to i
-  Real time, loss;         // of the force [s]; [J]
+  Real time, loss;         // duration of the force [s]; dissipation [J]
 
   explicit PairImpact(const ReferenceTable::Row& row)
       : i(grain(row, "i", "0")),
@@ -63,7 +63,7 @@ struct MindlinPairImpact : PairImpact {
   }
 };
 
-// By steps of time / parts, the first touch `phase` steps after the start.
+// Runs with steps of time / parts, the first touch `phase` steps after the start.
 template <class Impact>
 auto pair_run(const Impact& impact, Real parts, Real phase) {
   PairRun<decltype(impact.law)> run{

@@ -1,4 +1,4 @@
-// Impacts of a sphere on the plane z = 0, without gravity: what the tables say of them.
+// Impacts of a sphere on the plane z = 0, without gravity: rows of the tables.
 #pragma once
 
 #include <cmath>
@@ -13,9 +13,9 @@ namespace scree {
 
 // x along the plane, y the axis of rolling along +x.
 struct PlaneImpact {
-  Grain grain;  // on its way down, wherever it is
+  Grain grain;  // moving down, at any position
   Vec3 velocity_after{}, spin_after{};
-  Real contact_time = 0;  // estimate, in which steps are counted [s]
+  Real contact_time = 0;  // estimate, the unit of step lengths [s]
 };
 
 // speed [m/s] at an angle from the normal [rad].

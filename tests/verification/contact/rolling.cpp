@@ -14,7 +14,7 @@ namespace {
 
 using Rolling = ContactLaw<LinearLaw, LinearSlider, RollingAndTwisting<ElasticPlasticRolling>>;
 
-// epsd_a and epsd_b, which differ in the dashpot.
+// Cases epsd_a and epsd_b, which differ in the dashpot.
 struct EpsdCase {
   const char* table;
   Real damping_ratio;
@@ -35,7 +35,7 @@ Errors epsd_errors(const EpsdCase& c, Real parts) {
     auto run =
         resting_run(law, grain, inclined_gravity(0), swing_period(2 * kMass / 7, kSlipStiffness) / parts);
     visit_rows(run, table, rows, [&](const OnPlane& at, const auto& row) {
-      errors.add((at.x - row["x"]) / 0.064);  // the way until it stops
+      errors.add((at.x - row["x"]) / 0.064);  // displacement until it stops
       errors.add((at.v - row["v"]) / kSpeed);
       errors.add(kRadius * (at.w - row["w"]) / kSpeed);
       errors.add((at.held - row["Mk"]) / kLargestMoment);
@@ -116,7 +116,7 @@ TEST_CASE("a sphere that spins about the vertical slows down evenly, then swings
   const Errors coarse = errors_at(100), fine = errors_at(200);
   CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 3.3e-4}));
   CHECK(keeps(fine.worst(), {.promise = 1e-3, .measured = 1.2e-4}));
-  CHECK(order_between(coarse, fine) > 1.3);  // 2 but for where in a step sliding begins and ends
+  CHECK(order_between(coarse, fine) > 1.3);  // 2, but for where in a step sliding begins and ends
 }
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// Contact forces on walls and bodies, as a history records them, against weights, levers and joint reactions
-// of things at rest.
+// Contact forces on walls and bodies in a history, against weights, lever arms and joint reactions in
+// equilibrium.
 #include <string>
 #include <vector>
 
@@ -29,7 +29,7 @@ end = )" +
          end + "\n[[contact.pairs]]\nstiffness = 1e6\ndamping = 2000.0\n";
 }
 
-// A wall in the middle of the space holds three discs.
+// A wall in the middle of the domain carries three discs.
 const std::string kColumn = deck_in_box("0.4") + R"(
 [[walls]]
 name = "floor"
@@ -78,7 +78,7 @@ mass = 2.0
 history_contacts = ["table.0", "table.1", "table", "cart", "y_min"]
 )";
 
-// A grain and a ball, which is a body, each on a tray of a beam; both trays are meshes.
+// A particle, and a ball that is a body, each on a tray of a beam; both trays are meshes.
 const std::string kTrays = R"(
 gravity = [0.0, 0.0, -9.8066]
 [space]
@@ -135,7 +135,7 @@ history_contacts = ["beam", "beam.tray", "beam.other"]
 const std::vector<std::string> kIntegrators = {"integrator.particles=hht",
                                                "integrator.particles=velocity-verlet"};
 
-// The columns of the target with this number in the list: force, torque, contacts.
+// The history's columns of the target with this number in the list: force, torque, contacts.
 struct Recorded {
   Vec3 force, torque;
   Real contacts;

@@ -1,4 +1,4 @@
-// Explicit particles beside a free body: the momentum of both together over an impact.
+// Explicit particles and a free body: their total momentum over an impact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,8 +51,8 @@ velocity = [-{}, 0.0]
                      kStiffness, damping, kMass, std::sqrt(0.1 * 0.1 - 0.03 * 0.03) + gap, kMass, kSpeed);
 }
 
-// What the momentum of particle and body, 2 kg m/s, has changed by after the impact: the largest of some
-// phases of the touch within a step of h [s].
+// The change of the momentum of particle and body, 2 kg m/s, after the impact: the largest of some phases of
+// the touch within a step of h [s].
 Real momentum_error(Real h, int substeps, Real damping) {
   constexpr int kPhases = 8;
   Real largest = 0;
@@ -77,8 +77,8 @@ Real momentum_error(Real h, int substeps, Real damping) {
 
 }  // namespace
 
-// A step of the particles sees the body where it was predicted, the next one begins at its corrected place.
-// Damping jumps at the touch: what the two places differ by then counts to first order.
+// A step of the particles uses the predicted pose of the body, the next one begins at its corrected pose.
+// Damping jumps at touch: the difference of the two poses then counts to first order.
 TEST_CASE("explicit particles and a free body keep their momentum to the order of the method") {
   struct Claim {
     int substeps;

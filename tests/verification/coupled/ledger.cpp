@@ -1,4 +1,4 @@
-// The energy ledger closes in smooth motion.
+// The energy balance closes in smooth motion.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kTruncation = 1e-6;  // the promise at h = 1e-5, of the energy exchanged
+constexpr Real kTruncation = 1e-6;  // the promise at h = 1e-5, relative to the energy exchanged
 
 void check_balance(const std::string& what, const Model& model, Real least_exchanged) {
   SimulationRun run(model);
@@ -29,8 +29,8 @@ void check_balance(const std::string& what, const Model& model, Real least_excha
                  keeps(run.balance_error() / run.exchanged(), {.promise = kTruncation, .measured = 5.1e-9})));
 }
 
-// A disc of 1 kg that the floor y = 0 already bears at half of its weight: it swings without leaving the
-// floor.
+// A disc of 1 kg that the floor y = 0 already carries at half of its weight: it oscillates in contact with
+// the floor.
 const std::string kOnFloor = R"(
 gravity = [0.0, -9.8066]
 [space]

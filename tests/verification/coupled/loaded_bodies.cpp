@@ -1,4 +1,4 @@
-// Many explicit particles on a light body: it carries their weight, at the steps of the particles.
+// Many explicit particles on a light body: it carries their weight, at the particles' step size.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ restitution = 0.3
                      end, step, substeps, friction > 0 ? fmt::format("friction = {}", friction) : "");
 }
 
-// Grains in layers of side x side, each a little off its lattice position, above z.
+// Particles in layers of side x side, each a little off its lattice position, above z.
 std::string grains(int count, int side, Real radius, Real z, Real mass) {
   std::string places;
   for (int i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ std::string grains(int count, int side, Real radius, Real z, Real mass) {
       mass, places);
 }
 
-// An open box of sheets, with the body that carries it on a joint with the ground at the origin.
+// An open box of two-sided meshes, with its body on a joint with the ground at the origin.
 std::string bin(const std::string& joint, Real depth) {
   constexpr Real kEdge = 0.12, kHeight = 0.3;
   std::string deck =
@@ -87,7 +87,7 @@ local_points = [[0.0, 0.0, 0.0], [0.0, 0.0, {3}]]
                             kBodyMass, -depth, meshes, depth, joint);
 }
 
-// Over the second half of the run, what `read` makes of each history sample.
+// Mean of read(sample) over the history samples in the second half of the run.
 Real mean_of_second_half(SimulationRun& run, Real end, const std::function<Real()>& read) {
   Real sum = 0;
   int samples = 0;
@@ -114,7 +114,8 @@ constexpr const char* kHinge =
 
 }  // namespace
 
-// With the force at the predicted position alone the first, the third and the fifth of these are thrown off.
+// With the force at the predicted position alone the first, the third and the fifth of these become
+// unstable.
 TEST_CASE("particles in a light bin have their weight at its revolute joint") {
   for (const Load& load : {Load{"40 grains of 0.5 kg", kHinge, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
                            Load{"40 grains that rub", kHinge, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
@@ -174,7 +175,7 @@ free = 0.0
     }
 }
 
-// The difference of momentum between the particles' loss and the body's gain is of the order of the
+// The difference between the particles' loss and the body's gain of momentum is of the order of the
 // correction, which vanishes with the step.
 TEST_CASE("heavy spheres that hit a light free plate keep the momentum of both") {
   const auto error = [](Real step) {

@@ -37,7 +37,8 @@ std::vector<Vec3> nine_of(const std::vector<Real>& row) {
 }  // namespace
 
 TEST_CASE("5.3 with 9 particles at h = 1e-5 follows the truth to 0.45 s") {
-  constexpr Real kPhysical = 5e-5;  // [m]: perturbations grow by 1e2 by then (tests/reference/README.md)
+  constexpr Real kPhysical =
+      5e-5;  // [m]: perturbations have grown by 1e2 at that time (tests/reference/README.md)
   constexpr Real kBalance = 1e-4;
   const auto truth = reference_rows("mix53_tensile_noself_particles20_28.csv");
   const Model model = input_model("paper/net_9.toml", {"time.step=1e-5", "time.end=0.45"});

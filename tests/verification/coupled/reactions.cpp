@@ -16,7 +16,7 @@ namespace scree {
 namespace {
 
 constexpr Real kGravity = 9.81, kMass = 1.5, kInertia = 0.02, kArm = 0.4;
-constexpr Real kAbout = kInertia + kMass * kArm * kArm;                        // a pivot [kg m^2]
+constexpr Real kAbout = kInertia + kMass * kArm * kArm;                        // about a pivot [kg m^2]
 constexpr Real kSwing = 0.6, kFrequency = 1.2, kTurn = 2 * M_PI * kFrequency;  // of the driver
 constexpr Real kMu = 0.3, kPin = 0.05;
 
@@ -43,7 +43,7 @@ std::string planar_arm(const std::string& name, int place) {
 }
 
 // Three such arms: free, driven, with friction; and a disc that bounces. The spring of friction is so stiff
-// that it slides in the shortest step, too, in which the load within the steps rises after an impact.
+// that it slides also in the shortest step, in which the load within the steps rises after an impact.
 std::string planar_deck() {
   return start_of_deck(2, "[0, -9.81]", "min = [-1, -1]\nmax = [6, 1]\n", "y_min") + planar_arm("free", 0) +
          planar_arm("driven", 2) + planar_arm("rubbing", 4) +
@@ -55,7 +55,7 @@ std::string planar_deck() {
          ball("[5.8, -0.7]");
 }
 
-// A body on a ball joint, which spins; one on two hinges that share; and a sphere that bounces.
+// A spinning body on a spherical joint; a body on two redundant revolute joints; and a sphere that bounces.
 std::string spatial_deck() {
   const auto body = [](const std::string& name, const std::string& position, const std::string& more) {
     return "[[bodies]]\nname = \"" + name + "\"\nkind = \"spatial\"\nposition = " + position +
@@ -82,7 +82,7 @@ struct Largest {
   Real share() const { return error / size; }
 };
 
-// On an arm that is `turn` from level and turns at this rate and acceleration.
+// Reaction of the pin of an arm at the angle `turn` from level with this rate and acceleration.
 Vec3 pin_force(Real turn, Real rate, Real acceleration) {
   const Vec3 along{std::cos(turn), std::sin(turn), 0}, across{-along.y, along.x, 0};
   return kMass * (kArm * (acceleration * across - rate * rate * along) + Vec3{0, kGravity, 0});
@@ -92,7 +92,7 @@ Real pin_acceleration(Real turn, Real torque) {
   return (torque - kMass * kGravity * kArm * std::cos(turn)) / kAbout;
 }
 
-// On a body whose centre hangs at (0, 0, -arm) of its frame below the joint.
+// Reaction of the spherical joint of a body whose centre is at (0, 0, -arm) of its frame below the joint.
 Vec3 ball_force(const BodyMotion& top) {
   const Mat3 axes = rotation_matrix(top.orientation);
   const Vec3 centre{0, 0, -kArm}, w = top.spin, weight{0, 0, -kMass * kGravity};
@@ -127,10 +127,10 @@ TEST_CASE("reactions in the plane do not see that an impact elsewhere changes th
     if (run.time() > 0.01)  // it slides
       rub.take({0, 0, effort}, {0, 0, std::copysign(kMu * kPin * norm(reactions[2].force), -v[8])});
   });
-  CHECK(multipliers.share() > 0.2);  // of the steps, that there is something to see
+  CHECK(multipliers.share() > 0.2);  // of the steps: there is a significant oscillation
   for (const Largest& found : {free, rubbing})
     CHECK(measured("reactions/adaptive", "", at_most(found.share(), 2e-5)));
-  for (const Largest& found : {driven, drive, rub})  // the driver's motion, or the reaction itself, says all
+  for (const Largest& found : {driven, drive, rub})  // fixed by the driver's motion, or the reaction itself
     CHECK(measured("reactions/driven", "", at_most(found.share(), 1e-12)));
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("nor do spatial reactions, minimum-norm ones of redundant revolute joi
     top.take(reactions[0].force, force);
     const std::vector<Real>& lambda = run.bodies().multipliers;
     multipliers.take(-Vec3{lambda[0], lambda[1], lambda[2]}, force);
-    // Turned about y by -turn, it is an arm in the plane of x and z.
+    // Rotated about y by -turn, it is an arm in the plane of x and z.
     const Vec3 centre = motion[1].position - Vec3{2, 0, 0};
     const Real turn = std::atan2(centre.z, centre.x);
     const Vec3 both = pin_force(turn, motion[1].spin.y, pin_acceleration(turn, 0));

@@ -32,7 +32,7 @@ Real distance(const SimulationRun& run, const Rows& truth) {
   return largest;
 }
 
-// How far the energy has risen above its lowest so far [J].
+// Rise of the energy above its lowest value so far [J].
 class EnergyRise {
  public:
   explicit EnergyRise(SimulationRun& run) : run_(run), lowest_(run.ledger().mechanical()) {}
@@ -51,7 +51,7 @@ class EnergyRise {
 }  // namespace
 
 TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy does not rise") {
-  // Physical: perturbations grow by 2e3 in the first second (tests/reference/README.md).
+  // Physical: perturbations have grown by 2e3 in the first second (tests/reference/README.md).
   constexpr Real kPhysical070 = 1e-5, kPhysical080 = 4e-4, kPhysical100 = 5e-3;  // [m]
   constexpr Real kIteration = 1e-8;  // the rise at the default tolerances [J], of 300 J exchanged
   constexpr Real kBalance = 1e-4;

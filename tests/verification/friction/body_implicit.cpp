@@ -1,5 +1,5 @@
-// A particle that rubs on the disc or sphere of a body in implicit steps: against two particles, whose steps
-// are the same, but for how they are solved.
+// Friction of a particle on the disc or sphere of a body in implicit steps: against two particles, whose
+// steps are the same except for the solver.
 #include <cmath>
 
 #include "support/bars.hpp"
@@ -48,7 +48,7 @@ TEST_CASE("in implicit steps a free body's disc and a particle part as two parti
     }
 }
 
-// The impulse of a step is the same for both; where it acts moves within a step.
+// The impulse of a step is the same for both; its point of action moves within a step.
 TEST_CASE("in implicit steps a particle and a body with friction conserve their momenta") {
   for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}})
     for (const Real phase : {0.0, 0.25, 0.5, 0.75}) {

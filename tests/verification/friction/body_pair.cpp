@@ -1,4 +1,4 @@
-// A particle that meets the disc or sphere of a body obliquely, with spins: against two particles.
+// Oblique impact of a particle on the disc or sphere of a body, with spins: against two particles.
 #include <cmath>
 
 #include "support/bars.hpp"
@@ -20,7 +20,7 @@ TEST_CASE("a heavy body's sphere and disc do to a particle what a particle does 
     }
 }
 
-// Of first order, as two particles are that slide in changing directions.
+// Of first order, as for two particles that slide in changing directions.
 TEST_CASE("a free body's disc and a particle part as two particles do, to the order of the method") {
   const auto errors_at = [](Real steps, int substeps) {
     Errors errors;
@@ -46,8 +46,9 @@ TEST_CASE("a free body's disc and a particle part as two particles do, to the or
   }
 }
 
-// A step of the particles sees the body where it was predicted, the next one begins at its corrected place.
-TEST_CASE("a particle and a free body with friction keep momentum and angular momentum to the method's order") {
+// A step of the particles uses the predicted pose of the body, the next one begins at its corrected pose.
+TEST_CASE(
+    "a particle and a free body with friction keep momentum and angular momentum to the method's order") {
   for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}})
     for (const int substeps : {1, 5}) {
       CAPTURE(offset.x, substeps);
@@ -76,7 +77,7 @@ TEST_CASE("a particle and a free body with friction keep momentum and angular mo
     }
 }
 
-// Both go through the side while they touch.
+// Both cross the side in contact.
 TEST_CASE("friction on a body across a periodic side is that in an open domain") {
   Meeting meeting{2,
                   {.position = {1.6, 0.1499, 0},

@@ -1,5 +1,5 @@
-// What is kept where particles rub: momentum and angular momentum of a free cluster, the balance of energies
-// of a gas in a box, and losses that never fall.
+// Conservation with friction: momentum and angular momentum of a free cluster, the energy balance of a gas
+// in a box, and dissipation that never decreases.
 #include <fmt/format.h>
 
 #include "support/bars.hpp"
@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-// Spheres that fly into each other, and apart again, in open space or between walls.
+// Spheres that collide and separate again, in an open domain or between walls.
 std::string cloud_deck(bool walls, Real step, const std::string& materials, const std::string& law) {
   std::string sides;
   for (const char* side : {"x_min", "x_max", "y_min", "y_max"})
@@ -55,7 +55,7 @@ seed = 11
 const std::string kSoft = "[[materials]]\nname = \"soft\"\nyoung_modulus = 2e7\npoisson_ratio = 0.3\n";
 const std::string kLinear = "stiffness = 2e5\nfriction = 0.4\n";
 
-// Of the sums over the particles of |m v| and |x x m v| + |I w|, which are some 40 kg m/s and 20 kg m^2/s.
+// Relative to the sums over the particles of |m v| and |x x m v| + |I w|, some 40 kg m/s and 20 kg m^2/s.
 Real changes(const ParticleLedger& now, const ParticleLedger& start) {
   return norm(now.momentum - start.momentum) / 40 + norm(now.angular_momentum - start.angular_momentum) / 20;
 }
@@ -120,8 +120,11 @@ TEST_CASE("the energies of a gas with friction balance") {
   }
 }
 
-// They take along what the springs of their contacts hold, and nothing goes on to push or turn what stays.
-TEST_CASE("particles that escape in frictional contact take their energy along: the balance stays of second order") {
+// Escaped particles take along the energy of their contact springs, and no force or torque remains on their
+// partners.
+TEST_CASE(
+    "particles that escape in frictional contact take their energy along: the balance stays of second "
+    "order") {
   const std::string deck = R"(
 gravity = [0.0, 0.0, -9.81]
 [space]
@@ -171,8 +174,8 @@ history_interval = 1e-2
   }
 }
 
-// Where within one step the limit falls below the old force and the way turns back by more than both, a
-// slider gives a little back (physics/spring_slider.hpp): next to no contact does.
+// A slider gives a little energy back where within one step the limit falls below the old force and the
+// displacement reverses by more than both (physics/spring_slider.hpp): hardly any contact does so.
 TEST_CASE("contacts give nothing back: losses never fall") {
   for (const auto& [materials, law] :
        {std::pair{std::string(), kLinear + "damping = 20.0\ntangential_damping_ratio = 0.2"},

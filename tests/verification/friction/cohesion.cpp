@@ -1,5 +1,4 @@
-// Surfaces that attract each other, through decks: on a wall and between two spheres, with friction and
-// without.
+// Surfaces with cohesion, through decks: on a wall and between two spheres, with and without friction.
 #include "physics/cohesion.hpp"
 
 #include <regex>
@@ -19,7 +18,7 @@ namespace {
 
 using Row = ReferenceTable::Row;
 
-// Time in which an impact would be over without attraction, about [s].
+// Approximate duration of the impact without cohesion [s].
 Real impact_time(const Row& row) { return 3 * row["d_max"] / row["v"]; }
 
 // An impact of a sphere on a wall, or of two spheres of twice its radius and mass, one of them at rest.
@@ -46,14 +45,14 @@ GrainDeck impact_deck_of(const Row& row, const std::string& more, Real parts, bo
   return deck;
 }
 
-// Where no pair rubs no deck may say how particles spin.
+// Without friction of any pair a deck must not give spins.
 Model model_without_spins(const GrainDeck& deck) {
   return model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""));
 }
 
 struct ImpactErrors {
-  Errors energy;  // of the rebound, over the impact's
-  Errors books;   // over the impact's energy
+  Errors energy;  // of the rebound, relative to the impact
+  Errors books;   // relative to the impact's energy
 };
 
 void add_impact(const Row& row, const std::string& more, Real parts, bool pair, ImpactErrors& errors) {
@@ -93,8 +92,10 @@ TEST_CASE("spheres with JKR contacts rebound from a wall and from each other, or
     }
 }
 
-// What a contact made and broken takes: 7.0922 (w^5 R*^4 / E*^2)^(1/3), whatever the path is.
-TEST_CASE("the ledger has the formation dissipation of JKR contacts, and their energy is negative while they last") {
+// Dissipation of formation and breaking of a JKR contact: 7.0922 (w^5 R*^4 / E*^2)^(1/3), whatever the path.
+TEST_CASE(
+    "the ledger has the formation dissipation of JKR contacts, and their energy is negative while they "
+    "last") {
   const ReferenceTable table("contact/jkr_points.csv");
   for (const auto& row : table.rows()) {
     const Real v = 2 * row["v_stick"], R = row["R_star"], h = std::abs(row["d_sep"]) / v / 50;
@@ -120,7 +121,7 @@ TEST_CASE("the ledger has the formation dissipation of JKR contacts, and their e
   }
 }
 
-// On a wall and between two, with a slide and spins; the energy of the springs does not leave the books.
+// On a wall and between two spheres, with sliding and spins; the energy of the springs stays in the balance.
 TEST_CASE("a JKR contact that breaks dissipates the energy of its springs") {
   const ReferenceTable table("contact/jkr_impact.csv");
   const auto& row = table.rows()[2];
@@ -131,7 +132,7 @@ TEST_CASE("a JKR contact that breaks dissipates the energy of its springs") {
     Grain& grain = deck.grains.back();
     grain.velocity.x = row["v"] / 2, grain.spin = (row["v"] / grain.radius) * Vec3{0.5, 0.3, 1};
     SimulationRun run(deck.model());
-    Real held = 0;  // by the springs when the neck was last there
+    Real held = 0;  // energy of the springs when the JKR contact last existed
     while (run.time() < deck.end * 0.99) {
       run.step();
       const ParticleLedger ledger = run.particle_ledger();
@@ -172,7 +173,7 @@ TEST_CASE("a JKR contact that exists at the start has its full energy") {
   CHECK(std::abs(run.balance_error()) < 1e-3 * row["W_stick"]);
 }
 
-// Of two spheres at rest, or of one and a wall, before any step.
+// Two spheres at rest, or one and a wall, before any step.
 TEST_CASE("the ledger has the cohesive part of the elastic energy, in touch and beyond") {
   constexpr Real R = 0.01, pull = 1, range = 1e-3, stiffness = 1e5;
   for (const std::string more : {"", "friction = 0.5\n"})
@@ -225,7 +226,7 @@ TEST_CASE("the energy of a JKR contact beyond Hertz's energy of its overlap is c
     CHECK(ledger.cohesion < 0);
     lowest = std::min(lowest, ledger.cohesion), thinnest = std::min(thinnest, d);
   }
-  CHECK(thinnest < 0);  // it is drawn out beyond touch, and holds
+  CHECK(thinnest < 0);  // it is stretched beyond touch, and holds
   CHECK(lowest < -1.5 * row["W_stick"]);
 }
 
@@ -266,7 +267,8 @@ TEST_CASE("an attraction with a range holds two separated spheres, up to its ene
 }
 
 TEST_CASE("friction of a contact under tension holds up to mu times its load and twice the pull-off force") {
-  // A sphere that hangs from a wall by its neck, drawn along it by gravity: JKR's limit is mu (F + 2 F_c).
+  // A sphere that hangs from a wall by JKR adhesion, pulled along it by gravity: JKR's limit is mu (F + 2
+  // F_c).
   const ReferenceTable table("contact/jkr_points.csv");
   const auto& row = table.rows()[0];
   const Real R = row["R_star"], Fc = row["Fc"], m = row["m_star"], mu = 0.5;

@@ -1,5 +1,5 @@
-// Springs of friction, rolling and twisting do not depend on the frame: a gas in a periodic box, at rest on
-// the whole and flying; a clump that holds together by attraction, at rest, flying, and turning as one body.
+// Springs of friction, rolling and twisting are frame-invariant: a gas in a periodic box, with and without a
+// uniform velocity; a cohesive clump at rest, in translation and in rigid rotation.
 #include <map>
 
 #include "dem/history/history_slots.hpp"
@@ -22,7 +22,7 @@ struct Sticking {
   Real press;  // overlap at the start over the radius
 };
 
-// Contacts that remember a spring and a moment, and one that remembers its neck, too.
+// Laws whose history is a spring and a moment, and one with the state of JKR, too.
 const std::vector<Sticking>& sticking_laws() {
   static const std::string rolls =
       "friction = 0.5\ntangential_damping_ratio = 0.3\nrolling_friction = 0.2\nrolling_damping_ratio = 0.3\n";
@@ -32,9 +32,9 @@ const std::vector<Sticking>& sticking_laws() {
   return laws;
 }
 
-// A sphere and its twelve neighbours in the densest lattice, every one with a velocity and a spin of its own,
-// so that the contacts slide and roll before they hold. Opposite ones have the same velocity and opposite
-// spins: there is no angular momentum, and the clump comes to rest.
+// A sphere and its twelve neighbours in the densest lattice, each with its own velocity and spin, so that
+// the contacts slide and roll before they stick. Opposite ones have the same velocity and opposite spins:
+// there is no angular momentum, and the clump comes to rest.
 Model clump(const Sticking& of) {
   GrainDeck deck{.law = of.law, .grains = {{.radius = kRadius, .mass = kMass}}, .step = kStep, .end = 10};
   deck.materials = of.materials, deck.plane = false;
@@ -43,7 +43,7 @@ Model clump(const Sticking& of) {
     for (const Real u : {-1, 1})
       for (const Real v : {-1, 1}) {
         const Real a[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 1 ? 0 : v, axis == 2 ? 0 : v};
-        const Real k = 2 * axis + (u == v);  // of the two that lie opposite
+        const Real k = 2 * axis + (u == v);  // of the two opposite ones
         deck.grains.push_back({.position = place * Vec3{a[0], a[1], a[2]},
                                .velocity = 0.1 * Vec3{std::sin(k), std::cos(2 * k), std::sin(3 * k)},
                                .spin = 4 * u * Vec3{std::cos(k), std::sin(2 * k), std::cos(3 * k)},
@@ -53,7 +53,7 @@ Model clump(const Sticking& of) {
   return deck.model();
 }
 
-// What contacts remember, in 3D two vectors of each.
+// Contact histories, in 3D two vectors each.
 struct Springs {
   std::vector<std::int64_t> keys;
   std::vector<Vec3> forces, moments;
@@ -72,7 +72,7 @@ Real largest(const std::vector<Vec3>& of) {
   return out;
 }
 
-// As they were before a turn.
+// Springs rotated back.
 Springs turned_back(Springs now, const Quaternion& turn) {
   const Quaternion back{turn.w, -turn.x, -turn.y, -turn.z};
   for (std::vector<Vec3>* all : {&now.forces, &now.moments})
@@ -80,7 +80,7 @@ Springs turned_back(Springs now, const Quaternion& turn) {
   return now;
 }
 
-// Over the largest.
+// Change relative to the largest spring.
 Real change(const Springs& now, const Springs& before) {
   REQUIRE(now.keys == before.keys);
   const auto of = [&](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -96,7 +96,7 @@ Quaternion turn_by(Vec3 omega, Real t) {
   return {std::cos(angle), s * omega.x, s * omega.y, s * omega.z};
 }
 
-// The clump at rest, with the springs that its shaking has left; about its centre, without what it drifts.
+// The clump at rest with its residual springs, about its centre, without its mean velocity.
 State settled(const Model& model) {
   SimulationRun run(model);
   run.run_until(1);
@@ -108,14 +108,14 @@ State settled(const Model& model) {
   return state;
 }
 
-// All with the velocity of one body that turns about the origin, which flies.
+// The state with the velocities of a rigid rotation about the origin plus a translation.
 State moving(State state, Vec3 velocity, Vec3 omega) {
   for (Particle& p : state.particles)
     p.velocity += velocity + cross(omega, p.position), p.angular_velocity += omega;
   return state;
 }
 
-// Spheres that rub on each other in a box without sides. flight: of all of them [m/s].
+// Spheres with friction in an open domain. flight: velocity of all of them [m/s].
 Model gas(Vec3 flight, const std::vector<std::string>& settings) {
   std::string sides;
   for (const char* side : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"})
@@ -149,7 +149,7 @@ seed = 5
   return model;
 }
 
-// By particle and partner: which image of it depends on the frame.
+// Springs by particle and partner; the partner's image depends on the frame.
 std::map<std::pair<GlobalId, GlobalId>, Vec3> springs_by_pair(const State& state) {
   std::map<std::pair<GlobalId, GlobalId>, Vec3> out;
   const KeptContacts& contacts = state.contacts;
@@ -165,7 +165,7 @@ std::map<std::pair<GlobalId, GlobalId>, Vec3> springs_by_pair(const State& state
 
 }  // namespace
 
-// Round-off alone tells the two apart, until collisions have made it grow.
+// Only round-off distinguishes the two, until collisions amplify it.
 TEST_CASE("the springs of a gas in a periodic box are the same under a uniform velocity") {
   for (const std::vector<std::string>& method : {std::vector<std::string>{}, implicit_steps(0)}) {
     CAPTURE(method.empty());
@@ -199,9 +199,9 @@ TEST_CASE("a translating clump keeps its springs as a static one does") {
   }
 }
 
-// Held together against m omega^2 r: the springs change by what that load takes, which is four times as much
-// at twice the rate; what is left without it is the order of the method. Springs that stayed where they were
-// would be wrong by more than their own length.
+// Held together against m omega^2 r: the springs change by that load, four times as much at twice the rate;
+// the remainder is the order of the method. Springs that are not rotated would be wrong by more than their
+// own length.
 TEST_CASE("a clump that rotates rigidly rotates its springs with it") {
   const Vec3 axis = (1 / std::sqrt(Real(14))) * Vec3{1, -2, 3};
   for (const Sticking& law : sticking_laws()) {

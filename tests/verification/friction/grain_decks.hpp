@@ -1,4 +1,4 @@
-// Decks of spheres that rub on the plane z = 0 or on each other, and what their runs end with.
+// Decks of spheres with friction on the plane z = 0 or on each other, and final states of their runs.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ struct GrainDeck {
   std::string materials = {};  // tables of "grain" and "plate"; none: one material
   Vec3 gravity = {};
   bool plane = true;
-  std::vector<std::string> settings = {};  // as of the command line
+  std::vector<std::string> settings = {};  // as on the command line
 
   std::string text() const {
     Vec3 lower = {1, 1, 1}, upper = {-1, -1, -1};
@@ -71,7 +71,7 @@ struct GrainDeck {
   }
 };
 
-// The material of the grains, and a plate that does not give way.
+// The material of the particles, and a rigid plate.
 inline std::string hertz_materials(Real young, Real poisson) {
   return fmt::format(
       "[[materials]]\nname = \"grain\"\nyoung_modulus = {}\npoisson_ratio = {}\n"

@@ -14,11 +14,11 @@ namespace {
 
 // All phases of a step in which a contact can begin are equally likely.
 constexpr Real kPhases[] = {0, 0.4, 0.8};
-// Least order where the dashpot, which sees the velocity of the middle of the step, matters most.
+// Smallest order where the dashpot, which uses the velocity at the middle of the step, matters most.
 constexpr Real kLaggingDashpot = 0.9;
 using Row = ReferenceTable::Row;
 
-// What the rows of a deck share: its law and materials.
+// Common data of the rows of a deck: its law and materials.
 struct Setting {
   std::string law, materials;
   bool operator<(const Setting& o) const { return law + materials < o.law + o.materials; }
@@ -38,8 +38,8 @@ Setting setting_of(const HertzImpact& impact, const Row& row) {
           hertz_materials(row["E"], row["nu"])};
 }
 
-// A deck of all the impacts of a setting, side by side, and the errors of its rebounds as rebound_error() has
-// them. Steps are counted in the shortest contact.
+// A deck of all the impacts of a setting, side by side, and the errors of its rebounds by rebound_error().
+// Steps are relative to the shortest contact.
 template <class Impact>
 void add_rebounds(const Setting& setting, const std::vector<Impact>& impacts, Real parts, const Words& words,
                   Errors& errors) {
@@ -163,7 +163,7 @@ TEST_CASE("oblique impacts on a wall in implicit steps: of second order, too whe
   }
 }
 
-// A spring that weakens while its contact parts is rescaled where the step starts.
+// A spring that softens while its contact opens is rescaled at the start of the step.
 TEST_CASE("oblique impacts on a wall after Hertz and Mindlin in implicit steps: of first order") {
   const auto steps = implicit_steps(-0.05);
   const auto check = [](const char* name, Bars coarse_bars, Bars fine_bars, const auto& at) {

@@ -1,4 +1,4 @@
-// Spheres with other moments of inertia than solid ones: from sliding to rolling on a wall.
+// Spheres with moments of inertia unlike solid ones: from sliding to rolling on a wall.
 #include "physics/particle_mass.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real kSpeed = 2, kRadius = 0.1, kMass = 1, kFriction = 0.25, kGravity = 9.81;
 
-// The slip's swings have died out at the end.
+// The oscillations of the slip have decayed at the end.
 SimulationRun slide(Real factor, std::vector<std::string> settings) {
   settings.push_back(fmt::format("particles.grain0.inertia_factor={}", factor));
   return SimulationRun(resting_model({.velocity = {kSpeed, 0, 0}, .radius = kRadius, .mass = kMass},
@@ -20,9 +20,8 @@ SimulationRun slide(Real factor, std::vector<std::string> settings) {
 
 }  // namespace
 
-// I = f m R^2. What slips and what rolls alike keep the angular momentum about the line of contact,
-// v + f R w = v0, so that the sphere rolls at v0/(1 + f) after v0 f/((1 + f) mu g), and f/(1 + f) of its
-// energy is lost.
+// I = f m R^2. Sliding and rolling both keep the angular momentum about the line of contact, v + f R w = v0,
+// so that the sphere rolls at v0/(1 + f) after v0 f/((1 + f) mu g), and f/(1 + f) of its energy is lost.
 TEST_CASE("a sphere that slides rolls in the end at a speed that its moment of inertia sets") {
   for (const std::vector<std::string>& method : {std::vector<std::string>{}, implicit_steps(0)})
     for (const Real factor : {Real(0.1), Real(2) / 3, Real(1)}) {
@@ -36,7 +35,7 @@ TEST_CASE("a sphere that slides rolls in the end at a speed that its moment of i
       CHECK(near(p.velocity.x, kSpeed - kFriction * kGravity * run.time(), {.absolute = 1e-4}));
       run.run();
       p = run.particles().at(0);
-      // Implicit steps end what swings at their tolerance.
+      // Implicit steps end oscillations at their tolerance.
       const Bars end = method.empty() ? Bars{.promise = 1e-10, .measured = 1e-12}
                                       : Bars{.promise = 1e-7, .measured = 1e-9};
       CHECK(keeps(p.velocity.x / rolling - 1, end));

@@ -1,5 +1,5 @@
-// The parts of the ledger that rotation adds, counted by hand from where the particles are, how they turn and
-// what their contacts remember.
+// The rotational parts of the ledger, computed independently from the particles' positions, spins and
+// contact histories.
 #include <fmt/format.h>
 
 #include "dem/history/history_slots.hpp"
@@ -75,7 +75,7 @@ Real wall_energy(const Particle& p) {
   return sum;
 }
 
-// contacts: those of the particles, two entries for each between two of them.
+// contacts: those of the particles, with two entries for each pair of particles.
 Parts parts_of(const std::vector<Particle>& particles, const KeptContacts& contacts) {
   Parts sum;
   for (const Particle& p : particles) {
@@ -95,7 +95,7 @@ Parts parts_of(const std::vector<Particle>& particles, const KeptContacts& conta
   return sum;
 }
 
-// Of the particles, about the origin [kg m^2/s].
+// Orbital angular momentum of the particles about the origin [kg m^2/s].
 Vec3 orbital(const std::vector<Particle>& particles) {
   Vec3 sum;
   for (const Particle& p : particles) sum += p.mass * cross(p.position, p.velocity);
@@ -122,7 +122,7 @@ TEST_CASE("the ledger's parts of rotation and springs are those counted one by o
     largest.friction = std::max(largest.friction, rotation.friction_springs / ledger.contact_elastic);
     largest.rolling = std::max(largest.rolling, rotation.rolling_springs / ledger.contact_elastic);
   }
-  // Each is a part that would be missed.
+  // Each part is significant.
   CHECK(largest.rotation > 1e-2);
   CHECK(largest.friction > 1e-2);
   CHECK(largest.rolling > 1e-3);
@@ -141,7 +141,8 @@ TEST_CASE("energy of frictional and rolling springs is dissipated or returned: t
   CHECK(coarse > 4 * fine);
 }
 
-TEST_CASE("a free collision converts orbital momentum into spins, and the ledger's angular momentum has both") {
+TEST_CASE(
+    "a free collision converts orbital momentum into spins, and the ledger's angular momentum has both") {
   Grain i{.velocity = {1, 0.5, 0}, .spin = {5, -20, 30}, .radius = 0.02, .mass = 0.1};
   Grain j{.velocity = {-1, 0, 0.3}, .spin = {-10, 0, 8}, .radius = 0.03, .mass = 0.2};
   i.position = {-0.03, 0, 0}, j.position = {0.021, 0.005, 0.01};

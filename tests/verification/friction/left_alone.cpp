@@ -1,4 +1,4 @@
-// Heaps: one left alone does not creep, and both sides of every contact of one that is shaken stay mirrored.
+// Heaps: an undisturbed one does not creep, and both sides of every contact of a shaken one stay mirrored.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -68,7 +68,8 @@ Real largest_move(const std::vector<Particle>& a, const std::vector<Particle>& b
 
 }  // namespace
 
-// Discs: spheres, without resistance to rolling and twisting, go on to roll on the floor and to spin on top.
+// With discs: spheres without resistance to rolling and twisting continue to roll on the floor and to spin
+// on top.
 TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1e5 steps") {
   Real step = kStep, stirred = 1e-23;  // [J]: implicit steps leave residuals
   std::vector<std::string> settings;
@@ -95,8 +96,8 @@ TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1
   CHECK(now.contact_loss - settled.contact_loss < 1e-15);
 }
 
-// Three spheres apart from each other under a fourth: each touches two others, about whose line it can roll.
-// What the pile has left of its fall it rolls on with: of that, nothing more comes.
+// Three separate spheres under a fourth: each touches two others, about whose line it can roll. The pile
+// continues to roll with what remains of its fall, and gains no energy from then on.
 TEST_CASE("a pile of spheres that nothing keeps from rolling gains no motion in 1e5 implicit steps") {
   for (const Real alpha : {0.0, -0.05, -0.3}) {
     CAPTURE(alpha);
@@ -139,7 +140,7 @@ density = 2500.0
     run.run();
     const std::vector<Particle> after = run.particles();
     CHECK(run.particle_ledger().contacts == 6);
-    std::vector<Particle> evenly = before;  // half way, had the velocity stayed
+    std::vector<Particle> evenly = before;  // half way at constant velocity
     for (std::size_t i = 0; i < evenly.size(); ++i)
       evenly[i].position = Real(0.5) * (before[i].position + after[i].position);
     const Real gained = 2 * largest_move(half_way, evenly) / (2 * kRadius);
@@ -165,7 +166,7 @@ TEST_CASE("both sides of every contact mirror each other after 1e5 steps of a sh
       contacts += std::ssize(state.contacts.keys);
       CHECK(run->particle_ledger().contact_loss > loss);
       loss = run->particle_ledger().contact_loss;
-      // Gravity swings to and fro: the heap slides, rolls and falls from wall to wall.
+      // Gravity oscillates: the heap slides, rolls and falls from wall to wall.
       model.gravity = {part % 2 == 0 ? 15.0 : -15.0, -9.81, dimension == 3 ? 3.0 : 0.0};
       run = std::make_unique<SimulationRun>(model, state);
     }

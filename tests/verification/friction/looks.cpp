@@ -1,5 +1,5 @@
-// What particles remember of the bodies that they rub after a step: that of the bodies' last place, however
-// often one looks.
+// Histories of frictional contacts with bodies after a step are those of the bodies' last pose, however
+// often it is queried.
 #include "support/backends.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -15,7 +15,7 @@ void shift_bodies(RememberingBox& box, Real shift, Real turn) {
   box.backend->list().place_bodies(box.motion);
 }
 
-// Of contacts with bodies alone.
+// Contacts with bodies alone.
 KeptContacts with_bodies(const RememberingBox& box) {
   const KeptContacts all = box.state().contacts;
   KeptContacts out;
@@ -31,7 +31,7 @@ KeptContacts with_bodies(const RememberingBox& box) {
   return out;
 }
 
-// The boxes with bodies that rub.
+// The boxes with bodies and friction.
 template <class Check>
 void for_each_box(const Check& check) {
   for (const BoxCase& c : kRubbingBoxes) {
@@ -76,7 +76,7 @@ TEST_CASE("contact histories of a step to the bodies' corrected pose are those o
     for (std::size_t k = 0; k < a.values.size() && k < b.values.size(); ++k)
       largest = std::max(largest, std::abs(a.values[k] - b.values[k])),
       scale = std::max(scale, std::abs(a.values[k]));
-    CHECK(largest < 1e-9 * scale);  // of where the bodies are; the corrections leave round-off
+    CHECK(largest < 1e-9 * scale);  // of the bodies' positions; corrections leave round-off
   });
 }
 

@@ -1,5 +1,5 @@
-// Which part of what contacts dissipate friction, rolling and twisting took, through decks: against closed
-// forms, and against all that was dissipated.
+// Parts of friction, rolling and twisting in the dissipation of contacts, through decks: against closed
+// forms, and against the total.
 #include <fmt/format.h>
 
 #include "physics/energy.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr Real kMass = 0.1, kRadius = 0.02, kSpeed = 1;
 
-// Since t = 0, of what has left, too [J].
+// Dissipation since t = 0, that of escaped particles included [J].
 RubbingLosses losses_of(SimulationRun& run) {
   RubbingLosses out = run.particle_ledger().rotation.losses;
   out.add(run.complete_state().carried_out.losses);
@@ -30,7 +30,8 @@ Real energy_of(const Particle& p) {
   return kinetic_energy(p.mass, p.velocity) + rotational_energy(p.moment_of_inertia, p.angular_velocity);
 }
 
-// 2/7 of the kinetic energy goes into the slide, with the dashpot what the spring has left then, too.
+// 2/7 of the kinetic energy is dissipated in sliding, with the dashpot also the remaining energy of the
+// spring.
 Real sliding_error(Real step, const std::vector<std::string>& settings) {
   const Grain grain{.velocity = {kSpeed, 0, 0}, .radius = kRadius, .mass = kMass};
   SimulationRun run(resting_model(grain, 0.3, 1e5, 0.2, inclined_gravity(0), step, 0.3, settings));
@@ -56,7 +57,7 @@ SimulationRun run_on_wall(const std::string& law, Vec3 velocity, Vec3 spin, Real
   return SimulationRun(deck.model());
 }
 
-// Spheres that fly about between walls and leave by one side. rubs: keys of the pair.
+// Agitated spheres between walls that escape through one side. rubs: keys of the pair.
 Model leaving_model(const std::string& rubs, const std::vector<std::string>& settings) {
   return model_of(R"(
 [space]
@@ -142,7 +143,7 @@ TEST_CASE("a sphere that spins about the vertical loses its energy to twisting a
   CHECK((losses.of[kFrictionLoss] == 0 && losses.of[kRollingLoss] == 0));
 }
 
-// Undamped normal forces lose nothing: the kinds are all. With a damper they are what is left beside it.
+// Without normal damping the parts are the total. With a damper they are the rest beside it.
 TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave, too") {
   const std::vector<std::string> hht = {"integrator.particles=hht", "time.control=fixed"};
   const std::string rolling = "rolling_friction = 0.2\nrolling_damping = 1e-3\ntwisting_friction = 0.3\n";

@@ -1,4 +1,4 @@
-// A particle that meets the disc or sphere of a body obliquely, with spins, or a particle in its place.
+// Oblique impact of a particle on the disc or sphere of a body, with spins, or on a particle in its place.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace scree {
 
-// One that meets the particle: a body, or another particle.
+// The partner of the particle: a body, or another particle.
 struct Partner {
   Vec3 position, velocity;
   Real spin, radius, mass, inertia;  // spin: about z [rad/s]
@@ -27,9 +27,9 @@ struct Meeting {
   Real step, end;
   int substeps = 1;
   std::string sides{};
-  Real half = 2;  // of the space [m]
+  Real half = 2;  // half width of the domain [m]
   std::string integrator = "particles = \"velocity-verlet\"\n";
-  std::vector<std::string> settings{};  // as of the command line
+  std::vector<std::string> settings{};  // as on the command line
 
   std::string vector(Vec3 a) const { return dimension == 3 ? toml(a) : fmt::format("[{}, {}]", a.x, a.y); }
   std::string spin(Vec3 w) const { return dimension == 3 ? toml(w) : fmt::format("[{}]", w.z); }
@@ -78,7 +78,7 @@ inline Momenta momenta(SimulationRun& run, const Partner& partner) {
           particles.angular_momentum + cross({q[0], q[1], 0}, of_body) + Vec3{0, 0, partner.inertia * v[2]}};
 }
 
-// Two discs that are equal and meet obliquely, or a disc and one beside the centre of its body.
+// Two equal discs in an oblique impact, or a disc and one off the centre of its body.
 inline Meeting disc_meeting(Real steps, int substeps, Real phase, Vec3 offset) {
   constexpr Real R = 0.05;
   const Vec3 normal{0.8, 0.6, 0};
@@ -100,14 +100,14 @@ inline Real difference(const Particle& p, const Particle& q, Real radius) {
   return std::max(norm(p.velocity - q.velocity), radius * norm(p.angular_velocity - q.angular_velocity));
 }
 
-// A body so heavy that it goes on as it came: its centre moves and turns like a particle's. What a particle
-// does that rubs on it, against one that rubs on such a particle.
+// A body so heavy that its velocity hardly changes: its centre moves and rotates like a particle's. The
+// motion of a particle with friction on it, against that on an equally heavy particle.
 inline constexpr const char* kHeavyLaws[] = {
     "stiffness = 1e5\ndamping = 30.0\nfriction = 0.4\ntangential_stiffness = 8e4\n"
     "tangential_damping_ratio = 0.2\n",
     "stiffness = 1e5\nfriction = 5.0\ntangential_stiffness = 8e4\n"};
 struct HeavyMeeting {
-  Real apart = 0, turned = 0;                   // most of both particles, of the spin of one [m/s], [rad/s]
+  Real apart = 0, turned = 0;  // largest difference of both particles, and of the spin of one [m/s], [rad/s]
   Real loss_on_body = 0, loss_on_particle = 0;  // dissipated [J]
 
   HeavyMeeting(int dimension, const char* law, Real step, const std::string& integrator = {}) {

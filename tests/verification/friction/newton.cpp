@@ -1,5 +1,5 @@
-// Newton iterations of implicit steps in a pack that rubs, against those of one that does not.
-// With -s the test says how many, and with SCREE_MEASURED it leaves the numbers in src/dem/README.md.
+// Newton iterations of implicit steps in a pack with friction, against those without. With -s the test
+// prints them, and with SCREE_MEASURED it writes the numbers of src/dem/README.md.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -93,7 +93,7 @@ TEST_CASE("Newton iterations of a pack with friction") {
   }
 }
 
-// What flies off has ever smaller accelerations, at last beyond the range of single precision.
+// A separated particle has ever smaller accelerations, finally beyond the range of single precision.
 TEST_CASE("a sphere that rebounds from a wall with friction needs few products") {
   SimulationRun run(model_of(R"(
 [space]

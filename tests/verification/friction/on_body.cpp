@@ -1,5 +1,4 @@
-// Discs that rub on the disc of a body, which holds still, goes along or turns: against what is known of
-// them.
+// Friction of discs on the disc of a body that is fixed, translates or rotates: against closed forms.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +19,7 @@ namespace {
 
 constexpr Real kGravity = 9.81;
 
-// A disc on one so large that it is a plane, both as fast as the belt, and the disc by v0 faster.
+// A disc on one so large that it is a plane, both as fast as the belt, and the disc faster by v0.
 constexpr Real kBelt = 1e5, kRadius = 0.1, kMass = 1, kFriction = 0.25, kStiffness = 1e5, kSpeed = 2;
 Model belt_model(Real belt, Real end, const std::vector<std::string>& settings) {
   return model_of(fmt::format(R"(
@@ -74,8 +73,8 @@ history_contacts = ["belt"]
                   settings);
 }
 
-// A disc between two of one body, which turns at kHeldTurn: they hold it at kOut from the axle, where it
-// wants to be farther out.
+// A disc between two discs of one body, which rotates at kHeldTurn: they hold it at kOut from the axle
+// against the centrifugal force.
 constexpr Real kHeldTurn = 5, kOut = 0.3, kHolder = 0.05, kPressed = 2e-4;
 Model turning_model(int dimension, const std::vector<std::string>& settings) {
   const Real apart = kHolder + kRadius - kPressed;
@@ -133,7 +132,7 @@ mass = {m}
 
 constexpr Real kWheel = 0.09;
 
-// A disc on a wheel that turns under it, held by a smooth wall.
+// A disc on a wheel that rotates under it, held by a frictionless wall.
 Model wheel_model(Real turn, const std::vector<std::string>& settings) {
   return model_of(fmt::format(R"(
 gravity = [0.0, -{g}]
@@ -193,7 +192,7 @@ history_contacts = ["wheel"]
                   settings);
 }
 
-// Implicit ones are some times longer.
+// Settings of the integrator; implicit steps are some times longer.
 std::vector<std::string> steps_of(std::string_view integrator) {
   if (integrator == "explicit") return {};
   std::vector<std::string> settings = implicit_steps(-0.05);
@@ -201,10 +200,10 @@ std::vector<std::string> steps_of(std::string_view integrator) {
   return settings;
 }
 
-// As the body sees it.
+// The held disc in the body's frame.
 struct Held {
   Vec3 place, spring;  // [m], on the first surface [N]
-  Real turned;         // of the disc against the body [rad], small
+  Real turned;         // rotation of the disc against the body [rad], small
 
   explicit Held(SimulationRun& run) {
     const State& state = run.complete_state();
@@ -220,7 +219,7 @@ struct Held {
 
 }  // namespace
 
-// As on a wall, seen from the belt: it rolls at two thirds of v0 after v0 / (3 mu g).
+// As on a wall, relative to the belt: it rolls at two thirds of v0 after v0 / (3 mu g).
 TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whether that moves or not") {
   const char* integrator = GENERATE("explicit", "implicit");
   const Real belt = GENERATE(0.0, -2.0, 3.0);
@@ -246,7 +245,8 @@ TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whet
   CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-3, .measured = 7.4e-5}));
 }
 
-TEST_CASE("the friction of a disc brakes a wheel that rotates under it, and the wheel's motor does that work") {
+TEST_CASE(
+    "the friction of a disc brakes a wheel that rotates under it, and the wheel's motor does that work") {
   constexpr Real kTurn = -50;
   const char* integrator = GENERATE("explicit", "implicit");
   CAPTURE(integrator);
@@ -255,7 +255,7 @@ TEST_CASE("the friction of a disc brakes a wheel that rotates under it, and the 
   const Real work = run.ledger().driver_work, from = run.time();
   const std::vector<Real> on_wheel = run.contact_values();
   run.run();
-  REQUIRE(kRadius * run.particles().at(0).angular_velocity.z < -kWheel * kTurn / 2);  // it slides yet
+  REQUIRE(kRadius * run.particles().at(0).angular_velocity.z < -kWheel * kTurn / 2);  // it is still sliding
   const Real torque = kFriction * kMass * kGravity * kWheel;
   CHECK(near(on_wheel[5], torque, {.relative = 1e-3}));
   CHECK(near(run.ledger().driver_work - work, -torque * kTurn * (run.time() - from), {.relative = 1e-3}));
@@ -273,13 +273,13 @@ TEST_CASE("a disc held by friction on a rotating body stays in place, with its s
   const Real turn = 2 * std::numbers::pi_v<Real> / kHeldTurn;
   run.run_until(2 * turn);  // it has come to rest on the body
   const Held before(run);
-  // What keeps it on its circle, half of it each.
+  // The centripetal force, half from each.
   CHECK(near(norm(before.spring), kMass * kHeldTurn * kHeldTurn * kOut / 2, {.relative = 1e-2}));
   run.run_until(12.3 * turn);
   const Held after(run);
   CHECK(near(after.place, before.place, {.absolute = 1e-9}));
   CHECK(near(after.spring, before.spring, {.relative = 1e-6}));
-  // Of an orientation that turns by 2 atan(h w / 2) in a step: (h w)^3 / 12 too little.
+  // Error of an orientation that rotates by 2 atan(h w / 2) in a step: (h w)^3 / 12 too little.
   const Real turned = 10.3 * turn * kHeldTurn, in_step = run.step() * kHeldTurn;
   CHECK(near(after.turned, before.turned, {.absolute = 2 * turned * in_step * in_step / 12}));
   if (dimension == 3) CHECK(after.place.z == 0);

@@ -13,17 +13,17 @@ namespace scree {
 
 namespace {
 
-// m_t = 2/7 m: what a step is compared with.
+// Period of slip with m_t = 2/7 m, the reference of step lengths.
 Real slip_period(Real mass, Real stiffness) { return swing_period(2 * mass / 7, stiffness); }
 
-// The longest step that goes into a time without remainder, so that tables' times are steps' [s].
+// The longest step that divides a time without remainder, so that tables' times are ends of steps [s].
 Real step_in(Real time, Real longest) { return time / std::ceil(time / longest); }
 
 struct RollingErrors {
-  Errors speed, place, loss;  // over v0; over x_roll; over the slider's loss
+  Errors speed, place, loss;  // relative to v0, to x_roll, and to the slider's loss
 };
 
-// After the slip a sphere swings about v = 5/7 v0: five periods of it.
+// After the slip a sphere oscillates about v = 5/7 v0: five periods of it.
 void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors& errors,
                        const std::vector<std::string>& settings = {}) {
   const Real v0 = row["v0"], t_roll = row["t_roll"], period = row["period"];
@@ -42,7 +42,7 @@ void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors
   errors.loss.add(run.particle_ledger().contact_loss / row["slip_loss"] - 1);
 }
 
-// Places, speeds, spins and springs down inclines, each over itself.
+// Errors of positions, speeds, spins and springs down inclines, each relative to its own value.
 Errors incline_errors(Real parts, const std::vector<std::string>& settings = {}) {
   const ReferenceTable table("contact/incline.csv");
   Errors errors;
@@ -139,8 +139,8 @@ TEST_CASE("sliding, rolling and inclines in implicit steps") {
   }
 }
 
-// I = m R^2 / 2. What slips and what rolls alike keep the angular momentum about the line of contact:
-// v + R w / 2 = v0, so that the disc rolls at 2/3 v0 after v0 / (3 mu g), and a third of its energy is lost.
+// I = m R^2 / 2. Sliding and rolling both keep the angular momentum about the line of contact: v + R w / 2 =
+// v0, so that the disc rolls at 2/3 v0 after v0 / (3 mu g), and a third of its energy is lost.
 TEST_CASE("a disc that slides on a wall rolls in the end, at two thirds of its speed") {
   constexpr Real v0 = 2, R = 0.1, m = 1, mu = 0.25, g = 9.81;
   Model model = model_of(fmt::format(R"(

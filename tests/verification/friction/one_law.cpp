@@ -1,5 +1,5 @@
-// A dashpot beside the slider of friction: one law, whichever integrator takes the steps. Oblique impacts in
-// steps that resolve them, explicit and implicit.
+// A dashpot beside the slider of friction: the same law in all integrators. Oblique impacts in steps that
+// resolve them, explicit and implicit.
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kSpeed = 10;            // of the meetings' partners against each other, about [m/s]
+constexpr Real kSpeed = 10;            // relative speed of the partners, about [m/s]
 constexpr Real kOneLaw = 0.01;         // of the speed before an impact
 constexpr Real kExplicitParts = 3000;  // of the contact time
 
@@ -30,8 +30,8 @@ std::vector<Law> laws_of(Real ratio, Real friction) {
   return {{"stiffness = 1e6\n" + rubs, "", linear}, {rubs, hertz_materials(1e8, 0.3), 2.2e-3}};
 }
 
-// Spheres of 1 kg at several angles to the normal of a wall, without spin and with spins about all axes: a
-// slide that changes its direction.
+// Spheres of 1 kg at several angles to the normal of a wall, without spin and with spins about all axes:
+// sliding in changing directions.
 GrainDeck impacts_on_wall(const Law& law, Real step) {
   GrainDeck deck{.law = law.keys, .grains = {}, .step = step, .end = 3 * law.contact_time};
   deck.materials = law.materials;
@@ -81,8 +81,8 @@ TEST_CASE("with a dashpot of friction rebounds from a wall are those of explicit
       }
 }
 
-// Right: 0.482 of the speed along the floor is left where the spring slides back at its limit, with any ratio
-// whose dashpot has nothing to act on in between.
+// Exact: 0.482 of the speed along the floor remains where the spring slides back at its limit, with any
+// ratio whose dashpot has nothing to act on in between.
 TEST_CASE("a ball that hits a rough floor at 60 degrees keeps the same speed along it in all steps") {
   const Real tangent = std::sqrt(Real(3));
   for (const auto& [ratio, kept] : {std::pair{0.1, 0.482}, {0.3, 0.482}, {1.0, 0.485}}) {
@@ -97,13 +97,13 @@ TEST_CASE("a ball that hits a rough floor at 60 degrees keeps the same speed alo
     for (const std::vector<std::string>& settings :
          {std::vector<std::string>{}, implicit_steps(-0.05), implicit_steps(0)})
       CHECK(near(after(deck, settings)[0].velocity.x / (5 * tangent), kept, {.absolute = 1.5e-3}));
-    // Adaptive steps are as long as the motion lets them.
+    // Adaptive steps are as long as the motion permits.
     const Real adaptive = after(deck, {"integrator.particles=hht", "time.control=adaptive"})[0].velocity.x;
     CHECK(near(adaptive / (5 * tangent), kept, {.absolute = kOneLaw}));
   }
 }
 
-// Unlike partners, spins that turn against each other; a body instead of the second particle.
+// Unequal partners with opposite spins; a body instead of the second particle.
 TEST_CASE("with a frictional dashpot pairs separate alike in explicit and implicit steps, and on bodies") {
   for (const int dimension : {2, 3})
     for (const Real ratio : {0.1, 1.0})
@@ -136,7 +136,7 @@ TEST_CASE("with a frictional dashpot pairs separate alike in explicit and implic
               "one_law/pair", "",
               at_most(difference(pair.particles()[k], exact.particles()[k], 0.05) / kSpeed, kOneLaw)));
         if (dimension == 3) continue;
-        // A body in the plane, which turns about z alone, and the particle that it replaces.
+        // A planar body, which rotates about z alone, and the particle that it replaces.
         SimulationRun on_body(meeting.with_body());
         on_body.run();
         REQUIRE(on_body.particle_ledger().contacts == 0);

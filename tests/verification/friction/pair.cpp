@@ -1,4 +1,4 @@
-// Two free spheres of unequal sizes that meet obliquely with spins, through decks.
+// Oblique impact of two free spinning spheres of unequal sizes, through decks.
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -11,14 +11,14 @@ namespace scree {
 namespace {
 
 constexpr Real kPhases[] = {0, 0.2, 0.4, 0.6, 0.8};
-// Of sums over hundreds of steps, over momenta of some 1 kg m/s and their moments at arms of 1 cm.
+// Of sums over hundreds of steps, relative to momenta of some 1 kg m/s and their moments at arms of 1 cm.
 constexpr Real kConserved = 1e-13;
-// Of implicit steps, whose residuals are left at 1e-8 of the forces.
+// For implicit steps, whose residuals are 1e-8 of the forces.
 constexpr Real kSolved = 1e-8;
 
 struct PairErrors {
-  Errors motion;  // over the speed of approach of the surfaces, some 1 m/s
-  Errors loss;    // books against the table's, over the kinetic energy
+  Errors motion;  // relative to the surfaces' speed of approach, some 1 m/s
+  Errors loss;    // accounted dissipation against the table's, over the kinetic energy
   // Changes of the momentum, some 1 kg m/s, and of the angular momentum, some 1e-2 kg m^2/s.
   Errors momentum, turning;
 };
@@ -113,7 +113,7 @@ TEST_CASE("two free spheres with a linear spring and slider") {
   }
 }
 
-// As in explicit steps, a slide that changes its direction is of first order.
+// As in explicit steps, sliding in changing directions is of first order.
 TEST_CASE("two free spheres in implicit steps, which keep angular momentum to second order") {
   for (const Real alpha : {0.0, -0.05}) {
     CAPTURE(alpha);

@@ -1,4 +1,4 @@
-// A sphere that lies on the wall z = 0 with its overlap at rest, through a deck: its motion at given times.
+// A sphere on the wall z = 0 with its static overlap, through a deck: its motion at given times.
 #pragma once
 
 #include <cmath>
@@ -22,10 +22,10 @@ inline Model resting_model(Grain grain, Real friction, Real stiffness, Real damp
   return deck.model();
 }
 
-// At the step of length h that is nearest to a time t, carried there by what the state knows of its rates.
+// State at the step of length h that is nearest to a time t, extrapolated there by its rates.
 struct PlaneState {
   Real x, v, w;        // [m], [m/s], [rad/s]
-  Real spring, force;  // of the slider; along the plane, gravity included [N]
+  Real spring, force;  // spring: of the slider; force: along the plane, gravity included [N]
 
   PlaneState(SimulationRun& run, Real t, Real h) {
     run.run_until(t - h / 2);

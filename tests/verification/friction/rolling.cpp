@@ -17,7 +17,7 @@ constexpr Real kMass = 0.1, kRadius = 0.02, kGravity = 9.81;
 constexpr Real kSpeed = 0.3, kRollingFriction = 0.1;  // of epsd_a and epsd_b
 constexpr Real kLargestMoment = kRollingFriction * kRadius * kMass * kGravity;
 
-// A sphere that rolls on the wall z = 0 with its overlap at rest. more: keys of the pair beside a stiffness.
+// A sphere that rolls on the wall z = 0 with its static overlap. more: keys of the pair beside a stiffness.
 Model rolling_model(Vec3 velocity, const std::string& more, Vec3 gravity, Real step, Real end) {
   Grain grain{.velocity = velocity, .spin = {0, velocity.x / kRadius, 0}, .radius = kRadius, .mass = kMass};
   grain.position = {0, 0, kRadius + kMass * gravity.z / kRestStiffness};
@@ -46,7 +46,7 @@ Errors epsd_errors(const std::string& table_name, Real damping_ratio, Real parts
     for (std::size_t k = first; k < last; ++k) {
       const auto& row = table.rows()[k];
       const PlaneState at(run, row["t"], h);
-      errors.add((at.x - row["x"]) / 0.064);  // the way until it stops
+      errors.add((at.x - row["x"]) / 0.064);  // displacement until it stops
       errors.add((at.v - row["v"]) / kSpeed);
       errors.add(kRadius * (at.w - row["w"]) / kSpeed);
       errors.add((held_moment(run) - row["Mk"]) / kLargestMoment / 10);  // at the nearest step

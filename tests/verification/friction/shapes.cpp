@@ -1,5 +1,5 @@
-// Bodies that are spheres, and blocks of them, on planes and on the same planes of triangles: they slide,
-// roll and stick.
+// Bodies of one sphere, and blocks of spheres, on planes and on the same planes of triangles: sliding,
+// rolling and sticking.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,14 +26,14 @@ const std::vector<std::string> kMethods = {"velocity-verlet", "hht"};
 
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
-// A floor z = 0 that is turned, and what lies on it.
+// A rotated floor z = 0, and the deck on it.
 struct Floor {
   Mat3 turn = identity3();
   bool of_triangles = false;
   Vec3 normal() const { return turn * Vec3{0, 0, 1}; }
 };
 
-// slope: angle of gravity to the floor's normal, down along its x [rad]; extra: keys of the pair.
+// slope: angle between gravity and the floor's normal, down along its x [rad]; extra: keys of the pair.
 Model model_on(const Floor& floor, const std::string& body, Real slope, Real end, const std::string& method,
                const std::string& extra = "") {
   const Vec3 gravity = kGravity * (floor.turn * Vec3{std::sin(slope), 0, -std::cos(slope)});
@@ -77,7 +77,7 @@ std::string ball(const Floor& floor, Real speed = kSpeed) {
                       fmt::format("[{{ radius = {} }}]", kRadius));
 }
 
-// Four spheres below a heavy plate.
+// Four spheres under a heavy plate.
 constexpr Real kFoot = 0.05;
 std::string block(const Floor& floor, Real slope) {
   const Real sunk = kMass * kGravity * std::cos(slope) / 4 / kStiffness;
@@ -92,7 +92,7 @@ Vec3 velocity(const SimulationRun& run) { return run.multibody().motion(run.bodi
 
 const Floor kTilted{rotation_matrix(exponential({0.3, -0.7, 0.5}))};
 
-// On an incline of 0.3 rad, after it has settled; the time in s.
+// On an incline of 0.3 rad, after settling; the time in s.
 void check_creep(Real time) {
   constexpr Real kSlope = 0.3, kSettling = 1.2;
   for (const std::string& method : kMethods)
@@ -128,7 +128,7 @@ TEST_CASE("a body's sphere goes from sliding to rolling with 5/7 of its speed, o
     CHECK(mesh.bodies().velocity == plane.bodies().velocity);
     CHECK(near(position(tilted_mesh), position(tilted_plane), {.relative = 1e-10}));
     CHECK(near(velocity(tilted_mesh), velocity(tilted_plane), {.relative = 1e-10}));
-    // What of the kinetic energy sliding takes: 2/7.
+    // Fraction of the kinetic energy dissipated by sliding: 2/7.
     const ParticleLedger ledger = plane.particle_ledger();
     CHECK(near(ledger.rotation.losses.of[kFrictionLoss], kMass * kSpeed * kSpeed / 7, {.relative = 1e-3}));
     CHECK(ledger.rotation.losses.of[kFrictionLoss] <= ledger.contact_loss);
@@ -162,7 +162,7 @@ TEST_CASE("a block of four spheres below its angle of friction does not creep fo
   check_creep(100);
 }
 
-// EPSD springs: the sphere rocks, and stays.
+// EPSD springs: the sphere oscillates, and stays in place.
 TEST_CASE("a body's sphere that resists rolling stays on an incline below its angle of rolling friction") {
   constexpr Real kPush = 0.3, kEnd = 3, kRollingFriction = 0.2, kSteep = 0.25;
   const std::string rolling =

@@ -1,4 +1,4 @@
-// What friction alone holds: piles, a sphere between two walls, a column of spheres, a heap left alone.
+// Equilibria by friction alone: piles, a sphere between two walls, a column of spheres, an undisturbed heap.
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr Real kRadius = 0.05;  // [m]
 
-// Bodies of 1 kg on a floor with a friction of its own, at touch; damped well below their first swing.
+// Bodies of 1 kg on a floor with its own friction, in touch; damped well below their first oscillation.
 std::string pile_deck(int dimension, const std::string& positions, Real friction, Real floor_friction) {
   const std::string zero = dimension == 2 ? "" : ", 0.0", far = dimension == 2 ? "" : ", 1.0";
   return fmt::format(R"(
@@ -61,7 +61,7 @@ material = "body"
                      fmt::arg("positions", positions), fmt::arg("radius", kRadius));
 }
 
-// One on so many that touch each other, each at an angle phi from the vertical.
+// One sphere on several that touch each other, each at an angle phi from the vertical.
 std::string pile_positions(int lower, Real phi) {
   std::string out = "[";
   const Real reach = 2 * kRadius * std::sin(phi);
@@ -73,7 +73,7 @@ std::string pile_positions(int lower, Real phi) {
   return out + fmt::format("[0.0, {}{}]]", kRadius * (1 + 2 * std::cos(phi)), lower == 2 ? "" : ", 0.0");
 }
 
-// How far the upper one has come down, in radii.
+// Descent of the upper sphere, in radii.
 Real sunk(int lower, Real phi, Real friction, Real floor_friction,
           const std::vector<std::string>& settings = {}) {
   SimulationRun run(model_of(
@@ -87,7 +87,8 @@ Real sunk(int lower, Real phi, Real friction, Real floor_friction,
 // Implicit steps are as long as the fastest contact.
 TEST_CASE("the smallest piles stand above their limits of friction, and not below") {
   const ReferenceTable table("contact/piles.csv");
-  constexpr Real kMargin = 0.05;  // of the limits; soft contacts shift them by the overlap over the radius
+  constexpr Real kMargin =
+      0.05;  // relative to the limits; soft contacts shift them by the overlap over the radius
   std::vector<std::string> settings;
   SECTION("in explicit steps") {}
   SECTION("in implicit steps") {
@@ -140,7 +141,7 @@ mass = {m}
                        fmt::arg("kn", row["kn"]), fmt::arg("friction", friction), fmt::arg("kt", row["kt"]),
                        fmt::arg("R", R), fmt::arg("m", row["m"]));
   };
-  // Dropped suddenly it needs twice the friction that holds it at rest.
+  // Dropped suddenly it needs twice the friction that holds it statically.
   SECTION("held: it swings about its sag without turning, to second order") {
     const auto errors_at = [&](Real parts) {
       Errors errors;
@@ -227,7 +228,7 @@ history_contacts = ["x_min", "x_max", "z_min"]
   CHECK(keeps(places.worst(), {.promise = 1e-3, .measured = 1e-8}));
   CHECK(keeps(turns.worst(), {.promise = 1e-3, .measured = 2.6e-7}));
   CHECK(run.particle_ledger().kinetic < 1e-24);  // of some 1e-6 J
-  // On the walls, the opposite of what is on the spheres; both in the sums over a wall's contacts.
+  // Forces on the walls, opposite to those on the spheres; both in the sums over a wall's contacts.
   const ReferenceTable contacts("contact/zigzag_contacts.csv");
   Vec3 expected[3] = {};
   for (const auto& row : contacts.rows()) {

@@ -1,5 +1,5 @@
-// The step limit of a dense lattice that rubs: all spheres turning alike, the fastest mode of stiff
-// tangential springs, stay as they are below it and run away above it.
+// The step limit of a dense lattice with friction: rotation of all spheres alike, the fastest mode of stiff
+// tangential springs, is stable below it and unstable above.
 #include <fmt/format.h>
 
 #include "model/checks/limits.hpp"
@@ -15,7 +15,7 @@ namespace {
 constexpr int kCells = 3;  // cubes of the face-centred cubic lattice along each axis
 constexpr Real kRadius = 0.05, kStiffness = 1e5, kMass = 1, kSpin = 1e-6;
 
-// Pressed together by 0.1 % of the radius, so that what turns does not slide.
+// Pressed together by 0.1 % of the radius, so that rotations do not slide.
 std::string lattice_deck(Real slip_stiffness, Real damping_ratio, Real step, int steps) {
   const Real edge = 2 * kRadius * Real(0.999) * std::sqrt(Real(2)), length = kCells * edge;
   std::string positions;
@@ -60,7 +60,7 @@ angular_velocity = [{spin}, 0.0, 0.0]
                      fmt::arg("spin", kSpin));
 }
 
-// Largest spin within 200 steps, over that of the start. Where it runs away it ends by sliding.
+// Largest spin within 200 steps, relative to the start. Instability ends in sliding.
 Real growth(Model model, Real step) {
   model.time.step = step, model.time.end = 200 * step;
   SimulationRun run(model);
@@ -91,7 +91,7 @@ TEST_CASE("a dense lattice with friction is stable up to the stated step, and no
   }
 }
 
-// Squares of the fastest: 16 k_t / (m f) of spins, 8 (K + k_t) / m of layers.
+// Squares of the fastest frequencies: 16 k_t / (m f) of spins, 8 (K + k_t) / m of layers.
 TEST_CASE("a small moment of inertia shortens the step in a dense lattice, a large one does not") {
   for (const auto& [factor, square] : {std::pair<Real, Real>{0.1, 160}, {1, 16}}) {
     CAPTURE(factor);

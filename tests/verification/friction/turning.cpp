@@ -1,4 +1,4 @@
-// Spheres that turn freely: spins stay to the bit, and orientations follow them.
+// Freely rotating spheres: spins are constant to the bit, and orientations follow them.
 #include <array>
 #include <numbers>
 
@@ -29,7 +29,7 @@ SimulationRun& run_of(std::unique_ptr<SimulationRun>& run, Real h) {
   return *run;
 }
 
-// Angle between the orientation and the turn by spin * t [rad].
+// Angle between the orientation and the rotation by spin * t [rad].
 Real misturn(const Quaternion& q, Vec3 spin, Real t) {
   const Real angle = norm(spin) * t / 2, s = std::sin(angle) / norm(spin);
   const Quaternion exact{std::cos(angle), s * spin.x, s * spin.y, s * spin.z};
@@ -38,7 +38,7 @@ Real misturn(const Quaternion& q, Vec3 spin, Real t) {
 
 }  // namespace
 
-// A step turns by 2 atan(h w / 2) or the like: (h w)^3 / 48 too little, of second order over a time.
+// A step rotates by 2 atan(h w / 2) or the like: (h w)^3 / 48 too little, of second order over a time.
 TEST_CASE("free spheres keep their spins, and their orientations follow them to second order") {
   Errors errors[2];
   for (int fine = 0; fine < 2; ++fine) {
@@ -51,7 +51,7 @@ TEST_CASE("free spheres keep their spins, and their orientations follow them to 
       const Real w = norm(kFreeSpins[k]), promised = kEnd * w * (h * w) * (h * w) / 48;
       const Real error = misturn(after[k].orientation, kFreeSpins[k], kEnd);
       CAPTURE(k, fine, error, promised);
-      CHECK(error < 1.01 * promised + 1e-7);  // acos() next to 1
+      CHECK(error < 1.01 * promised + 1e-7);  // acos() near 1
       if (w > 100) errors[fine].add(error);
     }
   }

@@ -1,5 +1,5 @@
-// Two bodies that are a disc or a sphere each and meet obliquely, with spins: against two particles of the
-// same masses and moments of inertia.
+// Oblique impact of two spinning bodies, a disc or a sphere each: against two particles of the same masses
+// and moments of inertia.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ const std::string kStuck = "stiffness = 1e6\nfriction = 1.0\ntangential_stiffnes
                       "stiffness = 1e6\ndamping = 100.0\nfriction = 0.3\ntangential_stiffness = 8e5\n"
                       "tangential_damping_ratio = 0.2\n";
 
-// One of the two; of discs the spin is about z. offset: of the shape from the body's centre [m].
+// One of the two bodies; with discs the spin is about z. offset: of the shape from the body's centre [m].
 struct One {
   Vec3 position, velocity, spin;
   Real mass;
@@ -113,7 +113,7 @@ Real apart(const Motion& a, const Motion& b) {
   return most;
 }
 
-// About the origin, of both bodies.
+// Momenta of both bodies about the origin.
 Momenta momenta_of(const SimulationRun& run, const TwoMeet& meeting) {
   Momenta sum;
   const std::vector<BodyMotion> motion = run.multibody().motion(run.bodies());
@@ -147,7 +147,7 @@ TEST_CASE("in implicit steps two bodies with friction separate as two particles 
     }
 }
 
-// In space a body's turn within a step is a rotation vector, a particle's the sum of its spins.
+// In space a body's rotation within a step is a rotation vector, a particle's the sum of its spins.
 TEST_CASE("in implicit steps two spheres of bodies part as two particles do, to second order") {
   for (const std::string& law : {kUndamped, kStuck, kDamped}) {
     CAPTURE(law);
@@ -166,8 +166,7 @@ TEST_CASE("in implicit steps two spheres of bodies part as two particles do, to 
 }
 
 // Bodies are integrated by HHT, the particles by leapfrog.
-TEST_CASE(
-    "in explicit steps two bodies with friction separate as two particles do, to the method's order") {
+TEST_CASE("in explicit steps two bodies with friction separate as two particles do, to the method's order") {
   for (const int dimension : {2, 3})
     for (const std::string& law : {kUndamped, kStuck}) {
       CAPTURE(dimension, law);
@@ -193,8 +192,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "two bodies with friction keep their momentum, and their angular momentum to the method's order") {
+TEST_CASE("two bodies with friction keep their momentum, and their angular momentum to the method's order") {
   for (const std::string& integrator : {kExplicit, kImplicit})
     for (const int dimension : {2, 3})
       for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}}) {

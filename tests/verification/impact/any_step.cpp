@@ -1,4 +1,5 @@
-// What steps of about a contact time cost: rebounds at any damping, alpha and exponent, and oblique impacts.
+// Errors with steps of about a contact time: rebounds at any damping, alpha and exponent, and oblique
+// impacts.
 #include <fmt/format.h>
 
 #include <array>
@@ -27,13 +28,13 @@ struct Impact {
   Real ratio = 0;  // z = C / (2 sqrt(K m))
   Real exponent = 1;
   Real hht_alpha = 0;
-  bool oblique = false;  // two discs that meet at 45 degrees; else one on a wall
+  bool oblique = false;  // two discs in an impact at 45 degrees; else one on a wall
   ParticleIntegrator integrator = ParticleIntegrator::hht;
 };
 
 Real stiffness(const Impact& impact) { return impact.exponent == 1 ? 1e7 : 2e8; }
 
-// Of the impact without damping [s]: 2 int dd / v(d) with v(d)^2 = v^2 - 2 K d^(n+1) / (m (n+1)).
+// Duration of the impact without damping [s]: 2 int dd / v(d) with v(d)^2 = v^2 - 2 K d^(n+1) / (m (n+1)).
 Real contact_time(const Impact& impact) {
   const Real power = impact.exponent + 1, mass = impact.oblique ? kMass / 2 : kMass;
   const Real normal = impact.oblique ? kSpeed * std::sqrt(0.5) : kSpeed;
@@ -42,7 +43,7 @@ Real contact_time(const Impact& impact) {
          std::tgamma(0.5 + 1 / power);
 }
 
-// The disc stands `gap` [m] from the touch along its way.
+// The disc starts `gap` [m] before touch along its path.
 Model impact_model(const Impact& impact, Real gap) {
   const Real damping = 2 * impact.ratio * std::sqrt(stiffness(impact) * kMass);
   const std::string deck = impact_deck(stiffness(impact), damping, true, impact.exponent);
@@ -63,8 +64,8 @@ Model impact_model(const Impact& impact, Real gap) {
 
 struct Outcome {
   Real error =
-      0;  // of the rebound's speed, rms over the phases; oblique: share of the energy lost, their mean
-  Real steps = 0;  // of a run, rejected ones counted
+      0;  // of the rebound's speed, rms over the phases; oblique: fraction of the energy lost, their mean
+  Real steps = 0;  // of a run, rejected ones included
 };
 
 // Phases of the impact within a step of h [s]; without h the steps are adaptive, at the default tolerance.
@@ -158,7 +159,7 @@ TEST_CASE("adaptive steps keep any impact") {
   }
 }
 
-// What input/choosing.md says of coarse steps is what they do: neither more nor less.
+// The errors stated in input/choosing.md for coarse steps are the measured ones.
 TEST_CASE("steps of about a contact time have the errors stated in input/choosing.md") {
   constexpr Real kDigits = 0.05;  // of two digits, and of another number of phases
   struct Claim {
@@ -214,7 +215,7 @@ TEST_CASE("the table of impacts at any step", "[.][table]") {
   }
 }
 
-// The same table: errors of impacts add up.
+// For the same table: errors of impacts add up.
 TEST_CASE("energy gain of an undamped gas in 1,000 steps of a third of the contact time", "[.][table]") {
   for (const auto& [exponent, stiffness] : {std::pair{"1.0", "2.5e4"}, std::pair{"1.5", "1.1e6"}}) {
     for (const std::string alpha : {"0.0", "-0.05"}) {

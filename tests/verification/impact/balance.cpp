@@ -1,5 +1,5 @@
-// The energy ledger: what steps of any length do to contacts, and what leaves with a particle that touches
-// others, has its entry; nothing is left over.
+// The energy balance: errors of steps of any length at contacts, and the energy of particles that escape in
+// contact, are accounted for without remainder.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-constexpr Real kRoundOff = 1e-12;  // of the energy exchanged
+constexpr Real kRoundOff = 1e-12;  // relative to the energy exchanged
 
 std::string contact_deck(const std::string& space, const std::string& time, const std::string& particles) {
   return "[space]\ndimension = 2\n" + space + "[time]\ncontrol = \"fixed\"\n" + time +
@@ -33,7 +33,7 @@ std::string disc(const std::string& name, const std::string& position, const std
          "radius = 0.05\nmass = 1.0\n";
 }
 
-// Three discs in a row, pressed together. They fly apart, and the last crosses the side while it touches the
+// Three discs in a row, pressed together. They separate, and the last crosses the side in contact with the
 // second.
 const std::string kCrossing =
     contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\n", "end = 8e-4\nstep = 2e-5\n",
@@ -96,7 +96,7 @@ history_interval = 0.01
 struct Outcome {
   Ledger end;
   Real balance = 0, exchanged = 0, largest_balance = 0;
-  bool loses = true;  // dissipation never goes back
+  bool loses = true;  // dissipation never decreases
   std::int64_t left = 0;
 
   Real largest_share() const { return largest_balance / exchanged; }
@@ -136,7 +136,7 @@ std::string text(const Overrides& overrides) {
   return all;
 }
 
-// Of contacts without damping: nothing.
+// Dissipation of contacts without damping: zero.
 Bounded undamped_loss(const Outcome& run) {
   return measured("ledger/undamped loss", "J", in_range(run.end.dissipated_contacts, 0, 0));
 }
@@ -153,7 +153,7 @@ TEST_CASE("a particle that leaves while it touches another takes the contact's e
       CHECK(run.left == 1);
       CHECK(measured("ledger/leaving", "",
                      keeps(run.largest_share(), {.promise = kRoundOff, .measured = 2e-13})));
-      // The contact holds a good part of the energy that there is.
+      // The contact has a good part of the energy.
       CHECK(run.end.carried_out > 0.1 * run.exchanged);
     }
   }
@@ -186,7 +186,7 @@ TEST_CASE("particles that escape from a hopper leave the energies balanced") {
                              "time.step=5e-5", "contact.pairs.0.damping=20.0"});
     CAPTURE(verlet.balance, verlet.exchanged);
     CHECK(verlet.left > 10);
-    // What the steps do to impacts.
+    // Errors of the steps at impacts.
     CHECK(measured("ledger/explicit hopper", "", at_most(verlet.largest_share(), 1e-3)));
   }
 }
@@ -219,9 +219,9 @@ TEST_CASE("the energy error of a gas of another exponent in implicit steps is ac
   }
 }
 
-// Explicit steps: the energy of the motion changes by the trapezoidal work of the forces, but for a function
-// of state that has its entry. What that work misses of a contact's elastic energy is the balance error, and
-// all of it.
+// Explicit steps: the energy of the motion changes by the trapezoidal work of the forces, except for a
+// function of state with its own entry. The difference between that work and the contacts' elastic energy is
+// the balance error.
 TEST_CASE("the balance error of explicit steps is what they do to contacts") {
   const std::string deck =
       contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.021\nstep = 3e-4\n",
@@ -241,7 +241,7 @@ TEST_CASE("the balance error of explicit steps is what they do to contacts") {
   CHECK(largest > 1e-3);
 }
 
-// The body's next step begins with the force of the contact that ended: half a step's work, and no more, is
+// The body's next step begins with the force of the contact that ended: exactly half a step's work is
 // missing.
 TEST_CASE("a particle that leaves while it touches a body takes the contact's energy along") {
   const std::string deck =
@@ -263,8 +263,9 @@ shapes = [{ radius = 0.05 }]
     }
 }
 
-// Shapes of bodies meet each other and a wall; their centres are the bodies', so that the bodies' own books
-// have the same work. The bodies' Newton loop ends at its tolerances, not at round-off.
+// Contacts of bodies' shapes with each other and with a wall; their centres are the bodies', so that the
+// bodies' energy accounting has the same work. The bodies' Newton loop ends at its tolerances, not at
+// round-off.
 TEST_CASE("the dissipation of bodies' shapes is accounted for like that of particles") {
   const std::string body = R"(
 [[bodies]]

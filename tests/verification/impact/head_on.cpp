@@ -35,7 +35,7 @@ bodies = ["ground", "disc"]
 
 enum class Obstacle { wall, pinned_disc };
 
-// The particle stands `gap` [m] above the obstacle and falls on it.
+// The particle starts `gap` [m] above the obstacle and falls on it.
 Model head_on(Obstacle obstacle, Real gap) {
   const std::string deck = impact_deck(1e7, 10, true), far = "particles.disc.positions=[[0.0, 0.5]]";
   Model model = model_of(obstacle == Obstacle::wall ? deck : deck + kPinnedDisc, {far});
@@ -58,7 +58,7 @@ ReboundError rebound_error(Obstacle obstacle, Real h, int phases, const Change& 
     Model model = head_on(obstacle, kSpeed * h * (1.5 + (phase + 0.5) / phases));
     model.time.step = h;
     model.time.max_step = h;
-    // Whole steps: to the touch less than three, then the contact, and what a coarse step adds to it.
+    // Whole steps: less than three to the touch, then the contact, and its extension by a coarse step.
     model.time.end = h * std::ceil(kExact.duration() / h + 6);
     change(model);
     SimulationRun run(model);
@@ -114,7 +114,7 @@ TEST_CASE("the adaptive step at its default tolerance keeps the rebound") {
 
 // The table of tests/reference/README.md, whose rms errors have one or two digits.
 TEST_CASE("with the force at the end of the step the rebound errs as the paper's method does") {
-  constexpr Real kTableDigits = 1;  // of the last digit given: rounding, and another set of phases
+  constexpr Real kTableDigits = 1;  // relative to the last digit given: rounding, and another set of phases
   struct Column {
     Real h;
     std::array<Real, 2> error, digit;  // at alpha = 0 and -0.3; and the value of their last digit
@@ -153,7 +153,7 @@ TEST_CASE("resolved contact events converge with second order") {
   CHECK(keeps(order - 2, {.promise = kTruncationOrder, .measured = 0.019}));
 }
 
-// HHT weighs the force at the start of a step by -alpha; with events within the steps the weights of
+// HHT weights the force at the start of a step by -alpha; with events within the steps the weights of
 // consecutive steps no longer add up to one, which leaves a small error of first order in C.
 TEST_CASE("resolved contact events with numerical damping stay below the errors of the paper's method") {
   const Real coarse = fixed_step_error(1e-4, 50, -0.3, true).rms,

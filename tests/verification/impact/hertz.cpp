@@ -1,5 +1,5 @@
 // Impacts under Hertz's law, of a sphere on a wall and of two free spheres, against closed forms: largest
-// overlap, duration, and a restitution that is the same at every speed.
+// overlap, duration, and a restitution independent of speed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ constexpr KnownImpact kKnown[] = {
 
 enum class Partner { wall, sphere };
 
-// The two stand `gap` [m] apart and close it with the speed.
+// The two start `gap` [m] apart and approach at this speed.
 Model impact_model(const KnownImpact& known, Partner partner, const std::string& integrator, Real gap) {
   const bool wall = partner == Partner::wall;
   const Real effective_radius = wall ? kRadius : kRadius / 2;
@@ -105,8 +105,8 @@ Approach approach_of(const std::vector<Particle>& spheres) {
           spheres[0].velocity.y - spheres[1].velocity.y};
 }
 
-// Fixed steps, so many in the contact. The impact ends with the overlap, or with the force where that is cut
-// before.
+// Fixed steps, so many in the contact. The impact ends with the overlap, or earlier with the force where
+// that is clipped.
 Measured measure(const KnownImpact& known, Partner partner, const std::string& integrator, int steps) {
   const Real h = known.duration / steps, gap = 3.3 * h * known.speed;
   Model model = impact_model(known, partner, integrator, gap);
@@ -176,7 +176,7 @@ TEST_CASE("adaptive steps keep the restitution of Hertz impacts, at any speed") 
       for (const Partner partner : {Partner::wall, Partner::sphere}) {
         CAPTURE(restitution, speed, static_cast<int>(partner));
         const KnownImpact impact{1, 1e7, restitution, speed, false, 0, 0};
-        // Of the impact without damping.
+        // For the impact without damping.
         const Real time = 2.94328 * std::pow(1.25 * speed * speed / 1e7, 0.4) / speed;
         Model model = impact_model(impact, partner, "hht", 0.2 * time * speed);
         model.time.control = StepControl::adaptive;
@@ -193,7 +193,7 @@ TEST_CASE("adaptive steps keep the restitution of Hertz impacts, at any speed") 
 
 // Spheres in a box, in steps of about a third of a contact.
 TEST_CASE("the energy balance of a Hertz gas closes to round-off, and its dampers never give energy") {
-  constexpr Real kRoundOff = 1e-12;  // of the energy exchanged
+  constexpr Real kRoundOff = 1e-12;  // relative to the energy exchanged
   const std::string deck = R"(
 [space]
 dimension = 3

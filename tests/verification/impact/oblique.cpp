@@ -1,4 +1,4 @@
-// Oblique impact of two free discs: what the pair's forces must keep, being opposite and along the normal.
+// Oblique impact of two free discs: conservation by pair forces that are opposite and normal.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -84,8 +84,8 @@ TEST_CASE("an oblique impact keeps momentum and, in velocity-verlet, angular mom
   }
 }
 
-// HHT takes the mean of the forces at both ends of a step, but they act at the arms of their own instants: it
-// keeps angular momentum only to its order.
+// HHT takes the mean of the forces at both ends of a step, but they act at the arms of their own instants:
+// it conserves angular momentum only to its order.
 TEST_CASE("an oblique impact keeps angular momentum to second order in hht") {
   constexpr Real kTruncationOrder = 0.1, kTruncation = 1e-5;
   for (const std::string hht_alpha : {"0.0", "-0.3"}) {

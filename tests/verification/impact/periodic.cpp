@@ -38,8 +38,8 @@ radius = 0.05
 mass = 1.0
 )";
 
-// The left particle hits the right one; both drift by `drift` [m/s]. Everything stands `shift` [m] further
-// right.
+// The left particle hits the right one; both have the velocity `drift` [m/s] in addition. Everything is
+// shifted by `shift` [m] to the right.
 std::vector<Particle> after_impact(Real shift, Vec3 drift, const std::string& integrator) {
   Model model = model_of(kPair, {"integrator.particles=" + integrator});
   for (Vec3& position : model.particles.position) position.x = std::fmod(position.x + shift, 1);
@@ -72,7 +72,7 @@ TEST_CASE("an impact is the same across a periodic side") {
 }
 
 TEST_CASE("a pair that crosses a periodic side in contact stays in contact") {
-  constexpr Real kTruncation = 1e-9;  // the drift turns nothing: velocities differ by it alone
+  constexpr Real kTruncation = 1e-9;  // no rotation of the drift: velocities differ by it alone
   for (const std::string integrator : {"hht", "velocity-verlet"}) {
     const auto resting = after_impact(0, {}, integrator);
     // While in contact, about 5 ms, the pair moves by 0.2 m, over the side.

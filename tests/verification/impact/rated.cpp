@@ -1,5 +1,5 @@
-// Restitution as a deck's key: impacts on a wall against closed forms, for any exponent, with and without the
-// cut, with both integrators; two particles of different masses rebound with it, too.
+// Restitution as a deck's key: impacts on a wall against closed forms, for any exponent, with and without
+// clipping, with both integrators; also two particles of different masses.
 #include <fmt/format.h>
 
 #include "support/bars.hpp"

@@ -24,7 +24,7 @@ struct Impact {
 Real crossing(Real t, Real h, Real before, Real now) { return t - h * now / (now - before); }
 
 // An impact on the floor at y = -1. It ends with the overlap, or without tension with the force, whichever
-// falls to zero first.
+// reaches zero first.
 Impact floor_impact(Model model, Real expected_duration, int steps_in_contact) {
   const Real h = expected_duration / steps_in_contact, gap = 3.3 * h * kSpeed;
   model.particles.position[0] = {0, -0.95 + gap, 0};
@@ -76,7 +76,7 @@ Impact energy_quadrature(Real n) {
   return impact;
 }
 
-// The impact by the classical Runge-Kutta method with steps of h [s] from the touch on; with tension.
+// The impact by the classical Runge-Kutta method with steps of h [s] from touch on; with tension.
 Impact runge_kutta(Real damping, Real n, Real h) {
   const auto acceleration = [&](Real d, Real v) {
     return -(kStiffness * std::pow(std::max(d, Real(0)), n) + damping * v) / kMass;

@@ -1,4 +1,5 @@
-// Cylinders that lift a boom, in the plane and in space: equilibrium, speed, stops, limit, books.
+// Cylinders that lift a boom, in the plane and in space: equilibrium, speed, joint limits, force limit,
+// energy balance.
 #include <cmath>
 #include <string>
 
@@ -11,10 +12,10 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kMass = 20, kArm = 0.5;  // of the boom, which begins level [kg, m]
+constexpr Real kMass = 20, kArm = 0.5;  // of the boom, which begins horizontal [kg, m]
 constexpr Real kFoot[2] = {0.2, -0.4}, kEye = 0.4;
 
-// A boom on a hinge at the origin; a cylinder from the ground to a point on it.
+// A boom on a revolute joint at the origin; a cylinder from the ground to a point on it.
 std::string boom(bool spatial, const std::string& cylinder) {
   const std::string z = spatial ? ", 0.0]" : "]";
   std::string deck = "gravity = [0.0, -9.8066" + z + "\n[space]\ndimension = " + (spatial ? "3" : "2") +
@@ -44,12 +45,12 @@ struct Lift {
 
   JointEffortSample cylinder() const { return run.multibody.joint_efforts(run.state, run.time).at(0); }
   Vec3 force() const { return run.multibody.reactions(run.state, run.time).at(1).force; }
-  // Of the boom, from its centre of mass.
+  // Angle of the boom, from its centre of mass.
   Real angle() const {
     const BodyMotion motion = run.multibody.motion(run.state).at(0);
     return std::atan2(motion.position.y, motion.position.x);
   }
-  // What holds the boom at this angle [N].
+  // Force of the cylinder that holds the boom at this angle [N].
   Real holding() const {
     const Real c = std::cos(angle()), s = std::sin(angle());
     const Real eye[2] = {kEye * c, kEye * s}, way[2] = {eye[0] - kFoot[0], eye[1] - kFoot[1]};
@@ -84,7 +85,7 @@ TEST_CASE("a cylinder with a prescribed length holds a boom, shorter by the load
     CHECK(held.name == "lift");
     CHECK(near(held.effort, lift.holding(), {.relative = 1e-7}));
     CHECK(near(held.coordinate, 0.447213595499958 - held.effort / 2e5, {.relative = 1e-10}));
-    // It pushes the boom up along its line, and the hinge carries the rest.
+    // It pushes the boom up along its line, and the revolute joint carries the rest.
     const Vec3 force = lift.force();
     CHECK(near(norm(force), held.effort, {.relative = 1e-12}));
     CHECK(force.y > 0);
@@ -94,14 +95,16 @@ TEST_CASE("a cylinder with a prescribed length holds a boom, shorter by the load
   }
 }
 
-TEST_CASE("a cylinder with a prescribed speed lifts a boom up to its limit, and presses there with its force limit") {
+TEST_CASE(
+    "a cylinder with a prescribed speed lifts a boom up to its limit, and presses there with its force "
+    "limit") {
   for (const bool spatial : {false, true}) {
     INFO("spatial " << spatial);
     Lift lift(boom(spatial, kPump));
     lift.steps(450, 2e-3);
     CHECK(near(lift.cylinder().rate, 0.05, {.relative = 5e-3}));
     CHECK(near(lift.cylinder().effort, lift.holding(), {.relative = 1e-2}));
-    // At the stop the integral grows until the limit is reached.
+    // At the joint limit the integral grows until the force limit is reached.
     lift.steps(2000, 2e-3);
     const auto efforts = lift.run.multibody.joint_efforts(lift.run.state, lift.run.time);
     CHECK(near(efforts[0].effort, 2000, {.relative = 1e-12}));

@@ -1,5 +1,5 @@
-// The energy ledger closes: kinetic + gravitational + elastic + dissipated + integrator's loss - work fed in
-// is constant.
+// The energy balance closes: kinetic + gravitational + elastic + dissipated + integrator's loss - work fed
+// in is constant.
 #include <cmath>
 
 #include "support/bars.hpp"

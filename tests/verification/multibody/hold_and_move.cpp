@@ -1,4 +1,4 @@
-// A slider-crank whose driver holds, turns the crank and holds again: the motion is known in closed form.
+// A slider-crank whose driver holds, rotates the crank and holds again: the motion is known in closed form.
 #include <array>
 #include <cmath>
 
@@ -23,7 +23,7 @@ Body link(const std::string& name, Real mass, Real inertia, Real x) {
   return body;
 }
 
-// All of it lies along the x axis at the start, crank angle 0.
+// All bodies lie along the x axis at the start, crank angle 0.
 Model slider_crank(const TimeFunction& motion, Real hht_alpha) {
   Model model = empty_model();
   model.time.end = 1.5;

@@ -1,5 +1,5 @@
 // Efforts on joints whose law changes within a step: a motor's limit, a joint that sticks, slides and sticks
-// again. Of second order wherever in the step that is, at any hht_alpha.
+// again. Of second order wherever in the step the change is, at any hht_alpha.
 #include <array>
 #include <cmath>
 #include <string>
@@ -21,7 +21,7 @@ TimeFunction sine(Real mean, Real amplitude, Real frequency) {
   return function;
 }
 
-// A disc of 0.005 kg m^2 on a pin, at its centre or not.
+// A disc of 0.005 kg m^2 on a pin, at or off its centre.
 Model wheel(Real alpha, Real arm = 0) {
   Model model = empty_model();
   model.integrator.hht_alpha = alpha;
@@ -39,7 +39,7 @@ void add_speed_motor(Model& model, const TimeFunction& rate, Real limit) {
   model.motors = {motor};
 }
 
-// A disc of 1 kg on a slide along x, pulled to and fro.
+// A disc of 1 kg on a slider along x, pulled back and forth.
 Model block(Real alpha, Real static_ratio, Real damping, Real stiffness) {
   Model model = empty_model();
   model.integrator.hht_alpha = alpha;
@@ -66,7 +66,7 @@ Real energy(const MultibodyRun& run) {
 }
 
 struct Outcome {
-  Real position = 0, gap = 0;  // of the coordinate at the end; of the energy, the largest [J]
+  Real position = 0, gap = 0;  // of the coordinate at the end; largest of the energy balance [J]
   int sticks = 0, most_iterations = 0;
 };
 
@@ -87,7 +87,7 @@ Outcome outcome_of(const Model& model, int coordinate, Real h, Real end) {
   return out;
 }
 
-// The orders over three steps of which each is half of the one before; exact: at the end.
+// The orders over three steps, each half of the one before; exact: value at the end.
 void check_orders(const Model& model, int coordinate, Real coarse, Real end, Real exact) {
   std::array<Real, 3> error{};
   for (std::size_t i = 0; i < error.size(); ++i) {

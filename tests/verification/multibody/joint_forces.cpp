@@ -161,8 +161,8 @@ TEST_CASE("the integral of a speed controller is constant while the limit acts")
     REQUIRE(std::abs(run.multibody.joint_efforts(run.state, run.time).at(0).effort) <= 0.05);
   }
   CHECK(near(run.state.velocity[2], 20, {.absolute = 1e-6}));
-  // From e = 0.5, where the limit lets go, critically damped: e = (0.5 - 5 t) exp(-10 t). With an integral of
-  // all the error that the limit left it would go far beyond.
+  // From e = 0.5, where the motor leaves its limit, critically damped: e = (0.5 - 5 t) exp(-10 t). With an
+  // integral over the time at the limit it would overshoot far.
   CHECK(near(fastest, 20 + 0.5 * std::exp(-2.0), {.absolute = 1e-3}));
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("springs on joints: a table of a straight line is a stiffness, a quint
   MultibodyRun other(model);
   one.steps(100, 5e-3), other.steps(100, 5e-3);
   CHECK(near(one.angle(0), other.angle(0), {.absolute = 1e-10}));
-  // Undamped: w^2 + (k/J)(angle - 0.1)^2 stays.
+  // Undamped: w^2 + (k/J)(angle - 0.1)^2 is constant.
   const Real k = 0.3 / kInertia, stretch = one.angle(0) - 0.1;
   CHECK(near(one.state.velocity[2] * one.state.velocity[2] + k * stretch * stretch, 1 + k * 0.01,
              {.relative = 1e-2}));
@@ -203,11 +203,11 @@ TEST_CASE("a spring without a free coordinate has no effort at the start") {
 
 TEST_CASE("a limit rebounds a slider as its contact law; undamped and linear at any step") {
   struct Case {
-    Real damping, exponent, steps, rebound, allowed;  // steps: of a contact
+    Real damping, exponent, steps, rebound, allowed;  // steps: per contact
   };
   const Real k = 1e4, speed = 1;
   const Real zeta = 0.1, damping = 2 * zeta * std::sqrt(k);
-  // Cut at zero (see METHOD's closed forms): the contact ends when the force does.
+  // Clipped at zero (see METHOD's closed forms): the contact ends when the force does.
   const Real root = std::sqrt(1 - zeta * zeta), wd = std::sqrt(k) * root;
   const Real time = (M_PI - std::atan(2 * zeta * root / (1 - 2 * zeta * zeta))) / wd;
   const Real restitution = std::exp(-zeta * std::sqrt(k) * time);
@@ -246,7 +246,7 @@ TEST_CASE("gears, belts, racks and differentials distribute torques by their rat
     const Real angle = 0.02 / (kInertia * (1 + 1 / (ratio * ratio))) / 2;
     CHECK(near(run.angle(0), angle, {.relative = 1e-9}));
     CHECK(near(run.angle(1), -angle / ratio, {.relative = 1e-9}));
-    // The reaction is what is missing on the first wheel.
+    // The reaction is the missing torque on the first wheel.
     const Reaction reaction = run.multibody.reactions(run.state, run.time).back();
     CHECK(reaction.joint == "gear");
     CHECK(near(reaction.torque.z, 2 * angle * kInertia - 0.02, {.relative = 1e-8}));
@@ -261,7 +261,7 @@ TEST_CASE("gears, belts, racks and differentials distribute torques by their rat
   const Real angle = 0.02 / (kInertia + 1 * 0.1 * 0.1) / 2;
   CHECK(near(pinion.angle(0), angle, {.relative = 1e-9}));
   CHECK(near(pinion.x(1), 0.1 * angle, {.relative = 1e-9}));
-  // Differential: the carrier's torque goes to both sides alike; one side is ten times as heavy.
+  // Differential: the carrier's torque is divided equally; one side is ten times as heavy.
   Model differential = flywheel(3);
   differential.bodies[1].inertia = 10 * kInertia;
   Motor motor = torque_motor(0.02);
@@ -277,7 +277,8 @@ TEST_CASE("gears, belts, racks and differentials distribute torques by their rat
   CHECK(near(axle.angle(0), side / kInertia / 2, {.relative = 1e-8}));
 }
 
-TEST_CASE("the energy balance closes: to round-off on revolute joints, to second order on a rotating slider") {
+TEST_CASE(
+    "the energy balance closes: to round-off on revolute joints, to second order on a rotating slider") {
   Model model = flywheel();
   model.gravity = {0, -kGravity, 0};
   model.joints[0].point[0] = model.joints[0].point[1] = {-0.3, 0, 0};
@@ -301,7 +302,7 @@ TEST_CASE("the energy balance closes: to round-off on revolute joints, to second
     return worst;
   };
   CHECK(gap(2e-3) < 1e-12);
-  // On the wheel a slider with all of these, too: along an axis that turns, g.(q_1 - q_0) is not c_1 - c_0.
+  // A slider with all of these on the wheel, too: along a rotating axis, g.(q_1 - q_0) is not c_1 - c_0.
   model.bodies.push_back(paper_disc("slider", 0.1, 0.05));
   Joint slide;
   slide.name = "slide", slide.kind = JointKind::translational;

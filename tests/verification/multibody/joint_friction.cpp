@@ -10,7 +10,7 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kInertia = 0.005, kMu = 0.3;  // paper_disc's; friction coefficient
+constexpr Real kInertia = 0.005, kMu = 0.3;  // inertia of paper_disc; friction coefficient
 
 Model slider_along(Vec3 axis) {
   Model model = empty_model();
@@ -55,7 +55,7 @@ Real effort_of(const MultibodyRun& run) {
 TEST_CASE("a block on an incline below the limit does not creep in 1e5 steps") {
   Model model = slider_along({0.8, -0.6, 0});
   const Real pull = 0.6 * kGravity, k = 1e4;
-  // Let go on an empty spring it overshoots: by the first two limits it slides a little.
+  // Released on an empty spring it overshoots: at the first two limits it slides a little.
   for (const JointFriction& friction :
        {friction_of(1.02 * pull, 0, k, 50), friction_of(0, 0.8, k, 50), friction_of(2.1 * pull, 0, k, 50)}) {
     model.joint_frictions = {friction};
@@ -73,7 +73,7 @@ TEST_CASE("a block on an incline below the limit does not creep in 1e5 steps") {
 TEST_CASE("above the limit it slides with what is left, load-dependent or not") {
   Model model = slider_along({0.8, -0.6, 0});
   const Real pull = 0.6 * kGravity, across = 0.8 * kGravity, k = 1e5;
-  // Held back by T from T / k on; the spring's work until then is stored.
+  // Braked by T after T / k; until then the spring's work is stored.
   const auto speed_after = [&](const JointFriction& friction, Real limit) {
     model.joint_frictions = {friction};
     MultibodyRun run(model, 1e-11);
@@ -99,7 +99,7 @@ TEST_CASE("a slider pressed by its weight stops from mu g and stays, to second o
   model.bodies[0].velocity = {1, 0, 0};
   const Real limit = kMu * kGravity, k = 400, w = std::sqrt(k);
   model.joint_frictions = {friction_of(0, kMu, k)};
-  // On the spring v = cos(w t) until it has the limit, then v falls by mu g t.
+  // On the spring v = cos(w t) until the limit is reached, then v falls by mu g t.
   const Real slip = std::asin(limit / w) / w, speed = std::cos(w * slip);
   const auto exact = [&](Real t) { return t < slip ? std::cos(w * t) : speed - limit * (t - slip); };
   const auto error = [&](Real h) {
@@ -138,8 +138,9 @@ TEST_CASE("a torsional oscillator loses 2 T/k in each half swing, and stays in t
       turns.push_back(std::abs(before));
     before = run.angle(0);
   }
-  // With what the friction's spring gives back: k/2 (A^2 - B^2) = T (A + B - 2 T/stick), after the first
-  // half swing, at whose start the spring is empty: T (A + B - T/stick) and T^2/(2 stick) stored.
+  // With the energy returned by the friction's spring: k/2 (A^2 - B^2) = T (A + B - 2 T/stick), after the
+  // first half oscillation, at whose start the spring is empty: T (A + B - T/stick) and T^2/(2 stick)
+  // stored.
   REQUIRE(turns.size() >= 3);
   for (std::size_t i = 1; i < turns.size(); ++i) {
     const Real drop = 2 * t / k * (1 - 2 * t / stick / (turns[i] + turns[i - 1]));
@@ -185,7 +186,7 @@ TEST_CASE("above the Stribeck rate friction falls from its static value") {
 
 namespace {
 
-// On a pin at one end, let go level; the load of the pin changes all the time.
+// On a pin at one end, released from horizontal; the load of the pin changes continuously.
 Model rubbing_pendulum(Real alpha) {
   Model model = empty_model();
   model.integrator.hht_alpha = alpha;
@@ -195,7 +196,7 @@ Model rubbing_pendulum(Real alpha) {
   return model;
 }
 
-// Crank and slider; both pins, the wrist and the guide rub.
+// Crank and slider with friction in both pins, the wrist and the guide.
 Model rubbing_crank() {
   Model model = empty_model();
   model.integrator.hht_alpha = -0.1;
@@ -256,7 +257,7 @@ Real apart(const std::vector<Real>& a, const std::vector<Real>& b) {
 }  // namespace
 
 TEST_CASE("friction under a changing load is of second order, in sliding and at reversal") {
-  for (const Real end : {0.3, 1.2}) {  // in the first swing; after two turns
+  for (const Real end : {0.3, 1.2}) {  // in the first oscillation; after two revolutions
     INFO("until " << end);
     const Outcome exact = outcome_of(rubbing_pendulum(-0.1), 5e-5, end),
                   coarse = outcome_of(rubbing_pendulum(-0.1), 4e-3, end),
@@ -277,7 +278,7 @@ TEST_CASE("a crank with friction in all joints is of second order and balances i
   CHECK(apart(coarse.position, exact.position) < 2e-3);
   CHECK(apart(coarse.position, exact.position) / apart(fine.position, exact.position) > 12);
   CHECK(fine.dissipated > 1.5);
-  // The joints' coordinates are linear in the bodies', so that the books close exactly.
+  // The joints' coordinates are linear in the bodies', so that the energy balance closes exactly.
   CHECK(coarse.gap < 1e-13);
   CHECK(fine.gap < 1e-13);
 }

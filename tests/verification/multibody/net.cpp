@@ -64,8 +64,8 @@ TEST_CASE("the net's error against the truth is the method's, and of second orde
 }
 
 TEST_CASE("the net comes to rest in the static shape") {
-  // The springs' own dampers hardly slow the swinging. Dampers to far points of the ground do, and exert
-  // nothing on a chain at rest.
+  // The springs' own dampers hardly slow the oscillations. Dampers to far points of the ground do, and exert
+  // nothing on a static chain.
   Model model = paper_net();
   for (int body = 1; body < 19; ++body) {
     for (const Vec3 far : {Vec3{100, -0.6, 0}, Vec3{0, 100, 0}}) {

@@ -1,5 +1,5 @@
-// Pendulums: the period of large swings, and a double pendulum against a Runge-Kutta solution in minimal
-// coordinates.
+// Pendulums: the period of large oscillations, and a double pendulum against a Runge-Kutta solution in
+// minimal coordinates.
 #include <array>
 #include <cmath>
 

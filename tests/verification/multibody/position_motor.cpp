@@ -119,7 +119,7 @@ TEST_CASE("a load deflects a servo by load over gain, and beyond its limit it yi
   const JointEffortSample held = run.multibody.joint_efforts(run.state, run.time).at(0);
   CHECK(near(held.effort, 3, {.relative = 1e-8}));
   CHECK(near(energy(run), start, {.absolute = 1e-11}));
-  // With less than the load it is pushed away by what is missing.
+  // With less than the load it yields by the difference.
   model.motors[0].limit = 2;
   model.bodies[0].position.x = 0.4;
   MultibodyRun weak(model, 1e-12);

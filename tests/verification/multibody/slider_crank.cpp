@@ -1,4 +1,4 @@
-// A slider-crank mechanism whose crank a driver turns: the motion is known in closed form.
+// A slider-crank mechanism whose crank is driven: the motion is known in closed form.
 #include <cmath>
 
 #include "support/bars.hpp"
@@ -13,8 +13,8 @@ constexpr Real kCrank = 0.15, kRod = 0.4, kSpeed = 9, kStartAngle = 0.7;  // [m,
 constexpr Real kCrankMass = 0.8, kRodMass = 1.1, kSliderMass = 0.6, kCrankInertia = 0.003,
                kRodInertia = 0.015;
 
-// Angles of crank and rod and the slider's place with their first two derivatives, at a crank angle that
-// grows steadily: r sin(crank) + l sin(rod) = 0, x = r cos(crank) + l cos(rod).
+// Angles of crank and rod and the slider's position with their first two derivatives, at a crank angle of
+// constant rate: r sin(crank) + l sin(rod) = 0, x = r cos(crank) + l cos(rod).
 struct Kinematics {
   explicit Kinematics(Real t) : crank(kStartAngle + kSpeed * t) {
     const Real ratio = kCrank / kRod, s = -ratio * std::sin(crank), c = std::sqrt(1 - s * s);
@@ -115,6 +115,6 @@ TEST_CASE("a driven slider-crank follows its kinematics, and its driver's torque
   CHECK(keeps(fine.velocity, {.promise = 1e-4, .measured = 6.5e-6}));
   CHECK(std::log2(coarse.velocity / fine.velocity) > 1.95);
   CHECK(std::log2(coarse.velocity / fine.velocity) < 2.05);
-  // The driver's motion is all that the torque depends on, from the first step on.
+  // The torque depends on the driver's motion alone, from the first step on.
   CHECK(keeps(coarse.torque, {.promise = 1e-10, .measured = 3e-13}));
 }

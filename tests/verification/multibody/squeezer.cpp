@@ -122,7 +122,7 @@ TEST_CASE("Andrews' squeezer converges to its reference with second order") {
   const ReferenceTable reference("spatial/squeezer.csv");
   for (const Real alpha : {-0.02, -0.1, -0.3}) {
     const Errors coarse = errors(reference, alpha, 1e-5), fine = errors(reference, alpha, 5e-6);
-    if (alpha == Real(-0.1)) {  // 1.2 times what was measured
+    if (alpha == Real(-0.1)) {  // 1.2 times the measured error
       CHECK(coarse.position < 5.4e-7);
       CHECK(coarse.angle < 1.4e-4);
       CHECK(coarse.force < 1.65e-2);

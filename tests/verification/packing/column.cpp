@@ -1,4 +1,4 @@
-// A column of discs at rest on a floor.
+// A static column of discs on a floor.
 #include <cmath>
 #include <string>
 
@@ -13,7 +13,7 @@ using namespace scree;
 TEST_CASE("the overlaps of a static column of discs bear the weight above them") {
   constexpr Real kRoundOff = 1e-9;  // of overlaps of 1e-5 m: positions of 1 m carry 1e-16
   for (const std::string integrator : {"hht", "velocity-verlet"}) {
-    // A residual of 1e-8 would let the column swing on by 1e-6 of its overlaps.
+    // A residual of 1e-8 would let the column oscillate by 1e-6 of its overlaps.
     const Model model = input_model(
         "examples/column.toml",
         {"time.end=6", "integrator.particles=" + integrator, "integrator.residual_tolerance=1e-13"});

@@ -59,7 +59,7 @@ mass = 1.0
 seed = 4
 )";
 
-// Puts the particles of `model` where those of `run` are, at rest.
+// Sets the particles of `model` to the positions of those of `run`, at rest.
 void take_over_at_rest(const SimulationRun& run, Model& model) {
   const std::vector<Particle> records = run.particles();
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -68,7 +68,7 @@ void take_over_at_rest(const SimulationRun& run, Model& model) {
   }
 }
 
-// Share of the particles on which more than 5 % of their weight is not balanced.
+// Fraction of the particles on which more than 5 % of their weight is not balanced.
 Real unbalanced_share(const SimulationRun& run, const Model& model) {
   const std::vector<Particle> records = run.particles();
   const auto unbalanced = [&](const Particle& p) {
@@ -80,8 +80,8 @@ Real unbalanced_share(const SimulationRun& run, const Model& model) {
 }
 
 // The model at rest after explicit steps with strong damping: `fall` [s] in one go, then bursts of about a
-// quarter of the packing's slowest swing, each from rest, which takes the energy that contact damping leaves
-// in such swings.
+// quarter of the packing's slowest oscillation, each from rest, which removes the energy that contact
+// damping leaves in such oscillations.
 Model settled(const Model& loose, Real fall, int bursts) {
   constexpr Real kBurst = 6e-3, kSettlingStep = 1e-4, kSettlingDamping = 700;  // [s], [s], [N s/m]
   Model model = loose;
@@ -109,7 +109,8 @@ void check_rests(const std::string& what, const Model& settled_model, Real dampi
   constexpr Real kStep = 1e-3;
   constexpr int kSteps = 120;
   constexpr Real kEnergyRise = 1e-9;  // [J]
-  constexpr Real kPhysical = 1e-3;    // of the energy of a fall by the radius: what settles on, per particle
+  constexpr Real kPhysical =
+      1e-3;  // relative to the energy of a fall by the radius: settling energy per particle
   Model model = settled_model;
   for (KelvinVoigt& law : model.contact.laws) law.normal_damping = damping;
   model.integrator.hht_alpha = hht_alpha;

@@ -1,4 +1,4 @@
-// Short runs that between them use every part of the state.
+// Short runs that together use every part of the state.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace scree {
 struct RestartCase {
   std::string name;
   Model model;
-  bool leaves;  // particles leave the space
+  bool leaves;  // particles escape
 };
 
-// Discs that collide over a floor and fly out through the open sides.
+// Discs that collide over a floor and escape through the open sides.
 inline const std::string kLeavingDiscs = R"(
 gravity = [0.0, -9.8066]
 [space]
@@ -50,7 +50,7 @@ inline std::string disc(const std::string& name, const std::string& position, co
          "]\nvelocity = " + velocity + "\nradius = 0.05\nmass = 1.0\n";
 }
 
-// Periodic along x, with a side that is no multiple of a quantum.
+// Periodic along x, with a side that is not a multiple of a quantum.
 inline const std::string kPeriodicAlongX = R"(
 [output]
 history_interval = 0.05
@@ -62,8 +62,8 @@ x_min = "periodic"
 x_max = "periodic"
 )";
 
-// Two discs that leave at once and go on for some 150 periods along the periodic axis, where coordinates have
-// lost the quanta in which a period can be taken off exactly; and one that bounces on.
+// Two discs that escape at once and continue for some 150 periods along the periodic axis, where coordinates
+// have lost the quanta in which a period can be subtracted exactly; and one that continues to bounce.
 inline const std::string kFarDrifters = "gravity = [0.0, -9.8066]" + kPeriodicAlongX + R"(
 y_min = "wall"
 leaving = "drift"
@@ -78,8 +78,8 @@ damping = 10.0
                                         disc("left", "[0.7, 0.95]", "[-29.0456, 5.7]") +
                                         disc("bouncing", "[0.5, 0.2]", "[1.3, 0.0]");
 
-// A body and two discs go round the periodic axis some 80 times and touch all the while: contacts and
-// energies must not depend on how many periods were taken off whom, and when.
+// A body and two discs move around the periodic axis some 80 times in permanent contact: contacts and
+// energies must not depend on how many periods were subtracted from which of them, and when.
 inline const std::string kRoundAndRound = "gravity = [3.3, 0.0]" + kPeriodicAlongX + R"(
 y_min = "wall"
 y_max = "wall"
@@ -100,7 +100,7 @@ velocity = [19.0, 0.3]
 shapes = [{ radius = 0.05, offset = [0.02, 0.01] }]
 )" + disc("discs", "[0.5, 0.06], [0.5, 0.44]", "[19.0, 1.0]");
 
-// Discs that leave, each with its energy, after many rounds along the periodic axis.
+// Discs that escape, each with its energy, after many periods along the periodic axis.
 inline const std::string kLateLeavers = "gravity = [3.3, 0.0]" + kPeriodicAlongX + R"(
 leaving = "remove"
 [time]
@@ -115,8 +115,8 @@ stiffness = 1e5
                                         disc("left", "[0.7, 0.4]", "[-29.0456, 0.41]") +
                                         disc("last", "[0.5, 0.6]", "[21.3, 0.1567]");
 
-// Bodies that roll and slide on a floor, on a plate of triangles and on each other, round the periodic axis:
-// what their contacts remember must survive.
+// Bodies that roll and slide on a floor, on a plate of triangles and on each other, around the periodic
+// axis: their contact histories must survive.
 inline const std::string kRubbingShapes = R"(
 gravity = [1.5, -9.8066, 0.3]
 [output]
@@ -171,8 +171,8 @@ shapes = [{ radius = 0.02, offset = [0.04, -0.02, 0.04] }, { radius = 0.02, offs
           { radius = 0.03, offset = [0.0, 0.03, 0.06] }]
 )";
 
-// Crates that fall on a floor that shakes and on a slope, tumble and slide round the periodic axis, among
-// grains: corners of their meshes come and go.
+// Crates that fall on a shaking floor and on a slope, tumble and slide around the periodic axis, among
+// particles: contacts of their meshes' corners come and go.
 inline const std::string kCrates = R"(
 gravity = [1.5, 0.5, -9.8066]
 [output]
@@ -239,7 +239,7 @@ inline const std::vector<std::vector<std::string>> kWays = {
     {"integrator.particles=hht", "time.control=adaptive"},
     {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
 
-// Each case with each integrator and step control that it can have.
+// Each case with each integrator and step control that it supports.
 inline std::vector<RestartCase> restart_cases() {
   std::vector<RestartCase> cases;
   for (const std::vector<std::string>& way : kWays) {

@@ -1,5 +1,5 @@
-// Motors, springs, stops, friction, bushings and loops of hinges, left at many instants and taken up again:
-// the bits of the run that was not.
+// Motors, springs, limits, friction, bushings and loops of revolute joints, stopped at many instants and
+// restarted: the bits of the uninterrupted run.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -17,7 +17,7 @@ using namespace scree;
 
 namespace {
 
-// An arm on an oblique hinge, and a slider on the arm.
+// An arm on an oblique revolute joint, and a slider on the arm.
 const std::string kCrane = R"(
 gravity = [0.0, 0.0, -9.81]
 velocities = "consistent"
@@ -62,7 +62,7 @@ point = [0.5, 0.1, 0.0]
 axis = [0.8, 0.0, 0.6]
 )";
 
-// Holds back at its limit, then turns the arm through several turns.
+// At its limit first, then rotates the arm through several revolutions.
 const std::string kSpeedMotor = R"(
 [[motors]]
 name = "drive"
@@ -171,7 +171,7 @@ stiffness = [500.0, 600.0, 700.0, 4.0, 5.0, 6.0]
 damping = [3.0, 3.0, 3.0, 0.02, 0.02, 0.02]
 preload = [1.0, -0.5, 2.0, 0.05, 0.0, -0.02]
 )";
-// Three rows too many.
+// A loop with three redundant rows.
 const std::string kLoop = R"(
 [[bodies]]
 name = "left"
@@ -237,7 +237,7 @@ Model everything(std::vector<std::string> overrides = {}) {
                   overrides);
 }
 
-// Each kind by itself, all of them, and two decks of planar bodies.
+// Each kind alone, all of them together, and two decks of planar bodies.
 std::vector<Case> cases() {
   return {{"speed motor", model_of(kCrane + kSpeedMotor)},
           {"other motors", model_of(kCrane + kOtherMotors)},
@@ -254,7 +254,7 @@ std::vector<Case> cases() {
 
 constexpr int kInstants = 12;
 
-// Of the whole run; calls left(state) at some instants.
+// States of the whole run; calls left(state) at some instants.
 template <class Left>
 State whole_run(const Model& model, const Left& left) {
   SimulationRun run(model);
@@ -291,7 +291,7 @@ TEST_CASE("elements of joints continue from a checkpoint at any instant bit for 
   }
 }
 
-// So that the test above would see what a checkpoint leaves out.
+// Shows that the test above detects missing parts of a checkpoint.
 TEST_CASE("every number in the memory of joint elements matters") {
   const Model model = everything();
   std::vector<State> left;
@@ -306,7 +306,7 @@ TEST_CASE("every number in the memory of joint elements matters") {
     const State other = taken_up(model, without);
     CHECK(differing_arrays(pack(other), pack(end)) != "");
   }
-  State turned = middle;  // a turn of the arm, on which a spring pulls
+  State turned = middle;  // a revolution of the arm, on which a spring acts
   turned.bodies.position[turned.bodies.position.size() - 6] += 2 * M_PI;
   const State other = taken_up(model, turned);
   CHECK(differing_arrays(pack(other), pack(end)) != "");

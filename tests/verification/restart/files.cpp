@@ -1,4 +1,4 @@
-// The program itself: a run continued with --restart leaves the files of the uninterrupted run.
+// The program itself: a run continued with --restart has the files of the uninterrupted run.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -60,8 +60,7 @@ TEST_CASE("a run continued with --restart leaves the same history and the same l
     const ScratchDirectory whole, parts;
     Model model = restart_case.model;
     record_contacts(model);
-    // Whole 1024ths of a second: the first half then ends on the very time that the whole run's checkpoint
-    // has.
+    // Whole 1024ths of a second: the first half then ends at exactly the time of the whole run's checkpoint.
     const Real end = std::ldexp(std::round(std::ldexp(model.time.end, 10)), -10);
     model.output.checkpoint_interval = model.output.snapshot_interval = end / 2;
     model.output.history_interval = end / 16;

@@ -50,7 +50,8 @@ Result whole_run(const Model& model) {
   return result_of(run, std::move(rows));
 }
 
-// Stops at the first step past `share` of the time, writes a checkpoint, and goes on from the file.
+// Stops at the first step beyond the fraction `share` of the time, writes a checkpoint, and continues from
+// the file.
 Result interrupted_run(const Model& model, Real share) {
   const ScratchDirectory directory;
   std::vector<std::vector<Real>> rows;
@@ -80,7 +81,7 @@ TEST_CASE("a restarted run continues bit for bit") {
   for (const RestartCase& restart_case : restart_cases()) {
     CAPTURE(restart_case.name);
     const Result whole = whole_run(restart_case.model);
-    // Something happens that a restart can spoil.
+    // There are events that a wrong restart would change.
     CHECK(whole.rows.size() > 5);
     CHECK((whole.contact_loss > 0 || restart_case.model.contact.law(0, 0).normal_damping == 0));
     CHECK((whole.left > 0) == restart_case.leaves);

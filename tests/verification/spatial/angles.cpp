@@ -1,4 +1,4 @@
-// Angles of joints in space as coordinates: turns that are counted, drivers, motors and springs on them.
+// Angles of spatial joints as coordinates: counted revolutions, drivers, motors and springs on them.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -26,7 +26,7 @@ TimeFunction sine(Real amplitude, Real frequency) {
 
 constexpr Vec3 kAxis{2.0 / 3, -1.0 / 3, 2.0 / 3};
 
-// A wheel on a hinge along kAxis through its centre; records all coordinates.
+// A wheel on a revolute joint along kAxis through its centre; records all coordinates.
 Model wheel(JointKind kind = JointKind::revolute) {
   Model model = spatial_model(-0.05);
   model.consistent_velocities = true;
@@ -53,8 +53,8 @@ bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
 
 }  // namespace
 
-// 50 turns up and back, 150 of what an internal gear drives from it; left and taken up again on the way, and
-// after steps that are given up.
+// 50 revolutions up and back, 150 of the gear that an internal gear drives; interrupted and continued on the
+// way, and after rejected steps.
 TEST_CASE("an angle counts fifty revolutions and back, and continues after a restart") {
   Model model = wheel();
   const Real amplitude = 100 * M_PI;
@@ -67,7 +67,7 @@ TEST_CASE("an angle counts fifty revolutions and back, and continues after a res
   MultibodyRun run(model, 1e-11);
   MultibodyState left;
   for (int i = 0; i < 2000; ++i) {
-    if (i % 50 == 0) run.multibody.predict(run.state, run.time, 1.5 * kStep);  // and not accepted
+    if (i % 50 == 0) run.multibody.predict(run.state, run.time, 1.5 * kStep);  // a step that is not accepted
     run.step(kStep);
     if (i == 699) left = run.state;
     const std::vector<JointReading> c = readings(run);
@@ -87,7 +87,7 @@ TEST_CASE("an angle counts fifty revolutions and back, and continues after a res
 }
 
 // Universal joints at both ends of a shaft that is bent by beta: tan(b) = tan(a) cos(beta) for the shaft in
-// the middle; the last one turns as the first, since the arms of the middle one are in one plane.
+// the middle; the last one rotates as the first, since the arms of the middle one are coplanar.
 TEST_CASE("a double Hooke shaft rotates by its closed form") {
   constexpr Real kBend = 0.6, kRate = 20;
   const Vec3 along{std::cos(kBend), std::sin(kBend), 0}, across{-std::sin(kBend), std::cos(kBend), 0},
@@ -121,15 +121,16 @@ TEST_CASE("a double Hooke shaft rotates by its closed form") {
     const Vec3 arm = rotation_matrix(run.multibody.motion(run.state)[1].orientation) * across;
     const Real b = std::atan2(dot(arm, up), dot(arm, across));
     REQUIRE(near(std::sin(b) * std::cos(a), std::cos(b) * std::sin(a) * std::cos(kBend), {.absolute = 1e-9}));
-    // Against either shaft the first joint's cross leans by the angle whose sine the other shaft's arm has
-    // along it; against the first one by kBend at the start, where its angle is 0.
+    // The first joint's cross is inclined to either shaft by the angle whose sine is the component of the
+    // other shaft's arm along it; to the first one by kBend at the start, where its angle is 0.
     const Vec3 first = rotation_matrix(exponential(Vec3{a, 0, 0})) * up;
     REQUIRE(near(c[1].value, std::asin(-dot(arm, {1, 0, 0})) - kBend, {.absolute = 1e-9}));
     REQUIRE(near(c[2].value, std::asin(-dot(first, along)), {.absolute = 1e-9}));
   }
 }
 
-// Frame 2 is frame 1 turned about its x by angle_1, then about its own y by angle_2, also past whole turns.
+// Frame 2 is frame 1 rotated about its x by angle_1, then about its own y by angle_2, also beyond whole
+// revolutions.
 TEST_CASE("the angles of a universal joint determine the pose of its second body") {
   Model model = wheel(JointKind::universal);
   model.drivers = {{"roll", 0, ramp(9), JointCoordinate::angle_1},
@@ -161,8 +162,8 @@ TEST_CASE("the angles of a universal joint determine the pose of its second body
   CHECK(same_bits(again.state.position, run.state.position));
 }
 
-// A wheel on the cross's second arm with a spring about either arm: small turns about the two are free of
-// each other, each with its own frequency.
+// A wheel on the cross's second arm with a spring about either arm: small rotations about the two are
+// decoupled, each with its own frequency.
 TEST_CASE("springs on the angles of a universal joint have their frequencies") {
   Model model = wheel(JointKind::universal);
   model.bodies[0].inertia_tensor.xy = model.bodies[0].inertia_tensor.yz = 0;
@@ -210,7 +211,7 @@ TEST_CASE("a motor on a torque-speed line with a limit rotates a wheel in space"
 TEST_CASE("a torsional spring rotates a wheel in space through many revolutions and back, to second order") {
   const auto error = [](Real h) {
     Model model = wheel();
-    model.joint_springs = {{"spring", 0, 3, 0, 40, {}, {}}};  // free at 40 rad: swings to 80 rad
+    model.joint_springs = {{"spring", 0, 3, 0, 40, {}, {}}};  // unloaded at 40 rad: oscillates to 80 rad
     const Real w = std::sqrt(3 / axial_inertia(model));
     MultibodyRun run(model, 1e-12);
     Real worst = 0;

@@ -63,7 +63,7 @@ Matrix6 transposed(const Matrix6& a) {
   return b;
 }
 
-// Of a symmetric matrix, by Jacobi's rotations: vectors in the columns.
+// Modes of a symmetric matrix by Jacobi's rotations: vectors in the columns.
 struct Modes {
   std::array<Real, 6> value{};
   Matrix6 vector{};
@@ -191,7 +191,7 @@ TEST_CASE("a bushing that nears half a revolution ends the run with its name") {
   model.bushings = {bushing_between(kGround, 0, {}, {})};
   model.bushings[0].stiffness = diagonal({10, 10, 10, 0, 0, 0});
   MultibodyRun free(model);
-  free.steps(50, 1e-2);  // nothing depends on the angle
+  free.steps(50, 1e-2);  // no force depends on the angle
   CHECK(near(free.state.velocity[5], 10, {.relative = 1e-12}));
   model.bushings[0].stiffness[5][5] = 1e-3;
   MultibodyRun run(model);

@@ -1,5 +1,5 @@
-// A plate on a hinge with spheres off its centre, hit by a grain: a spatial body does what a planar one does,
-// and the same when everything is turned in space.
+// A plate on a revolute joint with spheres off its centre, hit by a particle: a spatial body moves as a
+// planar one does, and identically after a rotation of everything in space.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kIterated = 1e-8;  // of what the implicit step's iteration leaves, and round-off
+constexpr Real kIterated = 1e-8;  // of the residual of the implicit step's iteration, and round-off
 
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
@@ -48,8 +48,8 @@ std::string deck(const std::string& particles, const Quaternion* frame) {
 }
 
 struct Outcome {
-  Real spin;      // of the plate about the hinge [rad/s]
-  Vec3 velocity;  // of the grain, in the scene's frame [m/s]
+  Real spin;      // of the plate about the revolute joint [rad/s]
+  Vec3 velocity;  // of the particle, in the scene's frame [m/s]
   Vec3 grain_spin;
   Real dissipated;
 };

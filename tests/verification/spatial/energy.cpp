@@ -1,4 +1,4 @@
-// The energy ledger of a mechanism in space with motors, springs, stops, friction and a bushing.
+// The energy balance of a spatial mechanism with motors, springs, limits, friction and a bushing.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ using namespace scree;
 
 namespace {
 
-// An arm on an oblique hinge, a slider on the arm, and a block on a bushing on the slider.
+// An arm on an oblique revolute joint, a slider on the arm, and a block on a bushing on the slider.
 Model crane() {
   Model model = spatial_model(-0.05);
   model.consistent_velocities = true;
@@ -90,7 +90,7 @@ void add_bushing(Model& model) {
 }
 
 struct Books {
-  Real gap = 0;  // the ledger's largest error [J]
+  Real gap = 0;  // largest error of the energy balance [J]
   Real dissipated = 0, driven = 0, stored = 0;
 };
 
@@ -107,7 +107,7 @@ Books books_of(const Model& model, Real h) {
   return books;
 }
 
-// Over four steps, each half of the one before it. dissipated, driven, stored: at least [J].
+// Over four steps, each half of the one before. dissipated, driven, stored: at least [J].
 void check_order(const Model& model, Real dissipated, Real driven, Real stored) {
   Books before = books_of(model, 2e-3);
   const Real first = before.gap;

@@ -1,5 +1,5 @@
-// One mechanism given by centres of mass, points and axes in space, and by frames elsewhere on the bodies and
-// markers in these: the same motion and reactions.
+// One mechanism given by centres of mass, points and axes in space, and by frames elsewhere on the bodies
+// with markers: the same motion and reactions.
 #include <fmt/format.h>
 
 #include <string>
@@ -24,8 +24,8 @@ std::string text(const Quaternion& p) {
   return fmt::format("[{:.17e}, {:.17e}, {:.17e}, {:.17e}]", p.w, p.x, p.y, p.z);
 }
 
-// Where the frame of a body of the deck stands: its axes from those of the model's body, and the model's
-// centre of mass in it.
+// Frame of a body in the deck: its axes relative to those of the model's body, and the model's centre of
+// mass in it.
 struct DeckFrame {
   Quaternion axes;
   Vec3 center;
@@ -96,7 +96,7 @@ TEST_CASE("a slider-crank by frames and markers moves as by points and axes") {
   }
 }
 
-// The crank's hinge bears nothing about its axis, the ground's x: the marker's z.
+// The crank's revolute joint transmits no torque about its axis, the ground's x: the marker's z.
 TEST_CASE("reactions along the axes of the joint's first marker") {
   MultibodyRun run(slider_crank_in_space(-0.1), 1e-13);
   run.steps(100, 1e-3);
@@ -104,7 +104,7 @@ TEST_CASE("reactions along the axes of the joint's first marker") {
   const Vec3 hinge = turned(conjugate(reactions[0].frame), reactions[0].torque);
   CHECK(std::abs(hinge.z) < 1e-10);
   CHECK(norm(hinge) > 1e-3);
-  // The cross bears a torque about the axis across both its arms alone: the first is x of its marker.
+  // The cross transmits a torque about the axis normal to both its arms alone: the first is x of its marker.
   const Vec3 cross = turned(conjugate(reactions[2].frame), reactions[2].torque);
   CHECK(std::abs(cross.x) < 1e-10);
   CHECK(norm(cross) > 1e-6);
@@ -125,7 +125,7 @@ TEST_CASE("quaternions keep their sign through all rotations") {
   CHECK(changes > 10);
 }
 
-// n is turned by 0.5 rad from m about the axis of both.
+// n is rotated by 0.5 rad from m about their common axis.
 TEST_CASE("the angle of a joint by markers is that between their x axes") {
   Model model = model_of(
       kHead +
@@ -159,7 +159,7 @@ TEST_CASE("a force that follows its body acts along its marker") {
   CHECK(norm(moved("") - Vec3{0, 0, 0.015}) < 1e-12);
 }
 
-// Rods with a ball joint to the next, the first one on the ground.
+// Rods with a spherical joint to the next, the first one on the ground.
 TEST_CASE("a row of ten bodies on the markers of a chain moves as on points given one by one") {
   const std::string rods = kHead +
                            "[[bodies]]\nname = \"rod\"\nkind = \"spatial\"\ncount = 10\nspacing = [0.1, 0.0, "
@@ -189,7 +189,7 @@ TEST_CASE("a row of ten bodies on the markers of a chain moves as on points give
   }
 }
 
-// Pendulums side by side, each on its own hinge: all as one alone.
+// Pendulums side by side, each on its own revolute joint: each moves as a single one.
 TEST_CASE("each body of a row hangs on its own revolute joint") {
   const auto pendulums = [](int count) {
     return kHead +

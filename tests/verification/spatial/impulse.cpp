@@ -1,5 +1,5 @@
-// A grain that hits a body of spheres off every axis: for contacts ever stiffer its impulse, and the motion
-// that it leaves, are those of two rigid bodies that touch in an instant.
+// A particle that hits a body of spheres off every axis: for increasingly stiff contacts its impulse, and
+// the resulting motion, are those of two rigid bodies with an instantaneous impact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,14 +22,15 @@ const Sym3 kInertia{.xx = 0.02, .xy = 0.003, .xz = -0.002, .yy = 0.035, .yz = 0.
 const Vec3 kOffset{0.15, -0.1, 0.08};  // of the sphere that is hit, in the body's frame
 const Vec3 kHinge{-0.2, 0.05, 0};      // in the body's frame
 const Quaternion kPose = normalized({0.7, -0.3, 0.5, 0.4});
-const Vec3 kAway = (1 / norm(Vec3{0.6, -0.5, 0.9})) * Vec3{0.6, -0.5, 0.9};  // from the sphere to the grain
+const Vec3 kAway =
+    (1 / norm(Vec3{0.6, -0.5, 0.9})) * Vec3{0.6, -0.5, 0.9};  // from the sphere to the particle
 
 Real grain_mass() { return kDensity * 4 / 3 * std::numbers::pi * kGrainRadius * kGrainRadius * kGrainRadius; }
 Vec3 global(Vec3 local) { return rotation_matrix(kPose) * local; }
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
-// The first touch comes at the end of a step, but for round-off: nothing else acts there. The grain is away
-// for half of what an impact against a wall would take, and away again after less than that time.
+// The first touch is at the end of a step, but for round-off: nothing else acts there. The particle is in
+// contact for half the duration of an impact on a wall, and is separated again after less than that time.
 std::string deck(Real stiffness, const std::string& particles, const std::string& hinge) {
   const Real duration = std::numbers::pi * std::sqrt(grain_mass() / stiffness);
   const Vec3 grain = global(kOffset) + (kSphereRadius + kGrainRadius + kSpeed * duration / 2) * kAway;
@@ -54,7 +55,7 @@ std::string deck(Real stiffness, const std::string& particles, const std::string
              text(grain), text(-kSpeed * kAway), kGrainRadius, kDensity);
 }
 
-// After the impact.
+// Motion after the impact.
 struct Motion {
   Vec3 velocity, spin;  // of the body: of its centre, and in its own frame
   Vec3 grain;
@@ -71,7 +72,7 @@ Motion simulated(const std::string& deck) {
 }
 
 // An impulse P along the line of centres, elastic: P (1/m + response along the line) = 2 speed. turned: spin
-// in the body's frame by an impulse of 1 N s; moved: velocity of the centre by it.
+// in the body's frame due to an impulse of 1 N s; moved: velocity of the centre due to it.
 Motion closed_form(Vec3 turned, Vec3 moved) {
   const Vec3 push = transposed_times(rotation_matrix(kPose), -kAway);  // in the body's frame
   const Real response = 1 / grain_mass() + dot(push, moved + cross(turned, kOffset));
@@ -89,7 +90,8 @@ void check_converges(const std::string& hinge, const Motion& exact) {
                            norm(motion.spin - exact.spin) / norm(exact.spin),
                            norm(motion.grain - exact.grain) / kSpeed});
     }
-    // The body turns while it is touched: an error by the duration, a tenth at a hundred times the stiffness.
+    // The body rotates during the contact: an error proportional to the duration, a tenth at a hundred times
+    // the stiffness.
     CAPTURE(error[0], error[1]);
     CHECK(error[0] < 0.02);
     CHECK(error[1] < 0.12 * error[0]);

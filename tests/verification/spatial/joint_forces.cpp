@@ -9,7 +9,7 @@ using namespace scree;
 
 namespace {
 
-// A frame whose z is the axis: the shortest turn from z.
+// A frame whose z is the axis: the shortest rotation from z.
 Quaternion towards(Vec3 axis) {
   const Vec3 turn = cross(Vec3{0, 0, 1}, axis);
   return exponential((std::atan2(norm(turn), axis.z) / norm(turn)) * turn);
@@ -65,7 +65,9 @@ TEST_CASE("a spring lets a slider down an oblique axis and takes it back, to sec
   CHECK(coarse / fine < 4.3);
 }
 
-TEST_CASE("friction of a slider on an oblique axis follows the force across it: it holds, or slides with the rest") {
+TEST_CASE(
+    "friction of a slider on an oblique axis follows the force across it: it holds, or slides with the "
+    "rest") {
   const Vec3 axis{1.0 / 3, -2.0 / 3, -2.0 / 3};
   Model model = spatial_model(-0.05);
   model.bodies = {spatial_body("slider", 2, {0.1, 0.2, 0.15}, {0, 0, 0})};
@@ -89,7 +91,7 @@ TEST_CASE("friction of a slider on an oblique axis follows the force across it: 
 
 namespace {
 
-// Two bodies that fly and turn as one, on a joint between them.
+// Two free bodies in rigid rotation, on a joint between them.
 Model flying_pair(JointKind kind) {
   Model model = spatial_model(-0.05);
   model.gravity = {};
@@ -102,7 +104,7 @@ Model flying_pair(JointKind kind) {
   return model;
 }
 
-// A motor, a spring and a stop on the displacement.
+// A motor, a spring and a limit on the displacement.
 Model pushed_pair() {
   Model model = flying_pair(JointKind::translational);
   model.motors = {pusher(0.5, 4, 10)};
@@ -114,7 +116,7 @@ Model pushed_pair() {
   return model;
 }
 
-// The same on the displacement of a cylindrical joint, and others on its angle.
+// Those on the displacement of a cylindrical joint, and others on its angle.
 Model pushed_and_turned_pair() {
   Model model = flying_pair(JointKind::cylindrical);
   const Model pushed = pushed_pair();

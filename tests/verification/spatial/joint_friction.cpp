@@ -1,4 +1,4 @@
-// Dry friction on the angle of a hinge in space: wheels that turn many times and come to a stop.
+// Dry friction on the angle of a spatial revolute joint: wheels that rotate many times and stop.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ Joint axle_along(Vec3 axis) {
   return axle;
 }
 
-// Turns at kRate about its z axis, which lies along the hinge's through its centre.
+// Rotates at kRate about its z axis, which is that of the revolute joint through its centre.
 Model wheel_on(Vec3 axis) {
   Model model = spatial_model(-0.05);
   model.gravity = {};
@@ -36,7 +36,7 @@ Model dry_wheel(Real torque) {
   model.joint_frictions[0].effort = torque;
   return model;
 }
-// Its weight lies across the axle, which rubs.
+// Its weight is normal to the axle, which has friction.
 Model heavy_wheel(Real torque) {
   Model model = wheel_on({0.6, 0.8, 0});
   model.gravity = {0, 0, -9.81};
@@ -54,7 +54,7 @@ JointEffortSample sample_of(const MultibodyRun& run) {
   return run.multibody.joint_efforts(run.state, run.time).at(0);
 }
 
-// Winds friction's spring up to this torque.
+// Loads friction's spring up to this torque.
 void wind(MultibodyRun& run, Real torque) {
   run.state.memory = {torque};
   run.multibody.solve_acceleration(run.state, 0, {BodyWrench{}});
@@ -69,10 +69,10 @@ struct Braking {
     time = slip + kInertia * rate / torque;
     angle = torque / kStiffness + kInertia * rate * rate / (2 * torque);
   }
-  Real time, angle;  // of the stop
+  Real time, angle;  // when the wheel stops
 };
 
-// Between the two steps around it, by the rate's and the angle's parabola.
+// Between the two steps around it, by the parabolas of rate and angle.
 Braking found_stop(const Model& model, Real h) {
   MultibodyRun run(model);
   JointEffortSample before, now = sample_of(run);
@@ -89,7 +89,8 @@ Braking found_stop(const Model& model, Real h) {
 
 }  // namespace
 
-TEST_CASE("a revolute joint with friction brakes its wheel uniformly over fourteen revolutions, at any step") {
+TEST_CASE(
+    "a revolute joint with friction brakes its wheel uniformly over fourteen revolutions, at any step") {
   constexpr Real kTorque = 0.1, kStop = kInertia * kRate / kTorque, kAngle = kRate * kStop / 2;
   REQUIRE(kAngle > 14 * 2 * M_PI);
   for (Model model : {dry_wheel(kTorque), heavy_wheel(kTorque)}) {
@@ -114,7 +115,7 @@ TEST_CASE("a revolute joint with friction brakes its wheel uniformly over fourte
     }
     for (const Real error : {angle, rate, effort, loss})
       CHECK(measured("hinge_friction/braked", "", at_most(error, 1e-9)));
-    // The last rate before the stop and the first one after it, when the spring lets go.
+    // The last rate before the stop and the first one after it, when the spring releases.
     CHECK(near(run.time - h * now.rate / (now.rate - before.rate), kStop, {.absolute = 1e-2 * h}));
     // It comes to rest where the spring is empty.
     run.steps(static_cast<int>(15 / h), h);
@@ -126,7 +127,7 @@ TEST_CASE("a revolute joint with friction brakes its wheel uniformly over fourte
 }
 
 TEST_CASE("from an empty spring on a wheel stops when and where it must, to second order") {
-  // Where in a step it begins to slide decides on the error: the worst of ten such places.
+  // The phase of the step at which sliding begins determines the error: the worst of ten such phases.
   struct Errors {
     Real time = 0, angle = 0;
   };
@@ -149,8 +150,8 @@ TEST_CASE("from an empty spring on a wheel stops when and where it must, to seco
   }
 }
 
-// The centre is e beside the axle, whose load is m e sqrt(w^4 + w'^2): then w' = -k w^2, of which the
-// solution is w = w_0 / (1 + k w_0 t).
+// The centre is e off the axle, whose load is m e sqrt(w^4 + w'^2): then w' = -k w^2, with the solution w =
+// w_0 / (1 + k w_0 t).
 TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round, to second order") {
   constexpr Real kOffset = 0.02, kLever = 0.25 * 0.02, kEnd = 10;
   const Real share = kLever * kMass * kOffset / (kInertia + kMass * kOffset * kOffset);
@@ -191,8 +192,8 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
     CHECK(measured("hinge_friction/halved", "", in_range(ratio, 3.8, 4.2)));
 }
 
-// J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: what friction
-// does to the motion changes the load that it follows by more than itself, as the assertion says.
+// J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: the effect of
+// friction on the motion changes the load on which it depends by more than itself, as the assertion shows.
 TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances its energy") {
   constexpr Real kLoad = 1e5, kSpindle = 0.1, kPitch = 1.6e-3, kLever = 3e-3;
   constexpr Real kTorque = 6000, kFade = 2000;  // [N m], [N m/s]
@@ -219,7 +220,7 @@ TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances it
   MultibodyRun run(model);
   wind(run, rub(0));
   const Real start = energy(run);
-  Real first = 0;  // the error of the start, which stays
+  Real first = 0;  // the error of the start, which is constant
   for (int i = 0; i < 200; ++i) {
     run.step(2e-3);
     const Real t = run.time;

@@ -1,4 +1,4 @@
-// Reactions of every joint in space against the balance of the bodies that it joins, made free by hand.
+// Reactions of every spatial joint against the balance of its free bodies.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ Real sine_at(Real amplitude, Real frequency, Real t) {
   return amplitude * std::sin(2 * M_PI * frequency * t);
 }
 
-// Joint 0 hangs body 0 on the ground by a ball, joint 1 is of this kind and joins body 1 to body 0. A force
-// beside its centre and a torque act on body 1.
+// Joint 0 is spherical, between body 0 and the ground; joint 1 is of this kind, between bodies 1 and 0. A
+// force off its centre and a torque act on body 1.
 Model hanging_pair(JointKind kind) {
   Model model = spatial_model(kAlpha);
   model.consistent_velocities = true;
@@ -71,7 +71,7 @@ Model hanging_pair(JointKind kind) {
 
 constexpr Real kStroke = 0.1, kFrequency = 1.5;
 
-// From where the joint is at t = 0.
+// Starts at the joint's coordinate at t = 0.
 TimeFunction driven_motion(JointKind kind) {
   TimeFunction f = sine(kStroke, kFrequency);
   if (kind == JointKind::distance) f.value = kDistance;
@@ -82,7 +82,7 @@ Real driven_rate(Real t) {
   return kStroke * w * std::cos(w * t);
 }
 
-// What is applied to body 1.
+// Force and torque applied to body 1.
 Wrench applied(Real t, const BodyMotion& body) {
   const Vec3 force{sine_at(3, 2, t), sine_at(-2, 3, t), sine_at(4, 1, t)};
   const Vec3 torque{sine_at(0.2, 3, t), sine_at(-0.4, 1, t), sine_at(0.3, 2, t)};
@@ -93,11 +93,10 @@ struct Balance {
   std::vector<BodyMotion> motion;
   std::array<Wrench, 2> wrench;
   Wrench reaction,
-      driver;  // of joint 1 with its driver, and of that alone, on body 1 about the joint's point
+      driver;  // of joint 1 with its driver, and of the driver alone, on body 1 about the joint's point
 };
 
-// All that acts on each body: weight, what is applied, and the reactions that the run reports, with their
-// levers.
+// All forces on each body: weight, applied ones, and the reactions of the run, with their lever arms.
 Balance balance_of(const MultibodyRun& run, const Model& model) {
   Balance b;
   b.motion = run.multibody.motion(run.state);
@@ -137,7 +136,8 @@ Momentum momentum_of(const Balance& b, const Model& model) {
   return sum;
 }
 
-// Of the reaction along the axes of the joint's marker on the first body: which of them it can have.
+// The components of the reaction along the axes of the joint's marker on the first body that the joint can
+// transmit.
 struct Carried {
   JointKind kind;
   std::string_view force, torque;
@@ -164,13 +164,13 @@ std::array<Real, 3> components(Vec3 v) { return {v.x, v.y, v.z}; }
 // Largest gaps over a run.
 struct Gaps {
   Real force = 0, torque = 0;   // of the bodies' balance [N, N m]
-  Real carried = 0;             // of components that the joint without a driver cannot carry [N, N m]
-  Real power = 0;               // of the reaction on the joint's own motion, less the driver's [W]
+  Real carried = 0;             // of components that the joint without a driver cannot transmit [N, N m]
+  Real power = 0;               // power of the reaction on the joint's own motion, less the driver's [W]
   Real impulse = 0, swing = 0;  // of momentum and angular momentum [N s, N m s]
   Real most = 0;                // the reaction's size [N, N m]
 };
 
-// M a = H, H what acts at the instant, a torque less w x J w and along the body's axes.
+// M a = H, with H the forces and torques at the instant, the torque less w x J w and along the body's axes.
 void compare_instant(const Model& model, const MultibodyRun& run, const Balance& b, Gaps& gaps) {
   const MultibodyState now = run.multibody.at_instant(run.state, run.time);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -185,8 +185,8 @@ void compare_instant(const Model& model, const MultibodyRun& run, const Balance&
   }
 }
 
-// Of the driver's reaction: its component on the coordinate times the coordinate's rate. second: the second
-// body's arm, where the joint is universal.
+// Power of the driver's reaction: its component along the coordinate times the coordinate's rate. second:
+// the second body's arm of a universal joint.
 Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, Vec3 second, Vec3 apart,
                  Real t) {
   if (model.drivers.empty()) return 0;
@@ -205,7 +205,7 @@ Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, V
   return 0;
 }
 
-// What the reaction does on the joint's own motion, and whether the joint can carry it.
+// Power of the reaction on the joint's own motion, and whether the joint can transmit the reaction.
 void look_at_reaction(const Model& model, const Balance& b, Real t, Gaps& gaps) {
   const Vec3 force = b.reaction.force, torque = b.reaction.torque;
   gaps.most = std::max(gaps.most, norm(force) + norm(torque));
@@ -259,7 +259,7 @@ void check_gaps(const Model& model) {
   for (const Real gap : {fine.force, fine.torque})
     CHECK(measured("reactions/balance", "", at_most(gap / std::max(Real(1), fine.most), 1e-12)));
   CHECK(fine.carried < 1e-12);
-  // The velocities that the positions' constraints leave err with second order.
+  // The errors of the velocities permitted by the position constraints are of second order.
   CHECK(fine.power < 4e-4 * fine.most);
   CHECK((coarse.power / fine.power > 3.8 || coarse.power < 1e-10));
   for (const Real ratio : {coarse.impulse / fine.impulse, coarse.swing / fine.swing})

@@ -1,7 +1,7 @@
-// Redundant constraints that share the load: the motion is that of a mechanism without redundant ones, the
-// reactions are the least, and singular positions are passed.
+// Redundant constraints with minimum-norm reactions: the motion is that of a mechanism without redundant
+// ones, the reactions have the least norm, and singular positions are passed.
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // GCC 12 sees it in its own AVX-512 header
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // a false warning of GCC 12 in Eigen's AVX-512 header
 #include <Eigen/Dense>
 #pragma GCC diagnostic pop
 #include <cmath>
@@ -22,8 +22,9 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kCompliance = 1e-8;  // of the motion, relative: more than the rows' share of 1e-9
-constexpr Real kLeast = 1e-6;       // of the multipliers: round-off over that share
+constexpr Real kCompliance =
+    1e-8;                      // of the motion, relative: more than the relative compliance of the rows, 1e-9
+constexpr Real kLeast = 1e-6;  // of the multipliers: round-off over that compliance
 
 Real difference(const std::vector<BodyMotion>& one, const std::vector<BodyMotion>& other) {
   Real largest = 0;
@@ -61,7 +62,7 @@ struct Matrices {
   Real largest_gap = 0;
 };
 
-// Of all lambda with these forces Phi_q^T lambda, the least in the norm of S, by singular values.
+// Of all lambda with these forces Phi_q^T lambda, the one with the least norm of S, by singular values.
 Eigen::VectorXd least(const Matrices& m, const Eigen::VectorXd& force) {
   const Eigen::VectorXd root = m.weight.cwiseSqrt();
   const Eigen::MatrixXd scaled = (root.cwiseInverse().asDiagonal() * m.jacobian).transpose();
@@ -74,8 +75,8 @@ Eigen::VectorXd vector(const std::vector<Real>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
-// Runs both side by side: they move alike, and of all multipliers that hold the exact one's forces those of
-// the one that shares are the least.
+// Runs both side by side: their motion is the same, and the multipliers of the redundant one are the
+// minimum-norm ones of all that give the exact one's forces.
 void check_shared(const Model& shared, const Model& exact, Real h, Real span) {
   MultibodyRun one(shared, 1e-12), other(exact, 1e-12);
   Real apart = 0;
@@ -94,13 +95,13 @@ void check_shared(const Model& shared, const Model& exact, Real h, Real span) {
     CHECK(m.largest_gap < 1e-11);
   }
   CHECK(measured("loops/motion", "", at_most(apart, kCompliance)));
-  // The exact joints carry what they can, which is not the same.
+  // The reactions of the exact joints, which differ.
   const Reaction shares = one.multibody.reactions(one.state, one.time)[0],
                  carries = other.multibody.reactions(other.state, other.time)[0];
   CHECK(norm(shares.torque - carries.torque) > 0.1);
 }
 
-// Largest distance of the first bar's centre from where it should be.
+// Largest distance of the first bar's centre from its exact position.
 Real error_of_bars(const Model& model, int loops, Real h, Real span, Real tolerance = 1e-10) {
   MultibodyRun run(model, tolerance);
   FallingBars bars(loops + 1, loops);
@@ -116,12 +117,14 @@ Real error_of_bars(const Model& model, int loops, Real h, Real span, Real tolera
 
 }  // namespace
 
-TEST_CASE("a four-bar with four spatial revolute joints moves as with exact joints and has minimum-norm reactions") {
+TEST_CASE(
+    "a four-bar with four spatial revolute joints moves as with exact joints and has minimum-norm "
+    "reactions") {
   Model shared = bars(1, false), exact = bars(1, true), other = bars(1, false);
-  other.integrator.redundant = RedundantRows::error;  // with other joints that are exact
+  other.integrator.redundant = RedundantRows::error;  // with other joints that are not redundant
   other.joints[0].kind = JointKind::cylindrical, other.joints[2].kind = JointKind::spherical;
   for (Model* model : {&shared, &exact, &other})
-    model->gravity.z = 4;  // a load across, which all hinges may carry
+    model->gravity.z = 4;  // a transverse load, which all revolute joints may carry
   check_shared(shared, exact, 1e-3, 1);
   check_shared(shared, other, 1e-3, 0.5);
 }
@@ -159,8 +162,8 @@ TEST_CASE("Bricard's linkage moves as with an exact joint, through the published
   CHECK(near(period, 4.99, {.absolute = 0.01}));
 }
 
-// Nothing repeats itself here, so that nothing may change. What rows yield by is in the measure of each row's
-// own bodies, a large part of what both together move where the load is heavy.
+// Nothing is redundant here, so that nothing may change. The yielding of a row is relative to the mobility
+// of its own bodies, which is a large part of that of both together where the load is heavy.
 TEST_CASE("a light link that carries a heavy load yields nothing") {
   Model model = spatial_model(-0.1);
   model.gravity = {0, 0, -kFall};
@@ -244,11 +247,11 @@ TEST_CASE("redundant planar joints have minimum-norm reactions, too") {
   CHECK(std::log2(coarse / fine) < 2.05);
 }
 
-// The digits of a deck leave gaps far above what rows that share yield.
+// The digits of a deck leave gaps far above the yielding of redundant rows.
 TEST_CASE("a gap in redundant rows alone loads nothing") {
   Model model = bars(1, false);
   const Model exact = model;
-  model.joints[3].point[0].z += 5e-10;  // along the hinge
+  model.joints[3].point[0].z += 5e-10;  // along the revolute joint
   model.joints[0].marker[0] = exponential({3e-11, 0, 0}) * model.joints[0].marker[0];
   for (const Real h : {1e-3, 1e-5}) {
     const auto multipliers = [&](const Model& start) {
@@ -256,7 +259,7 @@ TEST_CASE("a gap in redundant rows alone loads nothing") {
       Multibody multibody(start);
       const ContactWrenches none{std::vector<BodyWrench>(start.bodies.size()), {}};
       MultibodyState state = multibody.initial_state(none.wrench);
-      for (int i = 0; i < 200; ++i) {  // until the jump to the joints has died out
+      for (int i = 0; i < 200; ++i) {  // until the initial jump has decayed
         multibody.predict(state, i * h, h);
         for (int k = 0; k < 4; ++k) multibody.correct(none);
         multibody.accept(state, none.wrench);
@@ -287,7 +290,7 @@ TEST_CASE("a linkage keeps its joints closed and its energy balanced over 100,00
   }
   CAPTURE(gap, off, loss);
   CHECK(measured("loops/gap", "m", at_most(gap, 1e-11)));
-  CHECK(loss < 1.5e-5);  // [J]; 9.0e-6 measured, of 40 J that come and go
+  CHECK(loss < 1.5e-5);  // [J]; 9.0e-6 measured, of 40 J exchanged
   CHECK(off < 1e-12);
 }
 
@@ -303,8 +306,8 @@ TEST_CASE("minimum-norm reactions continue from a state with the same bits") {
   }
 }
 
-// An axis that is a little off leaves its loop a rank of 18, in exact arithmetic, with a row close to a
-// combination of others, which must not hide the two that are one.
+// With an axis slightly off its loop has rank 18, in exact arithmetic, with a row close to a combination of
+// others, which must not hide the two that are dependent.
 TEST_CASE("a loop with an axis that is a little off is refused, too") {
   petsc();
   for (const Real off : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
@@ -337,7 +340,8 @@ TEST_CASE("the refusal of a loop of revolute joints names a remedy that works") 
   CHECK(text ==
         "redundant constraints: joint 'foot.0', joint 'left.0', joint 'foot.1', joint 'right.1' fix the same "
         "motion more than once, 20 rows have rank 17; the motion is unique, the reactions of these are not. "
-        "Remove or change one; or set integrator.redundant = \"minimum-norm\" for minimum-norm reactions; or, for the "
+        "Remove or change one; or set integrator.redundant = \"minimum-norm\" for minimum-norm reactions; "
+        "or, for the "
         "same motion without any, make joint 'foot.0' spherical and joint 'right.1' cylindrical");
   model.joints.front().kind = JointKind::spherical, model.joints.back().kind = JointKind::cylindrical;
   CHECK_NOTHROW(Multibody(model));

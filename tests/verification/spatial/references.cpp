@@ -20,7 +20,7 @@ struct Case {
   std::string name;
   std::function<Model(Real)> model;
   Real step;  // the coarser one [s]
-  // Bounds at that step and alpha = -0.1, 1.2 times what was measured: position [m], rotation [rad], force
+  // Bounds at that step and alpha = -0.1, 1.2 times the measured errors: position [m], rotation [rad], force
   // [N].
   Real position, rotation, force;
   ForceError force_error = {};

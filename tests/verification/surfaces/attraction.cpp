@@ -1,4 +1,4 @@
-// Particles that are attracted by meshes, moving walls and shapes of bodies, through decks.
+// Cohesion of particles with meshes, moving walls and shapes of bodies, through decks.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace scree {
 
 namespace {
 
-// A sphere of this radius, its E* and work of adhesion on what does not give way.
+// Radius of the sphere, its E* and work of adhesion on a rigid partner.
 constexpr Real kRadius = 1e-3, kYoung = 1e5, kWork = 0.1, kPi = std::numbers::pi_v<Real>;
 
 // Johnson, Kendall and Roberts' closed forms, for R*.
@@ -34,11 +34,11 @@ Real neck_loss(Real radius) {
 
 // A heavy sphere in touch with a target at z = 0 below it.
 struct StickyDeck {
-  std::string target;  // tables of what the contact record calls "target"
+  std::string target;  // tables of the contact record's "target"
   Real step = 1e-6, end = 1.2e-3;
   std::string law = fmt::format("work_of_adhesion = {}\n", kWork);
   std::string grain = fmt::format("positions = [[0, 0, {:.17g}]]\nmass = 1.0\n", kRadius - 1e-6);
-  std::string output = {};  // further keys of it
+  std::string output = {};  // further keys of `output`
 
   Model model() const {
     return model_of(
@@ -55,7 +55,7 @@ struct StickyDeck {
   }
 };
 
-constexpr Real kSpeed = 0.03;  // of targets that part from the sphere [m/s]
+constexpr Real kSpeed = 0.03;  // speed of targets that separate from the sphere [m/s]
 
 std::string moved(const std::string& wall) {
   return "[[walls]]\nname = \"target\"\nmaterial = \"stiff\"\n" + wall +
@@ -77,7 +77,7 @@ std::string body(const std::string& surface) {
 
 struct Pull {
   Real largest = 0;  // [N]
-  Real broken = 0;   // how far the target had gone then [m]
+  Real broken = 0;   // displacement of the target at that time [m]
   Real last = 0;     // before the break [N]
   Real books = 0;    // balance error [J]
 };
@@ -140,15 +140,15 @@ TEST_CASE("JKR holds a sphere with up to 3/2 pi w R*, and breaks at the pull-off
     CHECK(measured("neck/pull_off", "",
                    keeps(pull.largest / pull_off(c.radius) - 1, {.promise = 1e-5, .measured = 4.2e-8})));
     CHECK(near(pull.last, Real(5) / 9 * pull_off(c.radius), {.relative = 0.1}));
-    const Real way = kSpeed * 1e-6;  // of a step [m]
+    const Real way = kSpeed * 1e-6;  // displacement in a step [m]
     CHECK(measured("neck/length", "steps", at_most((pull.broken - longest_neck(c.radius)) / way, 1.1)));
     CHECK(measured("neck/balance", "",
                    keeps(pull.books / neck_loss(c.radius), {.promise = 1e-2, .measured = 6e-4})));
   }
 }
 
-// Over the inner edges of a refined face and then past the edge of the box, along which it is drawn while it
-// sinks: its distance alone says what pulls, beyond touch and round the edge.
+// Over the inner edges of a refined face and then beyond the edge of the box, along which it is pulled while
+// it sinks: the force depends on its distance alone, beyond touch and around the edge.
 TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
   constexpr Real kEdge = 5.0003e-4, kAcross = 1, kSinking = 5e-3;
   const auto ramp = [](const char* direction, Real rate) {
@@ -181,7 +181,7 @@ TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
 
 namespace {
 
-// A light sphere that hits the target, forms a neck and breaks it again.
+// A light sphere that hits the target, with a JKR contact that forms and breaks.
 StickyDeck thrown_on(const std::string& target, Real mass, Real speed, Real step) {
   return {.target = target,
           .step = step,
@@ -198,7 +198,9 @@ Real impact_work(const State& state) {
 
 }  // namespace
 
-TEST_CASE("an impact loses the formation dissipation of JKR, on meshes and on free bodies, and the energy balance closes") {
+TEST_CASE(
+    "an impact loses the formation dissipation of JKR, on meshes and on free bodies, and the energy balance "
+    "closes") {
   constexpr Real kMass = 1e-5, kBody = 3e-5, kSphere = 0.002;
   const auto free_body = [&](Real place, const std::string& surface) {
     return fmt::format(
@@ -266,7 +268,7 @@ TEST_CASE("a JKR contact under tension continues after a restart, whatever its l
   };
   struct Case {
     std::string target;
-    Real start, radius;  // x of the grain, radius of the target [m]
+    Real start, radius;  // x of the particle, radius of the target [m]
   };
   const std::vector<Case> cases = {
       {box("refine = 0.001\n") + body("meshes = [{ mesh = \"box\", material = \"stiff\" }]\n"), 4.95e-3, 0},
@@ -313,7 +315,7 @@ TEST_CASE("contacts between bodies and with walls are those without cohesion") {
     SimulationRun run(deck.model());
     run.run();
     const std::vector<BodyMotion> motion = run.multibody().motion(run.bodies());
-    CHECK(motion[0].velocity.z > -0.4);  // they have met
+    CHECK(motion[0].velocity.z > -0.4);  // they have been in contact
     CHECK(motion[1].velocity.z != 0.2);
     return motion;
   };

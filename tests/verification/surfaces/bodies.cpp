@@ -1,4 +1,4 @@
-// Meshes on bodies against closed forms: impulse, momentum, and meshes that go round.
+// Meshes on bodies against closed forms: impulse, momentum, and rotating meshes.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-// A block that floats and a grain that hits its upper side off its centre.
+// A free block and a particle that hits its upper side off its centre.
 std::string block_and_grain(const std::string& method, Real step, const std::string& more = "") {
   return fmt::format(
       "[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[time]\nend = 0.02\nstep = "
@@ -54,8 +54,7 @@ Momenta momenta(const SimulationRun& run, const Model& model) {
 }  // namespace
 
 // A hard impact of restitution e: impulse P = (1 + e) v m*, 1/m* = 1/m + 1/M + (r x n) J^-1 (r x n).
-TEST_CASE(
-    "a block of triangles hit off its centre moves by the impulse, better with stiffer contacts") {
+TEST_CASE("a block of triangles hit off its centre moves by the impulse, better with stiffer contacts") {
   Real errors[2];
   for (const int k : {0, 1}) {
     const Real stiffness = k == 0 ? 1e5 : 1e7;
@@ -69,7 +68,7 @@ TEST_CASE(
     const Real softness = 1 / 0.3 + 1 / block.mass + dot(lever, inverse(block.inertia_tensor) * lever);
     const Real impulse = 2 * 2 / softness;
     const BodyMotion motion = run.multibody().motion(run.bodies())[0];
-    // It precesses from then on: what stays is the angular momentum.
+    // It precesses from then on: the angular momentum is conserved.
     const Mat3 a = rotation_matrix(motion.orientation);
     const Vec3 momentum = a * (block.inertia_tensor * motion.spin);
     errors[k] = norm(momentum + impulse * lever) / norm(impulse * lever);
@@ -81,7 +80,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a particle with friction on a block of triangles and the block keep their momenta to the method's order") {
+    "a particle with friction on a block of triangles and the block keep their momenta to the method's "
+    "order") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     Real drift[2];
     for (const int k : {0, 1}) {
@@ -102,7 +102,7 @@ TEST_CASE(
   }
 }
 
-// The same block turned in space, hit along its own axes.
+// The block rotated in space, hit along its own axes.
 TEST_CASE("a rotated and moved mesh has the same contact forces") {
   const Model upright = model_of(block_and_grain("velocity-verlet", 4e-5, "friction = 0.4"));
   Model turned = upright;

@@ -1,4 +1,4 @@
-// Decks of grains that meet surfaces; walls and bodies are added.
+// Decks of particles that collide with surfaces; walls and bodies are added by the tests.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ inline const std::string kRubbingPair =
     "[[contact.pairs]]\nstiffness = 1e4\nrestitution = 0.6\nfriction = 0.4\ntangential_damping_ratio = "
     "0.1\n";
 
-// 48 that fall onto z = 0 in a periodic box, slide, roll and rebound; 1,500 steps. law: tables of materials
-// and pairs.
+// 48 particles that fall onto z = 0 in a periodic box, slide, roll and rebound; 1,500 steps. law: tables of
+// materials and pairs.
 inline std::string falling_grains(const std::string& method, const std::string& law = kRubbingPair) {
   return "gravity = [1.0, 0.5, -9.81]\n[space]\ndimension = 3\nmin = [0.0, 0.0, -0.1]\nmax = [0.2, 0.2, "
          "0.4]\nx_min "
@@ -25,7 +25,7 @@ inline std::string falling_grains(const std::string& method, const std::string& 
          "-0.1]\n[output]\nhistory_interval = 0.01\n";
 }
 
-// One on a floor, 1e4 steps.
+// One particle on a floor, 1e4 steps.
 inline std::string sliding_grain(const std::string& position, const std::string& velocity,
                                  const std::string& gravity) {
   return "gravity = " + gravity +

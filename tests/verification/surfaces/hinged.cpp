@@ -1,4 +1,5 @@
-// A plate of triangles on a hinge, and a grain on it: what the joint reports against what acts on the plate.
+// A plate of triangles on a revolute joint, and a particle on it: the reported reaction against the forces
+// on the plate.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +18,9 @@ namespace scree {
 namespace {
 
 constexpr Real kGravity = 9.81, kStep = 1e-4, kEnd = 0.06, kMass = 0.3;
-constexpr Real kReach = 0.3;  // of the plate from its hinge [m]
+constexpr Real kReach = 0.3;  // of the plate from its joint [m]
 
-// The hinge lies along one of the plate's edges; a grain falls on it beside its middle.
+// The revolute joint lies along one of the plate's edges; a particle falls on the plate off its middle.
 std::string deck(const std::string& method, Real alpha) {
   return fmt::format(
       "gravity = [0, 0, -{}]\n[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, "
@@ -36,10 +37,10 @@ std::string deck(const std::string& method, Real alpha) {
       kGravity, kEnd, kStep, method, alpha, kMass);
 }
 
-// On the plate; torques about its centre.
+// Sums over the plate; torques about its centre.
 struct Sums {
-  Vec3 force, torque;      // of the hinge, the grain and the weight
-  Vec3 contact, recorded;  // of the grain, as the plate takes it and as the history has it [N]
+  Vec3 force, torque;      // of the joint, the particle and the weight
+  Vec3 contact, recorded;  // force of the particle, as applied to the plate and as in the history [N]
 };
 Sums sums_of(SimulationRun& run, const Model& model) {
   const BodyMotion plate = run.multibody().motion(run.bodies())[0];
@@ -69,8 +70,9 @@ Rates rates_of(const SimulationRun& run, const Body& plate) {
 
 }  // namespace
 
-TEST_CASE("revolute joint, particle and weight alone accelerate a plate of triangles, at every step of an impact") {
-  constexpr Real kBalance = 1e-12, kIterated = 1e-9;  // of the largest force
+TEST_CASE(
+    "revolute joint, particle and weight alone accelerate a plate of triangles, at every step of an impact") {
+  constexpr Real kBalance = 1e-12, kIterated = 1e-9;  // relative to the largest force
   for (const std::string method : {"velocity-verlet", "hht"})
     for (const Real alpha : {0.0, -0.05}) {
       CAPTURE(method, alpha);
@@ -93,7 +95,8 @@ TEST_CASE("revolute joint, particle and weight alone accelerate a plate of trian
       CHECK(run.multibody().motion(run.bodies())[0].spin.y > 3);
       CHECK(force_error < kBalance * largest);
       CHECK(torque_error < kBalance * largest * kReach);
-      // Explicit steps give the grain its force before the plate has come to where the step ends.
+      // Explicit steps compute the particle's force before the plate has reached its pose at the end of the
+      // step.
       if (method != "hht") continue;
       CHECK(record_error < kIterated * largest);
       CHECK(grain_error < kIterated * largest);

@@ -1,4 +1,4 @@
-// Spheres that resist rolling, on tilted planes of triangles.
+// Spheres with rolling resistance on tilted planes of triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 
 constexpr Real kRadius = 0.02, kMass = 0.1, kStiffness = 2e3, kGravity = 9.81, kStep = 1e-4,
                kRollingFriction = 0.3;
-constexpr Real kSame = 1e-12, kTrajectory = 1e-10;  // of the weight, of the way
-// Of turns.
+constexpr Real kSame = 1e-12, kTrajectory = 1e-10;  // relative to the weight, to the displacement
+// Axes of rotations.
 const Vec3 kSlanted = (1 / std::sqrt(3.0)) * Vec3{1, -1, 1}, kLevel = (1 / std::sqrt(2.0)) * Vec3{1, 1, 0};
 
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
@@ -59,14 +59,14 @@ Model on_triangles(const Grain& grain, const Mat3& turn, int n) {
   return model;
 }
 
-// The plane z = 0, turned.
+// The rotated plane z = 0.
 struct Tilt {
   Mat3 turn;
   Vec3 normal;
   explicit Tilt(Vec3 rotation) : turn(rotation_matrix(exponential(rotation))), normal(turn * Vec3{0, 0, 1}) {}
 };
 
-// A sphere that was laid on an incline.
+// A sphere laid on an incline.
 Grain laid(const Tilt& tilt, Real end) {
   const Vec3 place = tilt.turn * Vec3{0.013, 0.021, kRadius - 4e-4};
   return {place, {}, {0, 0, -kGravity}, end};
@@ -77,7 +77,7 @@ Grain laid(const Tilt& tilt, Real end) {
 // Angles of friction and of rolling friction: 0.38 and 0.29.
 TEST_CASE("a sphere on an incline of triangles below its angles of friction stays for 1e6 steps") {
   constexpr Real kSettling = 4;                      // [s]
-  const Real time = tests_on_gpu() ? Real(2) : 100;  // where a step of one sphere takes a launch
+  const Real time = tests_on_gpu() ? Real(2) : 100;  // where a step of one sphere costs a kernel launch
   const Tilt tilt(0.28 * kLevel);
   SimulationRun run(on_triangles(laid(tilt, kSettling + time), tilt.turn, 300));
   run.run_until(kSettling);
@@ -103,12 +103,12 @@ TEST_CASE(
   const Particle m = mesh.particles()[0], p = plane.particles()[0];
   CHECK(near(m.position, p.position, {.relative = kTrajectory}));
   CHECK(near(m.velocity, p.velocity, {.relative = kTrajectory}));
-  // Its mass and that of its turning, 2/5 of it, under gravity down the slope and mu_r N R over R up.
+  // Its mass and the rotational one, 2/5 of it, under gravity down the slope and mu_r N R over R up.
   const Real expected = 5.0 / 7 * kGravity * (std::sin(0.31) - kRollingFriction * std::cos(0.31));
   CHECK(near(norm(m.velocity - before), 0.5 * expected, {.relative = 1e-6}));
 }
 
-// A step from the plane's state with its springs: places and normals round, nothing else differs.
+// One step from the plane's state with its springs: positions and normals are rounded, nothing else differs.
 TEST_CASE("one state on a tilted plane and on the same plane of triangles: the same forces and moments") {
   for (const Vec3 rotation : {Vec3{}, 0.1 * kSlanted, 0.7 * kSlanted, 2.0 * kSlanted, 3.1 * kSlanted}) {
     const Tilt tilt(rotation);

@@ -1,5 +1,5 @@
-// Bodies of meshes on planes, which touch the corners of the meshes: rest, slide, tilt, impact, walls that
-// move.
+// Bodies of meshes on planes, which touch the corners of the meshes: rest, sliding, tilting, impact, moving
+// walls.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr Real kGravity = 9.81, kMass = 4, kSide = 0.2, kStiffness = 1e5;
 
-// Overrides of a run of implicit steps that adapt, and of explicit ones.
+// Settings of a run of adaptive implicit steps, and of explicit ones.
 const std::vector<std::vector<std::string>> kSteps = {
     {"integrator.particles=hht"},
     {"integrator.particles=velocity-verlet", "time.control=fixed", "time.step=1e-4"}};
@@ -50,7 +50,7 @@ BodyMotion motion_of(const SimulationRun& run) { return run.multibody().motion(r
 
 Vec3 axis_z(const BodyMotion& motion) { return transposed(rotation_matrix(motion.orientation)).z; }
 
-// Force of the planes on the corners of a box where it is, frictionless and without damping [N].
+// Force of the planes on the corners of a box at these positions, frictionless and without damping [N].
 Vec3 force_at(const std::vector<Vec3>& places, Vec3 point, Vec3 normal) {
   Vec3 force;
   for (const Vec3 place : places)
@@ -79,7 +79,7 @@ TEST_CASE("a crate comes to rest on four corners, however its faces are divided"
     }
 }
 
-// The sides of the space are the same planes.
+// The sides of the domain are the same planes.
 TEST_CASE("a crate on a side of the space that is a wall has the bits of one on a plane there") {
   std::vector<Vec3> ends;
   for (const std::string more :
@@ -129,7 +129,7 @@ TEST_CASE("corners do not roll: laws against rolling and twisting change nothing
   CHECK(near(ends[1].spin, ends[0].spin, {.relative = 1e-9}));
 }
 
-// Past tan(angle) = width / height.
+// Beyond tan(angle) = width / height.
 TEST_CASE("a high crate on a slope is stable, and tilts where the slope is steep enough") {
   for (const std::vector<std::string>& steps : kSteps)
     for (const Real slope : {0.44, 0.53}) {
@@ -249,7 +249,7 @@ TEST_CASE("forces of corners on planes are those of all vertices of the box that
     }
 }
 
-// The radius is that of the sphere whose area is the crate's.
+// The radius is that of the sphere with the crate's surface area.
 TEST_CASE("by Hertz's law a corner is a sphere as large as the mesh") {
   const std::string pair = "[[materials]]\nname = \"default\"\nyoung_modulus = 1e8\npoisson_ratio = 0.25\n";
   std::string deck = crate("restitution = 0.3") + pair;
@@ -295,7 +295,7 @@ TEST_CASE("spheres of a body and corners of its mesh have contacts, visual-only 
   CHECK(motion_of(run).position.z < -0.5);
 }
 
-// Beside grains, with materials of their own: without a law for both, nothing stops the crate.
+// Beside particles, with materials of their own: without a law for both, nothing stops the crate.
 TEST_CASE("meshes touch planes where the deck has a law for their materials") {
   const auto deck = [](const std::string& pairs) {
     return "gravity = [0, 0, -9.81]\n[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, "
@@ -316,7 +316,7 @@ TEST_CASE("meshes touch planes where the deck has a law for their materials") {
   const std::string law =
       "[[contact.pairs]]\nmaterials = [\"wood\", \"stone\"]\nstiffness = 1e5\nrestitution = 0.5\n";
   for (const bool is_given : {true, false}) {
-    // Grains of stone and a crate of wood can meet: the pair is asked for.
+    // Particles of stone can touch a crate of wood: the pair is required.
     const std::string nothing = "[[contact.pairs]]\nmaterials = [\"wood\", \"stone\"]\nstiffness = 0\n";
     SimulationRun run(model_of(deck(is_given ? law : nothing)));
     run.run();

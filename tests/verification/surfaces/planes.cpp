@@ -21,7 +21,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kTrajectory = 1e-10;  // over the way
+constexpr Real kTrajectory = 1e-10;  // relative to the displacement
 
 // The rectangle from -1 to 3 in x and y at z = 0, cut in many ways.
 std::vector<std::pair<std::string, TriangleMesh>> triangulations() {
@@ -52,7 +52,7 @@ const std::string kMesh =
     "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2.0, 2.0]\n[[walls]]\nname = "
     "\"floor\"\nmesh = "
     "\"floor\"\n";
-// A plane that is placed anew in every step, where it was; a state has the force on it.
+// A plane with a new pose in every step, at its old position; a state has the force on it.
 const std::string kStill =
     "motions = [{ type = \"translation\", direction = [1, 0, 0], displacement = 0 }]\n";
 const std::string kWrench = "bodies/wrench ";
@@ -103,7 +103,7 @@ TEST_CASE(
       CAPTURE(cut[k].first);
       State on_mesh = end_of(with_floor(rectangle, cut[k].second));
       CHECK(state_hash(on_mesh, true) == state_hash(plane, true));
-      if (plane.contacts.numbers == 0) on_mesh.contacts = {};  // that they began above the sheet
+      if (plane.contacts.numbers == 0) on_mesh.contacts = {};  // contacts that began above the open surface
       CHECK(differing_arrays(pack(on_mesh), pack(plane)) == "");
     }
     const State on_placed = end_of(model_of(deck + kPlane + kStill));

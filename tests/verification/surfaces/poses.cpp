@@ -1,4 +1,4 @@
-// A mesh that went round often or far away: contacts as before, to the rounding of its pose.
+// A mesh after many rotations or far displacements: contacts as before, to the rounding of its pose.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr Real kReach = 0.35;  // of the block from its centre, and a sphere [m]
 
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
-// At random around a block, over its faces, edges and corners, and apart from each other.
+// Random positions around a block, over its faces, edges and corners, and separated from each other.
 std::vector<Vec3> places_around(Vec3 half) {
   MeshRandom random(3);
   std::vector<Vec3> places;
@@ -41,7 +41,7 @@ std::vector<Vec3> places_around(Vec3 half) {
   return places;
 }
 
-// One step of spheres at rest that overlap a block where its pose brings that at the end of the step.
+// One step of resting spheres that overlap a block at the pose that it has at the end of the step.
 std::string pressed_spheres(Vec3 centre, const std::string& wall) {
   const Vec3 half{0.2, 0.15, 0.1};
   std::string places;
@@ -60,7 +60,7 @@ std::string pressed_spheres(Vec3 centre, const std::string& wall) {
              places, kRadius, kMass);
 }
 
-// At the end of the step [N].
+// Forces at the end of the step [N].
 std::vector<Vec3> forces(const std::string& deck) {
   SimulationRun run(model_of(deck));
   run.run();
@@ -88,7 +88,8 @@ std::string spheres_where_it_comes_to(Vec3 place) {
 
 }  // namespace
 
-// An angle or a place is rounded to its last bit, which the reach or the stiffness makes a force.
+// An angle or a position is rounded to its last bit, which the distance or the stiffness converts to a
+// force.
 TEST_CASE(
     "a block that went round up to a million times is touched as it was, to the rounding of the angle") {
   const std::vector<Vec3> at_rest = forces(pressed_spheres({}, ""));

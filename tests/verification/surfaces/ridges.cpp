@@ -1,4 +1,4 @@
-// What a contact remembers goes over a ridge with it.
+// Contact histories across a ridge.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +18,13 @@ namespace {
 
 constexpr Real kRadius = 0.02, kMass = 0.1, kStiffness = 1e4, kFriction = 0.05, kGravity = 100;
 
-// Two plates that meet along the y axis: the second goes down by this angle, up where that is negative [rad].
+// Two plates that share the y axis: the second is inclined downwards by this angle, upwards where it is
+// negative [rad].
 TriangleMesh folded(Real angle) {
   return strip({{-0.2, 0, 0}, {0, 0, 0}, {0.2 * std::cos(angle), 0, -0.2 * std::sin(angle)}}, 0.4, 8);
 }
 
-// A sphere on the first plate that is thrown towards the fold. Heavy, so that it follows.
+// A sphere on the first plate that moves towards the fold; heavy, so that it follows the surface.
 std::string deck(const std::string& method, Real tangential_stiffness, Vec3 velocity) {
   const Real height = kRadius - kMass * kGravity / kStiffness;
   return fmt::format(
@@ -49,14 +50,14 @@ Vec3 spring_of(const State& state) {
   return {state.contacts.values[0], state.contacts.values[1], state.contacts.values[2]};
 }
 
-// Where the sphere is, by hand: over the first plate, over the edge of a ridge, over the second plate.
+// The exact contact of the sphere: over the first plate, over the edge of a ridge, over the second plate.
 struct Fold {
   Real angle;
   Vec3 along{std::cos(angle), 0, -std::sin(angle)}, normal{std::sin(angle), 0, std::cos(angle)};
 
   bool is_past(Vec3 c) const { return angle > 0 ? dot(c, along) > 0 : dot(c, normal) < c.z; }
   bool is_on_edge(Vec3 c) const { return angle > 0 && c.x > 0 && !is_past(c); }
-  // Of the contact.
+  // Normal of the contact.
   Vec3 normal_at(Vec3 c) const {
     if (is_past(c)) return normal;
     if (!is_on_edge(c)) return {0, 0, 1};
@@ -68,11 +69,11 @@ struct Fold {
 constexpr Real kDegrees[] = {20, -20, 29, 45};
 const std::string kMethods[] = {"velocity-verlet", "hht"};
 
-// A sphere whose spring has this force on the first plate and none to add on its way, and the spring over
-// the second plate.
+// A sphere with this spring force on the first plate and no further slip, and its spring over the second
+// plate.
 struct Carried {
   Vec3 spring;
-  Real longest_error = 0;  // of its length, over that
+  Real longest_error = 0;  // of its length, relative to that
   int edge_steps = 0;
 };
 Carried carried_over(const Fold& fold, const std::string& method, Vec3 spring) {
@@ -107,7 +108,7 @@ TEST_CASE("a spring crosses a fold at its length, rotated into the next plane") 
       CHECK((straight.edge_steps > 100) == (degrees > 0));
       CHECK(straight.longest_error < kKept);
       CHECK(near(straight.spring, kAcross * fold.along, {.relative = kKept}));
-      // It makes the sphere spin about the next normal, and turns with that.
+      // It makes the sphere spin about the next normal, and rotates with it.
       const Carried oblique = carried_over(fold, method, {kAcross, kAlong, 0});
       CHECK(oblique.longest_error < kKept);
       CHECK(std::abs(dot(oblique.spring, fold.normal)) < kKept * kAcross);
@@ -116,7 +117,7 @@ TEST_CASE("a spring crosses a fold at its length, rotated into the next plane") 
 }
 
 TEST_CASE("friction of a sphere that slides over a fold is at Coulomb's limit and never beyond it") {
-  constexpr Real kRoundOff = 1e-13;  // of the limit
+  constexpr Real kRoundOff = 1e-13;  // relative to the limit
   for (const std::string& method : kMethods)
     for (const Real degrees : kDegrees) {
       const Fold fold{degrees * M_PI / 180};

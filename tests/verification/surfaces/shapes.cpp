@@ -1,4 +1,4 @@
-// Bodies' spheres and meshes: those of the ground, and of other bodies.
+// Spheres and meshes of bodies, against those of the ground and of other bodies.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ const Vec3 kBoxInertia{0.012, 0.02, 0.017};  // principal, along the axes of the
 
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
-// The longest contact is that of the sphere with what does not give way.
+// The longest contact is that of the sphere with a rigid partner.
 const Real kDuration = M_PI * std::sqrt(kSphereMass / kStiffness);  // [s]
 constexpr Real kGap = 1e-5;                                         // [m]
 
@@ -60,7 +60,8 @@ const std::vector<std::string> kMethods = {"velocity-verlet", "hht"};
 
 }  // namespace
 
-// From a face, an edge and a corner, which is where the sphere's centre lies in the direction of (1, 1, 1).
+// From a face, an edge and a corner, the latter where the sphere's centre lies in the direction of (1, 1,
+// 1).
 TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and corners as from a mirror") {
   for (const std::string& method : kMethods)
     for (const Vec3 towards : {Vec3{0, 0, 1}, Vec3{0, 1, 1}, Vec3{1, 1, 1}}) {
@@ -75,7 +76,7 @@ TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and c
       REQUIRE(run.particle_ledger().contacts == 0);
       const Vec3 found = run.multibody().motion(run.bodies())[0].velocity;
       const Vec3 expected = velocity + 2 * kSpeed * normal;
-      // The normal turns while they touch, by some 1e-4, and the explicit step is of second order.
+      // The normal rotates during the contact, by some 1e-4, and the explicit step is of second order.
       CHECK(keeps(norm(found - expected), {.promise = 1e-2, .measured = 2.1e-3}));
       CHECK(norm(global_spin(run.multibody().motion(run.bodies())[0])) < 1e-12);
     }
@@ -84,7 +85,7 @@ TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and c
 TEST_CASE("a body's mesh that falls on another body's sphere: impulse and momenta of two rigid bodies") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
-    const Vec3 arm{-0.06, -0.03, -0.1};  // from the box's centre to where the sphere touches
+    const Vec3 arm{-0.06, -0.03, -0.1};  // from the box's centre to the point of contact
     const Vec3 place = Vec3{0, 0, kRadius + kGap} - arm;
     SimulationRun run(model_of(setup("", method) + sphere({}, {}) + box(place, {0, 0, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
@@ -103,7 +104,8 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
   }
 }
 
-TEST_CASE("friction of a body's mesh on another body's sphere: momenta are kept, and the energy balance closes") {
+TEST_CASE(
+    "friction of a body's mesh on another body's sphere: momenta are kept, and the energy balance closes") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};

@@ -1,4 +1,4 @@
-// Soft grains that go through sheets by more than their radius are pushed back to where they came from.
+// Soft particles that penetrate open surfaces by more than their radius are pushed back to their side.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 constexpr Real kRadius = 1, kMass = 1, kStiffness = 1, kInertia = 0.4 * kMass * kRadius * kRadius;
 const std::string kMethods[] = {"velocity-verlet", "hht"};
 
-// A grain of these that meets the sheet "sheet", 6 m wide around the origin, at z = 0.
+// A particle that hits the open surface "sheet", 6 m wide around the origin, at z = 0.
 struct SheetDeck {
   std::string method = "velocity-verlet";
   Real friction = 0;
@@ -108,7 +108,7 @@ TEST_CASE("a particle whose centre penetrates an open surface is pushed back by 
       CHECK(most < 1e-12);
       CHECK(near(p.velocity.z, 1.5, {.relative = 1e-5}));
       CHECK(std::abs(run.balance_error()) < 1e-4);
-      // About the line under it on the sheet no force has a lever.
+      // About the line below it on the surface no force has a lever arm.
       CHECK(near(kMass * kRadius * p.velocity.x + (friction > 0 ? kInertia * p.angular_velocity.y : 0),
                  0.4 * kMass * kRadius, {.relative = 1e-12}));
       CHECK((p.velocity.x < 0.39) == (friction > 0));
@@ -136,8 +136,9 @@ TEST_CASE("lists, restarts and moving bodies do not change on which side of an o
     }
 }
 
-// They go 0.3 of their radius in a step, farther than the row of triangles of the step before reaches, and
-// touch both turns of a spiral between which they are, or folds of a zigzag of which the next row has fewer.
+// They move by 0.3 of their radius in a step, farther than the row of triangles of the previous step
+// extends, and touch both turns of a spiral between which they are, or folds of a zigzag of which the next
+// row has fewer.
 TEST_CASE("the history of fast particles on an open surface does not depend on lists") {
   const ScratchDirectory folder;
   const std::string file = folder.path() + "/strip.obj";
@@ -167,8 +168,8 @@ TEST_CASE("the history of fast particles on an open surface does not depend on l
   }
 }
 
-// From whose point its middle is as far as the sheet reaches over a side of the space; the least motion takes
-// the point over the other side.
+// The middle of the surface is beyond a side of the domain by the extent of the surface from its point; the
+// smallest motion takes the point across the other side.
 TEST_CASE("a moving open surface acts across the sides of a periodic domain wherever its point is") {
   for (const Real rate : {0.0, 1e-9, -1e-9}) {
     CAPTURE(rate);
@@ -214,7 +215,7 @@ TEST_CASE("shapes keep their side of open surfaces of bodies: momentum and energ
 TEST_CASE("a particle that moves around a free edge is then on the other side of the open surface") {
   SheetDeck deck;
   deck.grain = "positions = [[3.4, 0.1, 1.2]]\nvelocity = [0.0, 0.0, -1.0]\n";
-  deck.gravity = "[-0.3, 0.0, 0.1]";  // around the edge, and up against the sheet from below
+  deck.gravity = "[-0.3, 0.0, 0.1]";  // around the edge, and up against the surface from below
   deck.end = 8;
   for (const std::string& method : kMethods) {
     CAPTURE(method);

@@ -1,4 +1,4 @@
-// Grains so soft, or so fast, that their centres go into closed meshes: the nearest face acts alone, and
+// Particles so soft, or so fast, that their centres enter closed meshes: the nearest face acts alone, and
 // within an implicit step that may become another one.
 #include <fmt/format.h>
 
@@ -46,13 +46,13 @@ struct Passed {
     SimulationRun run(deck.model(settings));
     const Real energy = kMass * kSpeed * kSpeed / 2;
     run.run([&] {
-      // Energy that the steps have lost or made, at every row of the history.
+      // Energy error of the steps, at every row of the history.
       const ParticleLedger ledger = run.particle_ledger();
       CHECK(std::abs(ledger.integrator_loss) < 0.01 * energy);
       CHECK(ledger.contact_loss > -1e-9 * energy);
       CHECK(ledger.contact_loss < energy);
     });
-    // Explicit steps book dashpots to first order.
+    // Explicit steps integrate the dissipation of dashpots to first order.
     CHECK(std::abs(run.balance_error()) < (settings == kFine ? 1e-3 : 1e-7) * energy);
     REQUIRE(run.particle_ledger().contacts == 0);
     velocity = run.particles().at(0).velocity;
@@ -63,7 +63,7 @@ struct Passed {
 
 }  // namespace
 
-// The energy of an overlap of a radius and half the plate's thickness is 9 J: at 14.6 J the sphere goes
+// The energy of an overlap of a radius and half the plate's thickness is 9 J: at 14.6 J the sphere passes
 // through.
 TEST_CASE("a sphere passes a thin closed plate, or rebounds, as in fine explicit steps") {
   for (const char* friction : {"", "friction = 0.3\ntangential_damping_ratio = 0.1\n"})

@@ -1,4 +1,4 @@
-// What contacts lose at triangles, against the particles' own books, closed forms and restarts.
+// Dissipation of contacts at triangles, against the particles' own, closed forms and restarts.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ const std::string kWears = fmt::format("contact.pairs.0.wear_coefficient={}", kW
 
 Real mass() { return 4 * M_PI / 3 * kRadius * kRadius * kRadius * kDensity; }
 
-// Over all triangles.
+// Sums over all triangles.
 TriangleWorkValues sums_of(const State& state) {
   TriangleWorkValues sum{};
   for (const TriangleWorkValues& of : work_values(state.works))
@@ -104,7 +104,7 @@ TEST_CASE("the dissipation of all triangles is that of a body's sphere that boun
   }
 }
 
-// Books of particles that do not turn are trapezoidal: they have half of the last step's end yet to come.
+// The dissipation of particles without rotation is trapezoidal: it lacks half of the end of the last step.
 TEST_CASE("without friction the dissipation of an impact is the particle's and that of the last half step") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     const std::string smooth =
@@ -131,14 +131,14 @@ TEST_CASE("without friction the dissipation of an impact is the particle's and t
   }
 }
 
-// The height that it falls before the impact and that from which it comes back are those of the energies.
+// The heights before and after the impact are those of the energies.
 TEST_CASE("the impact work of a dropped particle is the height that it loses") {
   for (const Method& method : kMethods) {
     CAPTURE(method.name);
     const Real height = 0.1;
     SimulationRun run(model_of(thrown_grain(height, "[0.0, 0.0, 0.0]"),
                                with(method.settings, {kWears, "time.step=2e-5", "time.end=0.2"})));
-    run.run_until(0.17);  // on its way up
+    run.run_until(0.17);  // moving up
     const State& state = run.complete_state();
     const Particle& grain = state.particles.at(0);
     REQUIRE(grain.velocity.z > 0);
@@ -159,7 +159,7 @@ TEST_CASE("a particle thrown along a floor loses a seventh of m v^2 to friction,
   const Real end = run.time();
   const Particle second = run.complete_state().particles.at(0);
   const TriangleWorkValues after = sums_of(run.complete_state());
-  // It turns about y, faster and faster at a constant rate.
+  // It rotates about y with constant angular acceleration.
   const Real turned = (end - start) * (first.angular_velocity.y + second.angular_velocity.y) / 2;
   const Real slip = second.position.x - first.position.x - kRadius * turned;
   CHECK(slip > 0.01);

@@ -1,4 +1,4 @@
-// Bodies' shapes on walls that run or move.
+// Bodies' shapes on moving walls and conveyors.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ Model model_with(const std::string& wall, const std::string& method, Real height
 
 }  // namespace
 
-// The belt does twice the work that the sphere keeps, and a little.
+// The belt does a little more than twice the work that the sphere keeps.
 TEST_CASE("a belt takes a body's sphere along with 2/7 of its speed, and the ledger has its work") {
   constexpr Real kSpeed = 2;
   for (const std::string method : {"velocity-verlet", "hht"}) {

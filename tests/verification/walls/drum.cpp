@@ -1,4 +1,4 @@
-// A drum that turns as a wall, and the same drum as a body whose joint a driver turns.
+// A drum that rotates as a wall, and the same drum as a body with a driven joint.
 #include <string>
 
 #include "support/catch.hpp"
@@ -27,7 +27,7 @@ WallDeck in_drum(const std::string& method) {
 }
 WallDeck in_driven_body(const std::string& method) {
   WallDeck deck = in_drum(method);
-  deck.wall = "point = [0, 0, -0.99]\nnormal = [0, 0, 1]\n";  // beyond reach
+  deck.wall = "point = [0, 0, -0.99]\nnormal = [0, 0, 1]\n";  // out of range
   deck.rest +=
       "[[bodies]]\nname = \"drum\"\nkind = \"spatial\"\nposition = [0, 0, 0]\nmass = 5\n"
       "inertia_tensor = [1, 1, 1, 0, 0, 0]\nmeshes = [{ mesh = \"drum\" }]\n"
@@ -40,8 +40,7 @@ WallDeck in_driven_body(const std::string& method) {
 
 }  // namespace
 
-TEST_CASE(
-    "a drum rotated as a wall carries a sphere as a driven one, and takes the same work") {
+TEST_CASE("a drum rotated as a wall carries a sphere as a driven one, and takes the same work") {
   for (const std::string method : {"hht", "velocity-verlet"}) {
     CAPTURE(method);
     SimulationRun wall(in_drum(method).model()), body(in_driven_body(method).model());

@@ -1,4 +1,4 @@
-// Walls that follow functions of time, against closed forms, and what they give to the energy ledger.
+// Walls that follow functions of time, against closed forms, and their work in the energy ledger.
 #include <cmath>
 #include <numbers>
 
@@ -14,8 +14,8 @@ constexpr Real kMass = 1, kRadius = 0.1, kStiffness = 1e4;
 const std::string kElastic = "stiffness = 1e4\n";
 const std::vector<std::string> kMethods = {"hht", "velocity-verlet"};
 
-// A floor shaken by A sin(W t) beneath a sphere that lies on it, w^2 = k / m:
-// x = A (sin W t - W/w sin w t) / (1 - W^2/w^2).
+// A floor shaken by A sin(W t) beneath a sphere that lies on it, w^2 = k / m: x = A (sin W t - W/w sin w t)
+// / (1 - W^2/w^2).
 constexpr Real kAmplitude = 1e-3, kFrequency = 5;
 WallDeck shaken(const std::string& method, Real step) {
   WallDeck deck;
@@ -30,7 +30,7 @@ WallDeck shaken(const std::string& method, Real step) {
 }
 
 struct Shaken {
-  Real error, balance;  // of the height [m]; of the ledger over what was exchanged
+  Real error, balance;  // of the height [m]; of the energy balance relative to the energy exchanged
 };
 Shaken shake(const std::string& method, Real step) {
   SimulationRun run(shaken(method, step).model());
@@ -42,7 +42,7 @@ Shaken shake(const std::string& method, Real step) {
   return {std::abs(run.particles()[0].position.z - height), std::abs(run.balance_error()) / run.exchanged()};
 }
 
-// A wall that comes with V hits a sphere at rest.
+// A wall of velocity V hits a resting sphere.
 WallDeck piston(const std::string& method, const std::string& wall, const std::string& rest) {
   WallDeck deck;
   deck.wall = wall + motions(
@@ -56,7 +56,8 @@ WallDeck piston(const std::string& method, const std::string& wall, const std::s
 }  // namespace
 
 TEST_CASE(
-    "a sphere on a shaken floor follows the closed form at second order, and the floor's work is accounted for") {
+    "a sphere on a shaken floor follows the closed form at second order, and the floor's work is accounted "
+    "for") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Shaken coarse = shake(method, 4e-4), fine = shake(method, 2e-4);
@@ -67,8 +68,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "a piston accelerates a resting sphere to twice its speed, and its work is the sphere's energy") {
+TEST_CASE("a piston accelerates a resting sphere to twice its speed, and its work is the sphere's energy") {
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     SimulationRun plane(piston(method, kFloor, "").model());
@@ -88,8 +88,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "combined motions: a plane and a box that rotate while they translate carry a sphere alike") {
+TEST_CASE("combined motions: a plane and a box that rotate while they translate carry a sphere alike") {
   const std::string path = motions(
       "{ type = \"rotation\", axis = [0, 1, 0], point = [-1, 0, 0], angle = { kind = \"ramp\", rate = "
       "-0.4 } }, { type = \"translation\", direction = [1, 0, 0], displacement = { kind = \"sine\", "

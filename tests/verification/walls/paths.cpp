@@ -1,4 +1,4 @@
-// Where walls are, and how they move there.
+// Positions and velocities of walls.
 #include <cmath>
 #include <vector>
 
@@ -25,7 +25,7 @@ TEST_CASE("velocity and spin of a wall are the rates of where it is, with motion
     walls.at(t, motion);
     return motion.at(0);
   };
-  // At t = 0 where the deck puts it, whatever the functions are there.
+  // At t = 0 at the deck's position, whatever the functions are there.
   CHECK(near(at(0).position, Vec3{}, {.absolute = 1e-15}));
   CHECK(near(at(0).orientation.w, 1.0, {.absolute = 1e-15}));
   const Real t = 0.37, d = 1e-5;
@@ -33,7 +33,7 @@ TEST_CASE("velocity and spin of a wall are the rates of where it is, with motion
   const PointMotion before = point_motion(at(t - d), place), now = point_motion(at(t), place),
                     after = point_motion(at(t + d), place);
   CHECK(near(now.velocity, (1 / (2 * d)) * (after.position - before.position), {.absolute = 1e-8}));
-  // The same place by hand: turned, moved, turned.
+  // The pose by hand: rotated, moved, rotated.
   const Vec3 axis = (1 / std::sqrt(5.0)) * Vec3{1, 2, 0}, first{0.3, 0, 0.2}, last{1, 1, 0};
   const Real angle = 0.8 * std::sin(2 * M_PI * 0.7 * t);
   Vec3 p = first + turned(exponential(angle * axis), place - first);

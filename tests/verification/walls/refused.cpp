@@ -1,4 +1,4 @@
-// What decks may not say of walls that move, and what is told of those that bodies miss.
+// Refused keys of moving walls, and warnings of walls that bodies do not touch.
 #include <string>
 #include <vector>
 

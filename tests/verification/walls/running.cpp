@@ -1,4 +1,4 @@
-// Surfaces that run along themselves: a conveyor's belt.
+// Conveyors: surfaces with a tangential velocity.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -14,8 +14,8 @@ namespace scree {
 namespace {
 
 constexpr Real kBelt = 0.7, kFriction = 0.2, kGravity = 9.81;
-// What is compared here to 1e-9 sums up what 4,000 steps have left; steps that cannot reach a smaller
-// tolerance would be halved where round-off decides.
+// Comparisons to 1e-9 here sum up the residuals of 4,000 steps; steps that cannot reach a smaller tolerance
+// would be halved where round-off decides.
 const std::vector<std::string> kSolved{"integrator.residual_tolerance=1e-10"};
 
 // Its weight lies on the belt from the start.
@@ -32,7 +32,7 @@ WallDeck conveyor(const std::string& method, Real step) {
   return deck;
 }
 
-// A belt that turns with its wall as it runs, and shakes.
+// A belt that rotates with its wall as it runs, and shakes.
 std::string turntable() {
   return kFloor +
          motions(
@@ -45,9 +45,10 @@ std::string turntable() {
 }  // namespace
 
 // It slips for 2/7 B / (mu g). Then it rolls, with 2/7 of the belt's speed; of the belt's work, 2/7 m B^2,
-// half was rubbed away.
+// friction has dissipated half.
 TEST_CASE(
-    "a sphere laid on a conveyor's belt ends with 2/7 of its speed, rolling; the belt's work is accounted for") {
+    "a sphere laid on a conveyor's belt ends with 2/7 of its speed, rolling; the belt's work is accounted "
+    "for") {
   for (const std::string method : {"hht", "velocity-verlet"}) {
     CAPTURE(method);
     SimulationRun run(conveyor(method, 1e-4).model(kSolved));
@@ -59,7 +60,8 @@ TEST_CASE(
     const Ledger ledger = run.ledger();
     CHECK(near(ledger.driver_work, 2.0 / 7 * kBelt * kBelt, {.relative = 2e-3}));
     CHECK(near(ledger.dissipated_contacts, kBelt * kBelt / 7, {.relative = 2e-3}));
-    // Where explicit steps begin friction acts at once, but what it takes is booked from the first step on.
+    // At the start of explicit steps friction acts at once, but its dissipation counts from the first step
+    // on.
     const Real first = Real(0.5) * kFriction * kGravity * kBelt * 1e-4;
     CHECK(std::abs(run.balance_error()) < 1.1 * first);
   }

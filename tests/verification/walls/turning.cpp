@@ -1,4 +1,4 @@
-// Particles that roll over surfaces which turn: planes, lines and meshes, of walls and of bodies.
+// Particles that roll over rotating surfaces: planes, lines and meshes, of walls and of bodies.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 constexpr Real kRadius = 0.012, kMass = 0.05, kStiffness = 2e4, kGravity = 9.81;
-constexpr Real kHeight = kRadius - kMass * kGravity / kStiffness;  // at rest on a level plane
+constexpr Real kHeight = kRadius - kMass * kGravity / kStiffness;  // height at rest on a horizontal plane
 const std::vector<std::string> kMethods = {"hht", "velocity-verlet"};
 
 // One particle on surfaces that carry it along.
@@ -65,7 +65,7 @@ const std::string kPlane = "point = [0, 0, 0]\nnormal = [0, 0, 1]\n", kMesh = "m
                   kLine = "point = [0, 0]\nnormal = [0, 1]\n",
                   kLineMesh = "[[meshes]]\nname = \"top\"\nkind = \"line\"\npoints = [[0.5, 0], [-0.5, 0]]\n";
 
-// A table that turns evenly about its normal. The ball rolls on it with 2/7 of its rate, on a circle.
+// A table of constant rotation about its normal. The ball rolls on it with 2/7 of its rate, on a circle.
 constexpr Real kTableRate = 9;
 const std::string kTableAngle = "{ kind = \"ramp\", rate = 9 }";
 TurningDeck on_table(const std::string& name, const std::string& surfaces) {
@@ -76,7 +76,7 @@ TurningDeck on_table(const std::string& name, const std::string& surfaces) {
           "-0.02, 0.09, 0",
           "37.5, 13.333333333333334, 4"};
 }
-// One that tilts and turns, from rest.
+// A table that tilts and rotates, from rest.
 const std::string kTilt = "{ kind = \"step\", end_value = 0.5, start = 0, end = 0.3 }",
                   kTilted = "0.6, 0, 0.8";
 TurningDeck on_tilting(const std::string& name, const std::string& surfaces) {
@@ -87,7 +87,7 @@ TurningDeck on_tilting(const std::string& name, const std::string& surfaces) {
           "-0.02, 0.09, 0",
           "-7.5, -1.6666666666666667, 0"};
 }
-// belt: velocity of a line that runs along itself [m/s].
+// belt: velocity of a conveyor line [m/s].
 TurningDeck on_line(const std::string& name, const std::string& surfaces, Real belt = 0) {
   return {name,      2,
           surfaces,  fmt::format("0.1, {:.17g}", kHeight),
@@ -129,7 +129,7 @@ std::vector<TurningDeck> all_decks() {
 
 struct Ended {
   Vec3 position;
-  Real balance;  // error over the energies
+  Real balance;  // balance error over the energies
 };
 Ended end_of(const TurningDeck& deck, const std::string& method, Real step) {
   SimulationRun run(model_of(deck.text(method, step, 0.2)));
@@ -142,7 +142,8 @@ Ended end_of(const TurningDeck& deck, const std::string& method, Real step) {
 }  // namespace
 
 TEST_CASE(
-    "a ball rolls over rotating planes, lines, meshes and edges at second order, and implicit steps balance the energy") {
+    "a ball rolls over rotating planes, lines, meshes and edges at second order, and implicit steps balance "
+    "the energy") {
   for (const TurningDeck& deck : all_decks())
     for (const std::string& method : kMethods) {
       const Ended coarse = end_of(deck, method, 2e-4), middle = end_of(deck, method, 1e-4),
@@ -155,8 +156,8 @@ TEST_CASE(
     }
 }
 
-// Four turns of the table, 8/7 of a turn of the ball: centre and radius of its circle follow from its motion
-// at the start.
+// Four revolutions of the table, 8/7 of a revolution of the ball: centre and radius of its circle follow
+// from its motion at the start.
 TEST_CASE("a ball on a turntable stays on its circle") {
   const Vec3 start{0.06, 0.02, 0};
   const Real rate = kTableRate * 2 / 7, end = 4 * 2 * M_PI / kTableRate;

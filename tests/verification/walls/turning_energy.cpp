@@ -1,4 +1,4 @@
-// The energy ledger of impacts on surfaces that turn.
+// The energy balance of impacts on rotating surfaces.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-// An elastic impact on a free box that spins.
+// An elastic impact on a spinning free box.
 std::string spinning_box(Real step, const std::string& law) {
   return fmt::format(
       "[space]\ndimension = 3\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\n[time]\nend = 0.011\nstep = {}\ncontrol "
@@ -30,7 +30,7 @@ std::string spinning_box(Real step, const std::string& law) {
       step, law);
 }
 
-// A disc on a line that swings 20 times a second.
+// A disc on a line that oscillates 20 times a second.
 std::string swinging_line(const std::string& control, const std::string& law) {
   return fmt::format(
       "gravity = [0, -9.81]\n[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\nleaving = "
@@ -46,7 +46,8 @@ std::string swinging_line(const std::string& control, const std::string& law) {
 
 }  // namespace
 
-TEST_CASE("an impact on a spinning free box is accounted for to round-off, and its energy kept at second order") {
+TEST_CASE(
+    "an impact on a spinning free box is accounted for to round-off, and its energy kept at second order") {
   Real taken[2];
   for (const int fine : {0, 1}) {
     SimulationRun run(model_of(spinning_box(fine == 0 ? 5e-4 : 2.5e-4, "")));
@@ -64,7 +65,8 @@ TEST_CASE("an impact on a spinning free box is accounted for to round-off, and i
   CHECK(keeps(rubbing.balance_error() / rubbing.exchanged(), {.promise = 1e-10, .measured = 1e-11}));
 }
 
-TEST_CASE("the work of a swinging line on a disc is accounted for to round-off, in fixed and adaptive steps") {
+TEST_CASE(
+    "the work of a swinging line on a disc is accounted for to round-off, in fixed and adaptive steps") {
   for (const std::string control : {"step = 1e-3\ncontrol = \"fixed\"\n", "step = 1e-4\n"})
     for (const std::string law : {"", "friction = 0.4\ntangential_damping_ratio = 0.2\n"}) {
       CAPTURE(control, law);

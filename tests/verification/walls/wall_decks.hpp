@@ -1,4 +1,4 @@
-// Decks of one sphere and one wall that moves or runs.
+// Decks of one sphere and one wall that moves or has a surface velocity.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace scree {
 struct WallDeck {
   std::string wall;     // keys of it, in one or more lines
   std::string contact;  // keys of the pair
-  std::string grain;    // place and motion
+  std::string grain;    // position and motion
   std::string gravity = "[0, 0, 0]";
   Real step = 1e-4, end = 1;  // [s]
   std::string particles = "hht";
@@ -34,7 +34,7 @@ struct WallDeck {
 };
 
 inline const std::string kFloor = "point = [0, 0, 0]\nnormal = [0, 0, 1]\n";
-// The same face as a part of a mesh; its frame is the global one.
+// The face as a part of a mesh whose frame is the global one.
 inline const std::string kPlateWall = "mesh = \"box\"\n";
 inline const std::string kPlateMesh = "[[meshes]]\nname = \"box\"\nkind = \"box\"\nsize = [6, 6, 0.5]\n";
 
