@@ -1,4 +1,4 @@
-"""What the project's style says that a program can look up. Each check takes the root of a source tree and returns its
+"""Checks of the project's style by a program. Each check takes the root of a source tree and returns its
 findings, one line of text each."""
 
 import ast
@@ -55,7 +55,7 @@ def included(root, file):
 
 
 def wrong_includes(root):
-    """Arrows against the order of the rooms. cuda/ stands right of dem, and nothing in src/ sees it."""
+    """Arrows against the order of the rooms. cuda/ is right of dem, and nothing in src/ includes it."""
     allowed = room_order(root)
     findings = []
     for file in files(root, CPP, "src") + files(root, CPP, "cuda"):
@@ -181,7 +181,7 @@ def expanded(pattern):
 
 
 def names_file(readme, text, root, base_names):
-    """Whether a word of a page is a path of this repository at all, and whether it is there."""
+    """Whether a word of a page is a path of this repository at all, and whether it exists."""
     path = pathlib.PurePosixPath(text)
     places = [root, root / "src", (root / readme).parent]
     if len(path.parts) > 1 and any((place / path.parts[0]).is_dir() for place in places):

@@ -1,5 +1,5 @@
-"""What a program can look up in the pages (*.md): widths, links with their anchors, numbers of the first page, and what
-src/adding.md names. Each check takes the root of a source tree and returns its findings, one line of text each."""
+"""Checks of the pages (*.md) by a program: widths, links with their anchors, numbers of the first page, and the names
+in src/adding.md. Each check takes the root of a source tree and returns its findings, one line of text each."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The pages, looked up; and that each check finds what it is there for."""
+"""Checks of the pages; and that each check finds its errors."""
 
 import unittest
 
@@ -40,7 +40,7 @@ class Project(unittest.TestCase):
 
 
 class Checks(unittest.TestCase):
-    """The checks themselves."""
+    """Tests of the checks."""
 
     def test_widths(self):
         wide = "x" * 133

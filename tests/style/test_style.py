@@ -1,4 +1,4 @@
-"""The project's style, looked up; and that each check finds what it is there for."""
+"""Checks of the project's style; and that each check finds its errors."""
 
 import contextlib
 import pathlib
@@ -64,7 +64,7 @@ class Project(unittest.TestCase):
 
 
 class Checks(unittest.TestCase):
-    """The checks themselves."""
+    """Tests of the checks."""
 
     def test_an_order_is_read(self):
         with tree() as root:

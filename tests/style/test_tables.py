@@ -1,4 +1,4 @@
-"""The tables of documents are what the data give and the sources write; what makes them finds what is wrong."""
+"""The tables of documents agree with the data and the sources; the script that makes them finds errors."""
 
 import contextlib
 import io
@@ -24,7 +24,7 @@ def row(key, value="", unit="", **others):
 
 
 def filled(template, *rows, digits=None, what="measured"):
-    """The text of a template, and what was wrong."""
+    """The text of a template, and the findings."""
     tables = page_tables.Tables({}, rows, digits)
     return tables.fill(template, [], what), tables.problems
 

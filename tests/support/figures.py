@@ -1,4 +1,4 @@
-"""How plots of measurements look: large letters, few lines, colours that the colour-blind tell apart, names beside the
+"""Style of plots of measurements: large letters, few lines, colours for the colour-blind, names beside the
 curves. matplotlib is loaded when a plot is drawn: measurements need none."""
 
 CPU, GPU, OTHER, FOURTH = "#0072b2", "#d55e00", "#009e73", "#cc79a7"  # Okabe and Ito's
@@ -7,7 +7,7 @@ SMALL, LARGE = 12, 16  # letters [pt]
 
 
 def subplots(*shape, **options):
-    """As matplotlib's."""
+    """As matplotlib.pyplot.subplots(), with this style."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot

@@ -1,4 +1,4 @@
-"""Rows of what tests and benchmarks measured, as measured.hpp writes them and as the repository keeps them.
+"""Rows of values measured by tests and benchmarks, as measured.hpp writes them and as the repository keeps them.
 
     measured.py KEY VALUE UNIT [--least X] [--most X] [--at-most X] [--machine NAME] [--backend NAME]
                 [--record RUN_RECORD] --command WORDS
@@ -22,8 +22,8 @@ import shutil
 import subprocess
 import sys
 
-# key: words with slashes between them. value: what counts (the largest error, the least of what must be large, the
-# median of times), empty where both ends do. least, most: of all that was found. at_least, at_most: what was demanded.
+# key: words with slashes between them. value: the main one (the largest error, the least of what must be large, the
+# median of times), empty where both ends do. least, most: of all values. at_least, at_most: bounds.
 COLUMNS = ["key", "value", "unit", "least", "most", "at_least", "at_most", "commit", "machine", "backend", "date",
            "command"]
 MUST = ("key", "commit", "machine", "backend", "command")
@@ -33,7 +33,7 @@ ALWAYS = {}
 
 
 def read(path):
-    """The rows of a file, as dictionaries of text. Ends the program, with a message, where it is none of ours."""
+    """The rows of a file, as dictionaries of text. Ends the program with a message where its format is another one."""
     try:
         with open(path, newline="") as file:
             reader = csv.DictReader(file)
@@ -66,7 +66,7 @@ def identity(row):
 
 
 def keeps(row):
-    """Whether what was found is within what was demanded."""
+    """Whether the values are within their bounds."""
     return ((not row["at_most"] or float(row["most"]) <= float(row["at_most"]))
             and (not row["at_least"] or float(row["least"]) >= float(row["at_least"])))
 
@@ -99,14 +99,14 @@ def processor():
 
 
 def commit_of(program):
-    """That scree was built at."""
+    """The commit at which scree was built."""
     text = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     found = re.search(r"commit ([^)\s]*)", text)
     return found[1] if found else "unknown"
 
 
 def gpu():
-    """Name of the first one; that of the processor where there is none."""
+    """Name of the first GPU; that of the processor where there is none."""
     if shutil.which("nvidia-smi") is None:
         return processor()
     done = subprocess.run(["nvidia-smi", "--query-gpu=name", "--format=csv,noheader"], capture_output=True, text=True)
@@ -114,7 +114,7 @@ def gpu():
 
 
 def commit():
-    """Of the source tree, as src/base/version.cmake has it; where that is not in git, SCREE_COMMIT."""
+    """The commit of the source tree, as src/base/version.cmake has it; where that is not in git, SCREE_COMMIT."""
     done = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty=-modified", "--abbrev=12",
                            "--exclude=*"], capture_output=True, text=True)
     return done.stdout.strip() if done.returncode == 0 else os.environ.get("SCREE_COMMIT", "unknown")
@@ -129,7 +129,7 @@ def of_record(record):
 
 
 def command_line():
-    """Of this script, without folders of this machine."""
+    """The command line of this script, without folders of this machine."""
     return " ".join(pathlib.PurePath(word).name if "/" in word else word for word in sys.argv)
 
 

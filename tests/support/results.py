@@ -1,4 +1,4 @@
-"""What tests want of a run's results, read by the package of postprocess: of the folder alone, not of one that the run
+"""A run's results for tests, read by the package of postprocess: of the folder alone, not of one that the run
 went on from."""
 
 import pathlib
@@ -11,18 +11,18 @@ from scree import files  # noqa: E402
 
 
 def opened(folder):
-    """The run as the package has it."""
+    """The run as an object of the package."""
     return scree.open(folder, earlier=False)
 
 
 def columns(folder):
-    """Of the history, by path: arrays [rows]."""
+    """Columns of the history by path: arrays [rows]."""
     history = opened(folder).history.read()
     return {name: column.values for name, column in history.items()}
 
 
 def rows(folder):
-    """Of the history: a dictionary of numbers by path for each."""
+    """Rows of the history: a dictionary of numbers by path for each."""
     table = {name: values.tolist() for name, values in columns(folder).items()}
     return [dict(zip(table, row)) for row in zip(*table.values())]
 

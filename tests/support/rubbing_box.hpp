@@ -50,19 +50,10 @@ inline void rubbing_hht_step(RememberingBox& box, Real h, int freeze_after) {
   box.backend->list().build(box.model.contact.skin, box.timers);
   const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, h);
   box.move_bodies(h);
-  int iteration = 1;
-  for (;; ++iteration) {
-    REQUIRE(iteration < 100);
-    const ParticleNorms norms = step->contact_force();
-    if (norms.overshoot) {
-      step->shorten_correction();
-      continue;
-    }
-    if (norms.residual <= 1e-10) break;
-    box.backend->list().place_bodies(box.motion);  // they take no correction
-    step->particle_correct();
-    if (iteration == freeze_after) step->freeze_limits();
-  }
+  int iteration = 0;
+  solve_step(*box.backend, *step, box.motion, [&](int linear) {
+    if (++iteration == freeze_after && linear != kShortened) step->freeze_limits();
+  });
   step->accept();
   const std::vector<Leaver> leavers = box.backend->particles().outside();
   if (!leavers.empty())

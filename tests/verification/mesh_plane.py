@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""A bed of grains that rub, on an analytic plane and on the same plane cut into triangles, on several numbers of ranks:
-the state after very many steps has the same bits. Exit code 1 where it has not. Root needs Open MPI's two variables.
+"""A bed of particles with friction, on an analytic plane and on the same plane cut into triangles, on several numbers
+of ranks: the state after very many steps has the same bits. Exit code 1 where it has not. Root needs Open MPI's two
+variables.
 Usage: mesh_plane.py SCREE [--backend cuda] [--steps 100000] [--ranks 1 2 4 8] [--side 10] [--layers 5] [--edge 0.01]"""
 
 import argparse

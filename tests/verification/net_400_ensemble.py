@@ -46,7 +46,7 @@ REFERENCE = {
 }
 MOST_ERRORS = 3.0
 MOST_SPREAD = 3.0  # times the reference's deviation: four runs of the same population have more once in 10,000
-# What is wrong by a tenth: key of write_deck's changes.
+# Deliberate errors of a tenth: keys of write_deck's changes.
 WRONG = ("cord stiffness", "cord damping", "contact stiffness", "contact damping")
 WRONG_END = 0.5
 
@@ -56,7 +56,7 @@ def moved(generator, place, shift):
 
 
 def write_deck(folder, shift, seed, wrong):
-    """The deck with every body a table of its own, as a row's bodies cannot be moved one by one; its path."""
+    """Writes the deck with a table for every body, as a row's bodies cannot be moved one by one; returns its path."""
     deck = tomllib.loads(DECK.read_text())
     generator = random.Random(seed)
     net, cord, block = deck["bodies"][0], deck["spring_dampers"][0], deck["particles"][0]
@@ -112,7 +112,7 @@ def energies(arguments, seed, wrong=None):
 
 
 def deviation_of(references, index):
-    """Of the reference. The kinetic energy, where it is not known, is the total less the gravitational one and the
+    """Mean of the reference. The kinetic energy, where it is not known, is the total less the gravitational one and the
     springs', but for a small part in contacts."""
     if references[index][1] is not None:
         return references[index][1]
@@ -166,7 +166,7 @@ def main():
             if wrong:
                 lines = [f"{wrong} larger by a tenth: {failures} of {len(lines) - 1} quantities differ"]
             print("\n".join(lines))
-            if (arguments.runs, arguments.step, wrong) == (4, "1e-5", None):  # what the page speaks of
+            if (arguments.runs, arguments.step, wrong) == (4, "1e-5", None):  # the case of the page
                 note(arguments.scree, apart, spread)
     return 0 if passed else 1
 

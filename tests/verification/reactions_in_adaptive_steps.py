@@ -1,4 +1,4 @@
-"""What joint reactions in adaptive steps err by where an impact elsewhere changes the step: the numbers of
+"""Errors of joint reactions in adaptive steps where an impact elsewhere changes the step: the numbers of
 input/choosing.md.
 
     .venv/bin/python tests/verification/reactions_in_adaptive_steps.py build/release/scree
@@ -45,7 +45,7 @@ def history(program, *of_deck):
 
 
 def errors(columns):
-    """[rows] of the reaction's error, and of its size [N]."""
+    """Errors of the reaction, and its magnitudes [N]: [rows]."""
     x, y, speed = (columns[f"bodies/bob/{name}"] for name in ("x", "y", "angular_velocity"))
     turn = (columns.get("efforts/rub/effort", 0) - MASS * GRAVITY * x) / (INERTIA + MASS * ARM**2)  # acceleration
     exact = MASS * np.array([-turn * y - speed**2 * x, turn * x - speed**2 * y + GRAVITY])

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the tables of what the tests measured, from tests/verification/measured.csv after
+"""Makes the tables of measured values, from tests/verification/measured.csv after
 tests/verification/tables.toml.
 
-    SCREE_MEASURED=FOLDER build/release/tests/test_verification_impact      # leaves what it measured in FOLDER
+    SCREE_MEASURED=FOLDER build/release/tests/test_verification_impact      # writes its measured values to FOLDER
     python3 tests/support/measured.py --merge tests/verification/measured.csv FOLDER
     tests/verification/table.py [--check]
     tests/verification/table.py --demands FOLDER
@@ -23,7 +23,7 @@ SOURCES = ["tests/verification", "tests/unit", "tests/trials"]
 
 
 def other_demands(rows, folder):
-    """What the files of a folder demand and write otherwise than the rows of the data, a line each."""
+    """Differences of bounds and texts between the files of a folder and the rows of the data, a line each."""
     known = {measured.identity(row): row for row in rows}
     programs = sorted({row["command"] for row in rows if row["command"].startswith("test_verification_")
                        and " " not in row["command"]})
@@ -39,7 +39,7 @@ def other_demands(rows, folder):
                 if row[name] != kept[name]:
                     problems.append(f"{row['key']}: {name} is {row[name] or 'not there'} in {row['command']}, "
                                     f"{kept[name] or 'not there'} in {DATA}")
-        # Tests that are run by name alone, as [table], are no part of a program's own run.
+        # Tests that run by name only, as [table], are not part of a program's default run.
         here = {row["key"] for row in found}
         problems += [f"{row['key']}: {row['command']} no longer writes it" for row in rows
                      if (row["command"], row["backend"]) == (found[0]["command"], found[0]["backend"])

@@ -125,17 +125,7 @@ TEST_CASE("an implicit step is the same on both backends") {
     for (int k = 0; k < 2; ++k) {
       Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
       steps[k] = predicted_step(backend, 2e-4);
-      for (int iteration = 0; iteration < 60; ++iteration) {
-        const ParticleNorms norms = steps[k]->contact_force();
-        if (norms.overshoot) {
-          steps[k]->shorten_correction();
-          iterations[k].push_back(-1);
-          continue;
-        }
-        if (norms.residual <= 1e-10) break;
-        backend.list().place_bodies(pair.motion);
-        iterations[k].push_back(steps[k]->particle_correct().iterations);
-      }
+      solve_step(backend, *steps[k], pair.motion, [&](int linear) { iterations[k].push_back(linear); });
       CHECK(steps[k]->step_displacement() > 0);
       at_end[k].resize(pair.model.bodies.size());
       ContactWrenches contacts{at_end[k], {}};

@@ -80,8 +80,8 @@ std::vector<Entry> found_row(const Items& items, const NeighborList& list, Index
 }
 
 struct BuiltList {
-  explicit BuiltList(const BoxCase& box, std::uint64_t seed)
-      : model(random_box(box, kParticles, seed)), builder(model), items(model, builder) {
+  BuiltList(const BoxCase& box, std::uint64_t seed) : BuiltList(random_box(box, kParticles, seed)) {}
+  explicit BuiltList(const Model& of) : model(of), builder(model), items(model, builder) {
     builder.build(items.store, items.layout, builder.cells(kSkin, kParticles), {}, kSkin, list);
   }
   Model model;
@@ -90,22 +90,42 @@ struct BuiltList {
   NeighborList list;
 };
 
+void check_rows(const BuiltList& built) {
+  const ItemLayout& layout = built.items.layout;
+  REQUIRE(built.list.offsets.size() == static_cast<std::size_t>(layout.owned) + 1);
+  const Vec3 period = Subdomain(built.model.space).period();
+  for (Index i = 0; i < layout.owned; ++i) {
+    CAPTURE(i);
+    const std::vector<Entry> expected =
+        i < layout.active ? expected_row(built.items, period, i) : std::vector<Entry>{};
+    CHECK(found_row(built.items, built.list, i) == expected);
+  }
+}
+
+// The first `large` particles have the largest radius, the others a tenth of it.
+Model two_sizes(const BoxCase& box, Index large) {
+  Model model = random_box(box, kParticles, 5);
+  for (Index i = 0; i < kParticles; ++i)
+    model.particles.radius[static_cast<std::size_t>(i)] = i < large ? kLargestRadius : kLargestRadius / 10;
+  count_particles(model.particles, box.materials);
+  return model;
+}
+
 }  // namespace
 
-TEST_CASE("rows hold every pair and image in reach, once, by global id and image") {
+TEST_CASE("rows hold every pair and image in range, once, by global id and image") {
   for (const BoxCase& box : kBoxes)
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const BuiltList built(box, seed);
       CAPTURE(box.name, seed);
-      const ItemLayout& layout = built.items.layout;
-      REQUIRE(built.list.offsets.size() == static_cast<std::size_t>(layout.owned) + 1);
-      const Vec3 period = Subdomain(built.model.space).period();
-      for (Index i = 0; i < layout.owned; ++i) {
-        CAPTURE(i);
-        const std::vector<Entry> expected =
-            i < layout.active ? expected_row(built.items, period, i) : std::vector<Entry>{};
-        CHECK(found_row(built.items, built.list, i) == expected);
-      }
+      check_rows(BuiltList(box, seed));
+    }
+}
+
+TEST_CASE("rows hold every pair and image at a size ratio of 1 : 10") {
+  for (const BoxCase& box : kBoxes)
+    for (const Index large : {1, 10, kParticles / 2}) {
+      CAPTURE(box.name, large);
+      check_rows(BuiltList(two_sizes(box, large)));
     }
 }
 

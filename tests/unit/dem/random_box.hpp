@@ -15,6 +15,7 @@
 #include "partition/subdomain.hpp"
 #include "support/backends.hpp"
 #include "support/catch.hpp"
+#include "support/newton_loop.hpp"
 #include "support/test_meshes.hpp"
 
 namespace scree {
@@ -200,28 +201,6 @@ struct LoadedBox {
   std::unique_ptr<Backend> backend;
   StageTimers timers;
 };
-
-inline std::unique_ptr<ImplicitStep> predicted_step(Backend& backend, Real h) {
-  std::unique_ptr<ImplicitStep> step = backend.open_step(h);
-  step->predict();
-  return step;
-}
-
-// An HHT step of the particles alone, the bodies held at `motion`.
-inline void hht_step(Backend& backend, const std::vector<BodyMotion>& motion, Real h) {
-  const std::unique_ptr<ImplicitStep> step = predicted_step(backend, h);
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const ParticleNorms norms = step->contact_force();
-    if (norms.overshoot) {
-      step->shorten_correction();
-      continue;
-    }
-    if (norms.residual <= 1e-10) return step->accept();
-    backend.list().place_bodies(motion);
-    step->particle_correct();
-  }
-  FAIL("no convergence");
-}
 
 // A run of explicit steps with the bodies held at `motion`; returns the number of steps taken.
 inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {

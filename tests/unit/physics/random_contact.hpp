@@ -26,13 +26,14 @@ struct RandomContact {
   Vec3 spin_i, spin_j;
 };
 
-// A contact of partners i and j of sizes around 1; swapped: the same contact seen from j.
-inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped) {
-  const Vec3 place[2] = {random.vector(), random.vector()};
+// A contact of partners i and j of sizes around 1; swapped: the same contact seen from j. closeness: sum of
+// the radii over the distance of the centres; below 1 the partners are apart.
+inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped, Real closeness = 1.05) {
+  const Vec3 position[2] = {random.vector(), random.vector()};
   const Vec3 velocity[2] = {random.vector(), random.vector()}, spin[2] = {random.vector(), random.vector()};
   const Real mass[2] = {2 + random(), 2 + random()};
-  const Real distance = norm(place[0] - place[1]), share = 0.5 + 0.3 * random();
-  const Real radius[2] = {share * 1.05 * distance, (1 - share) * 1.05 * distance};
+  const Real distance = norm(position[0] - position[1]), share = 0.5 + 0.3 * random();
+  const Real radius[2] = {share * closeness * distance, (1 - share) * closeness * distance};
   const Vec3 along = random.vector();
   const int i = swapped, j = 1 - i;
   const auto partner = [&](int k) {
@@ -40,7 +41,7 @@ inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped) {
   };
   RandomContact out{};
   const Vec3 relative = velocity[i] - velocity[j];
-  const ContactGeometry geometry = sphere_pair(place[i] - place[j], radius[i] + radius[j]);
+  const ContactGeometry geometry = sphere_pair(position[i] - position[j], radius[i] + radius[j]);
   out.pair = {{geometry, relative, {radius[i], radius[j], mass[i], mass[j]}},
               sphere_motion(geometry, h * relative, partner(i), partner(j), h)};
   const Vec3 spring = across(swapped ? -along : along, out.pair.motion.normal0);

@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: decks, runs, results, bands, the command line.
+"""Shared parts of the scripts of this folder: decks, runs, results, bands, the command line.
 
 A script has `decks(small)`, texts by name, and `show(folder, report)`, which measures and draws. Decks in units
 of the grains' diameter and mass and of gravity (or of the pressure), in which the laws stand as they are: scree
@@ -25,7 +25,7 @@ REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "reference/contact"
 
 
 def subplots(*shape, **options):
-    """A figure and its axes. The library is loaded for pictures alone: runs need none."""
+    """A figure and its axes. The library is loaded for pictures only: runs need none."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot
@@ -33,7 +33,7 @@ def subplots(*shape, **options):
 
 
 class Report:
-    """Prints what was measured beside its band and counts what is outside."""
+    """Prints measured values beside their bands and counts those outside."""
     def __init__(self, picture):
         self.picture, self.checked, self.failed = pathlib.Path(picture), 0, 0
 
@@ -48,14 +48,14 @@ class Report:
               flush=True)
 
     def has(self, folder, name):
-        """Whether a case has gone to its end; says so where it has not."""
+        """Whether a case is complete; prints a line where it is not."""
         there = finished(folder, name)
         if not there:
             self.say(f"{name}: not run")
         return there
 
     def keep(self, folder, name, what, value, unit=""):
-        """A row of measured.csv, of a run: tests/support/measured.py takes it over."""
+        """Writes a row of measured.csv for a run, to be collected by tests/support/measured.py."""
         record = json.loads((folder / name / "run_record.json").read_text())
         measured.note(f"bulk/{what}", float(value), unit, record=record)
 
@@ -76,8 +76,8 @@ def numbers(values):
 
 
 def body(name, position, shapes, ground=True, mass=1e6):
-    """A body of spheres or discs, (centre, radius) each, in the frame of its place, of the material "base";
-    ground: joined to the ground for good."""
+    """A body of spheres or discs, (centre, radius) each, in its own frame, of the material "base";
+    ground: fixed to the ground."""
     lines = [
         "[[bodies]]", f'name = "{name}"', f"position = {numbers(position)}", f"mass = {mass}",
         f"inertia = {1e3 * mass}", "shapes = ["
@@ -93,7 +93,7 @@ def body(name, position, shapes, ground=True, mass=1e6):
 
 
 def pairs(law, materials=("grain", "base")):
-    """The materials, and one law between grains and of grains on the others, which do not touch each other."""
+    """The materials, and one law between particles and of particles with the others, which do not touch each other."""
     text = "".join(f'[[materials]]\nname = "{name}"\n' for name in materials)
     for other in materials:
         text += f'[[contact.pairs]]\nmaterials = ["grain", "{other}"]\n{law.strip()}\n'
@@ -110,7 +110,7 @@ def table(name, /, **keys):
 
 
 def output(name, snapshots, history, fields, /, **keys):
-    """Results of a case, small: compressed."""
+    """Compressed results of a case."""
     listed = "[" + ", ".join(f'"{field}"' for field in fields) + "]"
     return table("output",
                  directory=f'"{name}"',
@@ -133,12 +133,12 @@ def snapshots(folder, name):
 
 
 def run(folder, name):
-    """The run itself, for what its snapshots hold beside the particles."""
+    """The run itself, for further fields of its snapshots."""
     return results.opened(folder / name)
 
 
 def finished(folder, name):
-    """Whether a run went to its end: one that was stopped has a record, too."""
+    """Whether a run is complete: a stopped one has a record, too."""
     record = folder / name / "run_record.json"
     return record.exists() and json.loads(record.read_text())["run"]["exit_code"] == 0
 

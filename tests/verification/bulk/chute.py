@@ -81,7 +81,7 @@ def speed(folder, name, count=4000):
 
 
 def profile(folder, name, start):
-    """Of layers one diameter high, centred on z = 0, 1, ...: volume fraction by the spheres' caps, mean speed,
+    """Profiles of layers one diameter high, centred on z = 0, 1, ...: volume fraction by the spheres' caps, mean speed,
     mean spin about y."""
     edges = numpy.arange(-2.5, 26.0)
     total = numpy.zeros((4, len(edges) - 1))
@@ -92,7 +92,7 @@ def profile(folder, name, start):
         taken += 1
         height = fields["position"][:, 2]
         below = numpy.clip(edges[None, :] - height[:, None], -0.5, 0.5)
-        volume = math.pi * (below + 0.5)**2 * (1.0 - below) / 3.0  # of the part of a sphere under each edge
+        volume = math.pi * (below + 0.5)**2 * (1.0 - below) / 3.0  # the part of a sphere under each edge
         layer = numpy.digitize(height, edges) - 1
         total[0] += numpy.diff(volume, axis=1).sum(axis=0)
         for row, values in ((1, numpy.ones(len(height))), (2, fields["velocity"][:, 0]),
@@ -103,7 +103,7 @@ def profile(folder, name, start):
 
 
 def bagnold(height, speeds):
-    """Of v = v0 + A (1 - (1 - z/H)^1.5): best H in the bulk, and the largest deviation over the speed at the top."""
+    """Fits v = v0 + A (1 - (1 - z/H)^1.5): best H in the bulk, and the largest deviation over the speed at the top."""
     best = (numpy.inf, 0.0, None)
     for top in numpy.arange(16.0, 21.0, 0.1):
         shape = 1.0 - (1.0 - height / top)**1.5
@@ -172,7 +172,7 @@ def show(folder, report):
 
 
 def smoke():
-    """The bed falls on the base: it goes on downhill, above the base, no faster than gravity allows."""
+    """The bed falls on the base: it moves downhill, above the base, no faster than gravity permits."""
     def check(folder, report):
         time, v = speed(folder, "small", 1000)
         report.check("speed after 1", v[-1], 1.0, 2.0 + math.sin(math.radians(24)) * time[-1],

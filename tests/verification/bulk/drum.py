@@ -58,14 +58,14 @@ def decks():
 
 
 def surface(fields):
-    """Of strips one diameter wide in the drum's middle half: middles, and the height of the topmost disc."""
+    """Strips one diameter wide in the drum's middle half: middles, and the height of the topmost disc."""
     x, top = fields["position"][:, 0], fields["position"][:, 1] + fields["radius"]
     middles = numpy.arange(-9.5, 10.0)
     return middles, numpy.array([top[abs(x - middle) < 0.5].max(initial=-RADIUS) for middle in middles])
 
 
 def torque(folder, name, start):
-    """Mean torque of the grains on the drum, and its standard error by ten parts."""
+    """Mean torque of the particles on the drum, and its standard error by ten parts."""
     columns = bulk.history(folder, name)
     values = columns["contacts/drum/torque_z"][columns["step/time"] >= start]
     return values.mean(), numpy.std([part.mean() for part in numpy.array_split(values, 10)]) / math.sqrt(10)

@@ -1,4 +1,4 @@
-"""Angle of repose against friction and rolling friction, in 2D and 3D: what is left on a plate from which
+"""Angle of repose against friction and rolling friction, in 2D and 3D: the heap left on a plate from which
 grains run off.
 
     tests/verification/bulk/heap.py run DIR --scree SCREE [--backend cuda]
@@ -81,7 +81,7 @@ def decks():
 
 
 def surface(fields, half):
-    """Middles of strips one diameter wide along the plate, and the height of the topmost grain there: in 3D the
+    """Middles of strips one diameter wide along the plate, and the height of the topmost particle there: in 3D the
     mean over strips across."""
     place, top = fields["position"], fields["position"][:, 1] + fields["radius"]
     across = numpy.zeros(len(place), int)
@@ -95,7 +95,7 @@ def surface(fields, half):
 
 
 def angle(fields, half):
-    """Degrees, of both flanks."""
+    """Angles of both flanks [degrees]."""
     x, height = surface(fields, half)
     found = []
     for side in (-1, 1):
@@ -105,7 +105,7 @@ def angle(fields, half):
 
 
 def band(dimension, friction, rolling):
-    """Lowest and highest angle expected, and whence; none where only the trend is known."""
+    """Lowest and highest angle expected, and their source; none where only the trend is known."""
     if rolling == 0.0 and dimension == 3 and friction in (0.3, 0.5):
         return 16, 25, "simulated heaps of equal spheres, mu 0.3 to 0.6: bands.csv"
     if rolling == 0.0 and dimension == 2 and friction in (0.3, 0.5):
@@ -116,8 +116,8 @@ def band(dimension, friction, rolling):
 
 
 def grows(report, found, dimension, apart):
-    """The trend: with friction and with rolling friction. What two flanks of a heap differ by says how far the
-    angle of one heap is to be trusted: a step between two angles may be as negative as two standard errors."""
+    """The trend: with friction and with rolling friction. The difference between the two flanks of a heap is a
+    measure of the error of its angle: a step between two angles may be as negative as two standard errors."""
     error = math.sqrt(2.0 * numpy.mean(numpy.square(apart))) if apart else 0.0
     for keys, what in (([(mu, 0.0) for mu in FRICTION], "friction"), ([(0.5, mu_r) for mu_r in (0.0, *ROLLING)],
                                                                       "rolling friction")):
@@ -174,7 +174,7 @@ def show(folder, report):
 
 
 def smoke():
-    """A small block in 2D and one in 3D run off a short plate; grains stay on it."""
+    """A small block in 2D and one in 3D run off a short plate; particles stay on it."""
     def check(folder, report):
         for name in ("flat", "deep"):
             first, last = [fields for _, fields in bulk.snapshots(folder, name)]

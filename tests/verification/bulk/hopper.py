@@ -23,7 +23,7 @@ import bulk
 
 HOLES = (5, 6, 8, 10)
 LAW = "stiffness = 2e5\ndamping = 25.0\nfriction = 0.5\n"
-HEIGHT = 34.0  # of the space; the floor's surface is at FLOOR
+HEIGHT = 34.0  # of the domain; the floor's surface is at FLOOR
 FLOOR = 2.0
 RIM = 0.25
 STEADY = 30.0
@@ -82,8 +82,8 @@ def decks():
 
 
 def counted(folder, name):
-    """Spheres that passed the periodic side between the last two snapshots, per unit time, corrected for what
-    lies nearer to it now than before; and the number density of the bed."""
+    """Spheres that passed the periodic side between the last two snapshots, per unit time, corrected for
+    those that are nearer to it now than before; and the number density of the bed."""
     (early, before), (late, after) = list(bulk.snapshots(folder, name))[-2:]
     before, after = (fields_by_id(fields) for fields in (before, after))
     fallen = -((after["image"][:, 2] - before["image"][:, 2]) * HEIGHT + after["position"][:, 2] -
@@ -120,7 +120,7 @@ def show(folder, report):
                    " ".join(f"{part:.2f}" for part in parts))
         report.check(f"counted over from momentum, {hole} d, second half", crossed / second, 0.98, 1.02,
                      "they are one number")
-    wide = [hole for hole in found if hole > 5]  # the law is one of holes of more than five diameters
+    wide = [hole for hole in found if hole > 5]  # the law holds for more than five diameters
     if len(wide) >= 3:
         holes, rates = numpy.array(wide), numpy.array([found[hole] for hole in wide])
         slope, cut = numpy.polyfit(holes, rates**0.4, 1)
@@ -144,7 +144,7 @@ def show(folder, report):
 
 
 def smoke():
-    """A bed of three layers runs out through the hole and comes in from above."""
+    """A bed of three layers flows out through the hole and enters from above."""
     def check(folder, report):
         (_, before), (_, after) = list(bulk.snapshots(folder, "small"))[-2:]
         report.check("spheres that came in from above", (before["image"] - after["image"])[:, 2].sum(), 20, 800,

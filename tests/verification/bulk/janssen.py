@@ -37,7 +37,7 @@ LAW = "stiffness = 2e4\nrestitution = 0.5\nfriction = {}\ntangential_damping_rat
 
 
 def laws():
-    """Grains on grains, and on walls and floor; these do not touch each other."""
+    """Contacts between particles, and with walls and floor; these do not touch each other."""
     text = "".join(f'[[materials]]\nname = "{name}"\n' for name in ("grain", "base"))
     for pair, law in (('["grain", "grain"]', LAW.format(0.5)), ('["grain", "base"]', LAW.format(WALL_FRICTION)),
                       ('["base", "base"]', "stiffness = 0.0\n")):
@@ -86,7 +86,7 @@ def decks():
 
 
 def loads(folder, name, start):
-    """Means from `start` on: mass of the filling, what floor and walls carry, friction on the walls over the
+    """Means from `start` on: mass of the filling, loads of floor and walls, friction on the walls over the
     pressure on them, and height of the filling above the floor."""
     columns = bulk.history(folder, name)
     late = columns["step/time"] >= start
@@ -158,7 +158,7 @@ def show(folder, report):
 
 
 def smoke():
-    """A few rows come to rest on the floor that goes down, and lean on the walls."""
+    """A few rows come to rest on the floor, which moves down, and press on the walls."""
     def check(folder, report):
         mass, floor, walls, friction, height = loads(folder, "small", 20.0)
         report.check("floor and walls over the weight", (floor + walls) / mass, 0.98, 1.02, "balance of forces")

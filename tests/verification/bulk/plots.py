@@ -71,14 +71,14 @@ def discharge(axes, values):
 
 
 def samples(values):
-    """Of janssen.py: the masses of the fillings and the loads on the floor."""
+    """The masses of the fillings and the loads on the floor of janssen.py."""
     names = [key.removeprefix("janssen/mass, ") for key in values if key.startswith("janssen/mass, ")]
     return [numpy.array([values[f"janssen/{what}, {name}"] for name in names])
             for what in ("mass", "load on the floor")]
 
 
 def carried(axes, values):
-    """Loads over those of ever so much filling, against the filling over what weighs as much."""
+    """Loads over the saturated load, against the filling over the mass of that load."""
     deep = numpy.linspace(0, 5.2, 200)
     axes.plot(deep, deep, ":", color=figures.PALE, label="the weight alone")
     axes.plot(deep, -numpy.expm1(-deep), color=figures.PALE, label="Janssen's law")

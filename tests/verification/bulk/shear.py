@@ -20,7 +20,7 @@ import numpy
 
 import bulk
 
-SPEEDS = {0.01: 900.0, 0.03: 600.0, 0.1: 400.0, 0.2: 400.0}  # inertial number wished, and end of the run
+SPEEDS = {0.01: 900.0, 0.03: 600.0, 0.1: 400.0, 0.2: 400.0}  # target inertial number, and end of the run
 WIDTH = 30.0
 ROWS = 36
 LAW = ("stiffness = 1e4\nrestitution = 0.3\nfriction = 0.4\ntangential_stiffness = 5e3\n")
@@ -103,7 +103,7 @@ def inside(folder, name, from_time):
 
 
 def covered(height, radius, low, high):
-    """Share of the strip between two heights that discs cover."""
+    """Fraction of the strip between two heights that is covered by discs."""
     def below(level):
         share = numpy.clip((level - height) / radius, -1.0, 1.0)
         return (radius**2 * (0.5 * math.pi + numpy.arcsin(share) + share * numpy.sqrt(1 - share**2))).sum()
@@ -157,7 +157,7 @@ def show(folder, report):
 
 
 def smoke():
-    """The upper wall comes down on a few rows and drags them along."""
+    """The upper wall moves down on a few rows and drags them along."""
     def check(folder, report):
         columns = bulk.history(folder, "small")
         late = columns["step/time"] > 10

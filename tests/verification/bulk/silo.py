@@ -21,14 +21,14 @@ import numpy
 import bulk
 
 HOLES = (6, 8, 10, 12)
-OF_SAME_PROGRAM = {6: 24.0, 10: 118.8}  # rates that its author gave beside those in silo.csv
+OF_SAME_PROGRAM = {6: 24.0, 10: 118.8}  # rates from its author in addition to silo.csv
 RATE_TOLERANCE = {6: 0.05, 8: 0.03, 10: 0.03, 12: 0.03}
 DENSITY = 1.09  # spheres per volume in the silo, of that program
 LAW = "stiffness = 2e5\ndamping = 25.0\nfriction = 0.5\n"
 FILLED = 40.0
 OPENED = 5.0  # after FILLED the rate is constant
 FLOWN = {6: 110.0, 8: 110.0, 10: 80.0, 12: 60.0}
-RAISED = 240.0  # how long the wall moves
+RAISED = 240.0  # duration of the wall's motion
 STEADY = 120.0
 UP = 0.02  # its speed
 SEGMENTS = 144  # of a full circle; polygon and circle differ by 3e-4 of the area
@@ -43,7 +43,7 @@ def filling(diameter, count, lowest=0.7, spacing=1.1):
 
 
 def cylinder(name, diameter, bottom, top, refine=None):
-    """A tube of triangles whose inside is the silo's wall."""
+    """A tube of triangles; its inside is the silo's wall."""
     keys = {} if refine is None else {"refine": refine}
     return bulk.table("[meshes]",
                       name=f'"{name}"',
@@ -62,7 +62,7 @@ def wall(name, *motions, **keys):
 
 
 def case(title, diameter, count, lowest, end, parts):
-    """What both have in common, with the meshes and walls of the case."""
+    """Common parts of both cases, with the meshes and walls of the case."""
     places = filling(diameter, count)
     reach, top = 0.5 * diameter + 2.0, places[-1][2] + 2.0
     return [
@@ -231,7 +231,7 @@ def show(folder, report):
 
 
 def smoke():
-    """A small silo holds what is in it until its lid drops; in another one the wall that moves up takes load."""
+    """A small silo holds its filling until its lid drops; in another one the wall moves up and carries load."""
     def check(folder, report):
         columns = bulk.history(folder, "small")
         time, left = columns["step/time"], columns["step/left"]

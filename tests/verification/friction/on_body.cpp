@@ -73,15 +73,30 @@ history_contacts = ["belt"]
                   settings);
 }
 
-// A disc between two discs of one body, which rotates at kHeldTurn: they hold it at kOut from the axle
+// A revolute joint of a body with the ground, driven at this rate.
+std::string driven_axle(const std::string& body, Real rate) {
+  return fmt::format(R"([[joints]]
+name = "axle"
+type = "revolute"
+bodies = ["ground", "{}"]
+[[drivers]]
+name = "motor"
+joint = "axle"
+motion = {{ kind = "ramp", rate = {} }}
+)",
+                     body, rate);
+}
+
+// A disc between two discs of one body, which rotates at kHeldRate: they hold it at kOut from the axle
 // against the centrifugal force.
-constexpr Real kHeldTurn = 5, kOut = 0.3, kHolder = 0.05, kPressed = 2e-4;
-Model turning_model(int dimension, const std::vector<std::string>& settings) {
+constexpr Real kHeldRate = 5, kOut = 0.3, kHolder = 0.05, kPressed = 2e-4;
+Model rotating_model(int dimension, const std::vector<std::string>& settings) {
   const Real apart = kHolder + kRadius - kPressed;
   const std::string zero = dimension == 2 ? "" : ", 0.0", one = dimension == 2 ? "" : ", -1.0",
                     far = dimension == 2 ? "" : ", 1.0";
-  return model_of(fmt::format(
-                      R"(
+  return model_of(
+      fmt::format(
+          R"(
 velocities = "consistent"
 [space]
 dimension = {dimension}
@@ -104,15 +119,7 @@ position = [0.0, 0.0{zero}]
 mass = 10.0
 inertia = 1.0
 shapes = [{{ radius = {r}, offset = [{out}, {apart}{zero}] }}, {{ radius = {r}, offset = [{out}, -{apart}{zero}] }}]
-[[joints]]
-name = "axle"
-type = "revolute"
-bodies = ["ground", "holder"]
-[[drivers]]
-name = "motor"
-joint = "axle"
-motion = {{ kind = "ramp", rate = {turn} }}
-[[particles]]
+{axle}[[particles]]
 name = "held"
 kind = "list"
 positions = [[{out}, 0.0{zero}]]
@@ -121,19 +128,19 @@ angular_velocity = {spin}
 radius = {R}
 mass = {m}
 )",
-                      fmt::arg("dimension", dimension), fmt::arg("zero", zero), fmt::arg("one", one),
-                      fmt::arg("far", far), fmt::arg("k", kStiffness),
-                      fmt::arg("end", 2.5 * 2 * std::numbers::pi_v<Real>), fmt::arg("r", kHolder),
-                      fmt::arg("out", kOut), fmt::arg("apart", apart), fmt::arg("turn", kHeldTurn),
-                      fmt::arg("v", kHeldTurn * kOut), fmt::arg("R", kRadius), fmt::arg("m", kMass),
-                      fmt::arg("spin", fmt::format("[{}{}]", dimension == 2 ? "" : "0.0, 0.0, ", kHeldTurn))),
-                  settings);
+          fmt::arg("dimension", dimension), fmt::arg("zero", zero), fmt::arg("one", one),
+          fmt::arg("far", far), fmt::arg("k", kStiffness),
+          fmt::arg("end", 2.5 * 2 * std::numbers::pi_v<Real>), fmt::arg("r", kHolder), fmt::arg("out", kOut),
+          fmt::arg("apart", apart), fmt::arg("axle", driven_axle("holder", kHeldRate)),
+          fmt::arg("v", kHeldRate * kOut), fmt::arg("R", kRadius), fmt::arg("m", kMass),
+          fmt::arg("spin", fmt::format("[{}{}]", dimension == 2 ? "" : "0.0, 0.0, ", kHeldRate))),
+      settings);
 }
 
 constexpr Real kWheel = 0.09;
 
 // A disc on a wheel that rotates under it, held by a frictionless wall.
-Model wheel_model(Real turn, const std::vector<std::string>& settings) {
+Model wheel_model(Real rate, const std::vector<std::string>& settings) {
   return model_of(fmt::format(R"(
 gravity = [0.0, -{g}]
 velocities = "consistent"
@@ -168,15 +175,7 @@ position = [0.0, -{r}]
 mass = 10.0
 inertia = 1.0
 shapes = [{{ radius = {r}, material = "rough" }}]
-[[joints]]
-name = "axle"
-type = "revolute"
-bodies = ["ground", "wheel"]
-[[drivers]]
-name = "motor"
-joint = "axle"
-motion = {{ kind = "ramp", rate = {turn} }}
-[[particles]]
+{axle}[[particles]]
 name = "disc"
 kind = "list"
 positions = [[0.0, {y}]]
@@ -187,8 +186,9 @@ material = "rough"
 history_contacts = ["wheel"]
 )",
                               fmt::arg("g", kGravity), fmt::arg("R", kRadius), fmt::arg("k", kStiffness),
-                              fmt::arg("mu", kFriction), fmt::arg("r", kWheel), fmt::arg("turn", turn),
-                              fmt::arg("m", kMass), fmt::arg("y", kRadius - kMass * kGravity / kStiffness)),
+                              fmt::arg("mu", kFriction), fmt::arg("r", kWheel),
+                              fmt::arg("axle", driven_axle("wheel", rate)), fmt::arg("m", kMass),
+                              fmt::arg("y", kRadius - kMass * kGravity / kStiffness)),
                   settings);
 }
 
@@ -202,18 +202,18 @@ std::vector<std::string> steps_of(std::string_view integrator) {
 
 // The held disc in the body's frame.
 struct Held {
-  Vec3 place, spring;  // [m], on the first surface [N]
-  Real turned;         // rotation of the disc against the body [rad], small
+  Vec3 position, spring;  // [m], on the first surface [N]
+  Real rotation;         // rotation of the disc against the body [rad], small
 
   explicit Held(SimulationRun& run) {
     const State& state = run.complete_state();
     const Particle& p = state.particles.at(0);
     const Rotation back(-state.bodies.position.at(2));
-    place = back.turn(p.position);
+    position = back.turn(p.position);
     REQUIRE(state.contacts.keys.size() == 2);
     spring = back.turn({state.contacts.values.at(0), state.contacts.values.at(1), 0});
     const Real half = state.bodies.position.at(2) / 2;
-    turned = 2 * (p.orientation.z * std::cos(half) - p.orientation.w * std::sin(half));
+    rotation = 2 * (p.orientation.z * std::cos(half) - p.orientation.w * std::sin(half));
   }
 };
 
@@ -247,18 +247,20 @@ TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whet
 
 TEST_CASE(
     "the friction of a disc brakes a wheel that rotates under it, and the wheel's motor does that work") {
-  constexpr Real kTurn = -50;
+  constexpr Real kWheelRate = -50;
   const char* integrator = GENERATE("explicit", "implicit");
   CAPTURE(integrator);
-  SimulationRun run(wheel_model(kTurn, steps_of(integrator)));
+  SimulationRun run(wheel_model(kWheelRate, steps_of(integrator)));
   run.run_until(0.025);
   const Real work = run.ledger().driver_work, from = run.time();
   const std::vector<Real> on_wheel = run.contact_values();
   run.run();
-  REQUIRE(kRadius * run.particles().at(0).angular_velocity.z < -kWheel * kTurn / 2);  // it is still sliding
+  REQUIRE(kRadius * run.particles().at(0).angular_velocity.z <
+          -kWheel * kWheelRate / 2);  // it is still sliding
   const Real torque = kFriction * kMass * kGravity * kWheel;
   CHECK(near(on_wheel[5], torque, {.relative = 1e-3}));
-  CHECK(near(run.ledger().driver_work - work, -torque * kTurn * (run.time() - from), {.relative = 1e-3}));
+  CHECK(
+      near(run.ledger().driver_work - work, -torque * kWheelRate * (run.time() - from), {.relative = 1e-3}));
   CHECK(near(run.balance_error(), 0, {.absolute = 1e-8 * run.exchanged()}));
   const ParticleLedger ledger = run.particle_ledger();
   CHECK(ledger.rotation.losses.of[kFrictionLoss] <= ledger.contact_loss);
@@ -269,20 +271,20 @@ TEST_CASE("a disc held by friction on a rotating body stays in place, with its s
   const int dimension = GENERATE(2, 3);
   const char* integrator = GENERATE("explicit", "implicit");
   CAPTURE(dimension, integrator);
-  SimulationRun run(turning_model(dimension, steps_of(integrator)));
-  const Real turn = 2 * std::numbers::pi_v<Real> / kHeldTurn;
-  run.run_until(2 * turn);  // it has come to rest on the body
+  SimulationRun run(rotating_model(dimension, steps_of(integrator)));
+  const Real revolution = 2 * std::numbers::pi_v<Real> / kHeldRate;
+  run.run_until(2 * revolution);  // it has come to rest on the body
   const Held before(run);
   // The centripetal force, half from each.
-  CHECK(near(norm(before.spring), kMass * kHeldTurn * kHeldTurn * kOut / 2, {.relative = 1e-2}));
-  run.run_until(12.3 * turn);
+  CHECK(near(norm(before.spring), kMass * kHeldRate * kHeldRate * kOut / 2, {.relative = 1e-2}));
+  run.run_until(12.3 * revolution);
   const Held after(run);
-  CHECK(near(after.place, before.place, {.absolute = 1e-9}));
+  CHECK(near(after.position, before.position, {.absolute = 1e-9}));
   CHECK(near(after.spring, before.spring, {.relative = 1e-6}));
   // Error of an orientation that rotates by 2 atan(h w / 2) in a step: (h w)^3 / 12 too little.
-  const Real turned = 10.3 * turn * kHeldTurn, in_step = run.step() * kHeldTurn;
-  CHECK(near(after.turned, before.turned, {.absolute = 2 * turned * in_step * in_step / 12}));
-  if (dimension == 3) CHECK(after.place.z == 0);
+  const Real rotation = 10.3 * revolution * kHeldRate, in_step = run.step() * kHeldRate;
+  CHECK(near(after.rotation, before.rotation, {.absolute = 2 * rotation * in_step * in_step / 12}));
+  if (dimension == 3) CHECK(after.position.z == 0);
 }
 
 }  // namespace scree

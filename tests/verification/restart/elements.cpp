@@ -171,51 +171,24 @@ stiffness = [500.0, 600.0, 700.0, 4.0, 5.0, 6.0]
 damping = [3.0, 3.0, 3.0, 0.02, 0.02, 0.02]
 preload = [1.0, -0.5, 2.0, 0.05, 0.0, -0.02]
 )";
+std::string bar(const std::string& name, const std::string& position, const std::string& moments,
+                const std::string& more = "") {
+  return "[[bodies]]\nname = \"" + name + "\"\nkind = \"spatial\"\nposition = " + position +
+         "\nmass = 1.0\ninertia_tensor = [" + moments + ", 0.0, 0.0, 0.0]\n" + more;
+}
+std::string pin(const std::string& name, const std::string& bodies, const std::string& point) {
+  return "[[joints]]\nname = \"" + name + "\"\ntype = \"revolute\"\nbodies = " + bodies +
+         "\npoint = " + point + "\naxis = [0.0, 1.0, 0.0]\n";
+}
 // A loop with three redundant rows.
-const std::string kLoop = R"(
-[[bodies]]
-name = "left"
-kind = "spatial"
-position = [-1.0, 0.0, 0.5]
-mass = 1.0
-inertia_tensor = [0.08, 0.08, 0.001, 0.0, 0.0, 0.0]
-[[bodies]]
-name = "right"
-kind = "spatial"
-position = [-0.3, 0.0, 0.5]
-mass = 1.0
-inertia_tensor = [0.08, 0.08, 0.001, 0.0, 0.0, 0.0]
-[[bodies]]
-name = "rail"
-kind = "spatial"
-position = [-0.65, 0.0, 1.0]
-velocity = [1.0, 0.0, 0.0]
-mass = 1.0
-inertia_tensor = [0.001, 0.08, 0.08, 0.0, 0.0, 0.0]
-[[joints]]
-name = "left_foot"
-type = "revolute"
-bodies = ["ground", "left"]
-point = [-1.0, 0.0, 0.0]
-axis = [0.0, 1.0, 0.0]
-[[joints]]
-name = "right_foot"
-type = "revolute"
-bodies = ["ground", "right"]
-point = [-0.3, 0.0, 0.0]
-axis = [0.0, 1.0, 0.0]
-[[joints]]
-name = "left_top"
-type = "revolute"
-bodies = ["left", "rail"]
-point = [-1.0, 0.0, 1.0]
-axis = [0.0, 1.0, 0.0]
-[[joints]]
-name = "right_top"
-type = "revolute"
-bodies = ["right", "rail"]
-point = [-0.3, 0.0, 1.0]
-axis = [0.0, 1.0, 0.0]
+const std::string kLoop =
+    bar("left", "[-1.0, 0.0, 0.5]", "0.08, 0.08, 0.001") +
+    bar("right", "[-0.3, 0.0, 0.5]", "0.08, 0.08, 0.001") +
+    bar("rail", "[-0.65, 0.0, 1.0]", "0.001, 0.08, 0.08", "velocity = [1.0, 0.0, 0.0]\n") +
+    pin("left_foot", R"(["ground", "left"])", "[-1.0, 0.0, 0.0]") +
+    pin("right_foot", R"(["ground", "right"])", "[-0.3, 0.0, 0.0]") +
+    pin("left_top", R"(["left", "rail"])", "[-1.0, 0.0, 1.0]") +
+    pin("right_top", R"(["right", "rail"])", "[-0.3, 0.0, 1.0]") + R"(
 [[joint_frictions]]
 name = "foot"
 joint = "left_foot"
@@ -254,19 +227,19 @@ std::vector<Case> cases() {
 
 constexpr int kInstants = 12;
 
-// States of the whole run; calls left(state) at some instants.
-template <class Left>
-State whole_run(const Model& model, const Left& left) {
+// The final state of the whole run; calls visit(state) at some instants.
+template <class Visit>
+State whole_run(const Model& model, const Visit& visit) {
   SimulationRun run(model);
   for (int i = 1; i <= kInstants; ++i) {
     run.run_until(i * model.time.end / (kInstants + 1));
-    left(run.complete_state());
+    visit(run.complete_state());
   }
   run.run();
   return run.complete_state();
 }
 
-State taken_up(const Model& model, const State& state) {
+State continued(const Model& model, const State& state) {
   SimulationRun run(model, state);
   run.run();
   return run.complete_state();
@@ -285,7 +258,7 @@ TEST_CASE("elements of joints continue from a checkpoint at any instant bit for 
     });
     CHECK(end.counts.steps >= 400);
     for (const std::string& file : files) {
-      const State again = taken_up(one.model, unpack(read_checkpoint(file)));
+      const State again = continued(one.model, unpack(read_checkpoint(file)));
       CHECK(differing_arrays(pack(again), pack(end)) == "");
     }
   }
@@ -294,20 +267,20 @@ TEST_CASE("elements of joints continue from a checkpoint at any instant bit for 
 // Shows that the test above detects missing parts of a checkpoint.
 TEST_CASE("every number in the memory of joint elements matters") {
   const Model model = everything();
-  std::vector<State> left;
-  const State end = whole_run(model, [&](const State& state) { left.push_back(state); });
-  const State& middle = left[kInstants / 2];
+  std::vector<State> states;
+  const State end = whole_run(model, [&](const State& state) { states.push_back(state); });
+  const State& middle = states[kInstants / 2];
   REQUIRE(middle.bodies.memory.size() == 6);
   REQUIRE(middle.bodies.counted_angles == 6);
   for (std::size_t k = 0; k < 6; ++k) {
     CAPTURE(k);
     State without = middle;
     REQUIRE(std::exchange(without.bodies.memory[k], 0) != 0);
-    const State other = taken_up(model, without);
+    const State other = continued(model, without);
     CHECK(differing_arrays(pack(other), pack(end)) != "");
   }
-  State turned = middle;  // a revolution of the arm, on which a spring acts
-  turned.bodies.position[turned.bodies.position.size() - 6] += 2 * M_PI;
-  const State other = taken_up(model, turned);
+  State rotated = middle;  // a revolution of the arm, on which a spring acts
+  rotated.bodies.position[rotated.bodies.position.size() - 6] += 2 * M_PI;
+  const State other = continued(model, rotated);
   CHECK(differing_arrays(pack(other), pack(end)) != "");
 }
