@@ -203,7 +203,7 @@ std::vector<std::string> steps_of(std::string_view integrator) {
 // The held disc in the body's frame.
 struct Held {
   Vec3 position, spring;  // [m], on the first surface [N]
-  Real rotation;         // rotation of the disc against the body [rad], small
+  Real rotation;          // rotation of the disc against the body [rad], small
 
   explicit Held(SimulationRun& run) {
     const State& state = run.complete_state();
