@@ -27,7 +27,7 @@ class MemoryRecords : public Records {
   void sample_energies(State& state) override { add_sample(state.balance, now(state)); }
   void history(State& state, Real) override {
     const Ledger ledger = inside_ledger(ledger_(), particles_(), state.carried_out);
-    if (state.balance.open) exchanged_ += change_of_place(state.balance.last, ledger);
+    if (state.balance.open) exchanged_ += exchanged_energy(state.balance.last, ledger);
     add_row(state.balance, ledger, now(state), state.bodies);
     ++state.history_rows;
     at_history();
@@ -43,7 +43,7 @@ class MemoryRecords : public Records {
     return extremes_at(particles_().inside.kinetic, ledger_().elastic_force_elements, state.bodies);
   }
   // Half the sum of the changes of all entries [J].
-  static Real change_of_place(const Ledger& before, const Ledger& after) {
+  static Real exchanged_energy(const Ledger& before, const Ledger& after) {
     const auto a = before.entries(), b = after.entries();
     Real sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += std::abs(b[k] - a[k]);

@@ -74,9 +74,9 @@ TEST_CASE("the wrench's slope is found by as many displacements as it has direct
                                     std::pair{Vec3{0, 1e-6, 0}, Vec3{}}, std::pair{Vec3{}, Vec3{0, 0, 1e-6}}})
     slope.observe(start, at(place, turn), wrench(place, turn));
   const Vec3 place{3e-6, 2e-6, -1e-6}, turn{1e-6, -2e-6, 3e-6};
-  const BodyWrench foretold = slope.change(start, at(place, turn)), true_one = wrench(place, turn);
-  CHECK(norm(foretold.force - true_one.force) < 1e-6 * norm(true_one.force));
-  CHECK(norm(foretold.torque - true_one.torque) < 1e-6 * norm(true_one.torque));
+  const BodyWrench predicted = slope.change(start, at(place, turn)), true_one = wrench(place, turn);
+  CHECK(norm(predicted.force - true_one.force) < 1e-6 * norm(true_one.force));
+  CHECK(norm(predicted.torque - true_one.torque) < 1e-6 * norm(true_one.torque));
 }
 
 // A negative slope would make Newton's matrix less definite.

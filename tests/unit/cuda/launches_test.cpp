@@ -72,7 +72,7 @@ Outcome explicit_steps(const BoxCase& c, Precision precision, const Launches& ch
 }
 
 // Layers of agitated particles over a floor of triangles, which only the lowest of them touch.
-Model grains_over_mesh() {
+Model particles_over_mesh() {
   return model_of(R"(
 [space]
 dimension = 3
@@ -172,7 +172,7 @@ TEST_CASE("particles away from surfaces that go ahead of the others give the sam
   const auto compare = [&](const Model& model, Real step) {
     check_same(explicit_steps(model, step, apart), explicit_steps(model, step, together));
   };
-  compare(grains_over_mesh(), 1e-4);
+  compare(particles_over_mesh(), 1e-4);
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     Model model = dense_box(kBoxes[5], ParticleIntegrator::velocity_verlet, kParticles);
     model.integrator.precision = precision, model.contact.skin = 0.02;

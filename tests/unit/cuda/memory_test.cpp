@@ -32,7 +32,7 @@ void check_estimate(const Model& model) {
 }
 
 // Settled spheres with friction: tiles of a bed, side by side.
-Model rubbing_bed() {
+Model frictional_bed() {
   constexpr int kTiles = 30;
   constexpr Real kWidth = 25, kRadius = 0.5, kStiffness = 2e5;
   const ParticleColumns tile = read_particle_file(SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", 3);
@@ -78,7 +78,7 @@ TEST_CASE("the predicted device memory is what the run takes") {
 TEST_CASE("the predicted device memory of settled spheres with friction is what the run takes") {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     CAPTURE(static_cast<int>(precision));
-    Model model = rubbing_bed();
+    Model model = frictional_bed();
     model.integrator.precision = precision;
     check_estimate(model);
   }
@@ -88,7 +88,7 @@ TEST_CASE("the predicted device memory of settled spheres with friction is what 
 TEST_CASE("settled spheres with friction take at most 800 bytes each, in steps and while lists are built") {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     CAPTURE(static_cast<int>(precision));
-    Model model = rubbing_bed();
+    Model model = frictional_bed();
     model.integrator.precision = precision;
     const std::size_t before = device_memory_in_use();
     const std::unique_ptr<Backend> backend = make_cuda_backend(model);

@@ -171,10 +171,10 @@ TEST_CASE(
              exactly = exact.backend->reports().ledger(1e-4).contact_loss;
   CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
   const Real rubbed = mixed.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss],
-             rubbed_exactly = exact.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss];
-  CHECK(rubbed_exactly > 0);
+             exact_friction = exact.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss];
+  CHECK(exact_friction > 0);
   CHECK(rubbed <= lost);
-  CHECK(near(rubbed, rubbed_exactly, {.relative = 1e-3, .absolute = 1e-9}));
+  CHECK(near(rubbed, exact_friction, {.relative = 1e-3, .absolute = 1e-9}));
   std::printf(
       "%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);

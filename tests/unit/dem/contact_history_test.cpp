@@ -48,16 +48,16 @@ TEST_CASE("contact histories are those of a record kept by brute force") {
       Model model = moving_box(c);
       model.space.leaving = leaving;
       LoadedBox box(model, kSkin, make_remembering_backend<kNumbers>);
-      ContactBook<kNumbers> book(box.model);
+      ContactBook<kNumbers> record(box.model);
       RankParticles& particles = box.backend->particles();
       std::string wrong;
       std::size_t contacts = 0;
       for (int step = 0; step < kSteps && wrong.empty(); ++step) {
         verlet_steps(box, kStep, 1);
-        book.add_step(particles.records(), box.motion);
+        record.add_step(particles.records(), box.motion);
         leave(box);
         const std::vector<Particle> records = particles.records();
-        const KeptContacts expected = book.contacts(records);
+        const KeptContacts expected = record.contacts(records);
         contacts += expected.keys.size();
         if (const std::string found = difference(particles.contacts(), expected); !found.empty())
           wrong = "step " + std::to_string(step) + ": " + found;
@@ -66,8 +66,8 @@ TEST_CASE("contact histories are those of a record kept by brute force") {
       }
       CHECK(wrong == "");
       CHECK(contacts > 20 * kSteps);
-      CHECK(book.ended() > 50);
-      CHECK((book.moved_on() > 0) == (c.periodic_axes > 0));
+      CHECK(record.ended() > 50);
+      CHECK((record.moved_on() > 0) == (c.periodic_axes > 0));
       CHECK(box.backend->list().builds() > 5);
     }
 }
@@ -76,18 +76,18 @@ TEST_CASE("reports between steps, and batches of steps, do not change contact hi
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
     LoadedBox one(moving_box(c), kSkin, make_remembering_backend<3>),
-        looked_at(moving_box(c), kSkin, make_remembering_backend<3>);
-    RankParticles &a = one.backend->particles(), &b = looked_at.backend->particles();
+        queried(moving_box(c), kSkin, make_remembering_backend<3>);
+    RankParticles &a = one.backend->particles(), &b = queried.backend->particles();
     for (int part = 0; part < 6; ++part) {
       const Index steps =
           one.motion.empty() ? 15 : 1;  // one batch where no body needs a new pose between steps
       for (Index left = steps; left > 0;)
         left -= verlet_steps(one, kStep, left);  // a batch ends where particles escape
       for (Index k = 0; k < steps; ++k) {
-        verlet_steps(looked_at, kStep, 1);
-        looked_at.backend->reports().ledger(kStep);
-        looked_at.backend->reports().carrier_contacts();
-        looked_at.backend->list().build(0.01 * (k % 5 + 1), looked_at.timers);
+        verlet_steps(queried, kStep, 1);
+        queried.backend->reports().ledger(kStep);
+        queried.backend->reports().carrier_contacts();
+        queried.backend->list().build(0.01 * (k % 5 + 1), queried.timers);
       }
       CHECK(differing_fields(a.records(), b.records()) == "");
       CHECK(difference(a.contacts(), b.contacts()) == "");

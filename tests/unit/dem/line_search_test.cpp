@@ -16,14 +16,14 @@ constexpr Real kRoundOff = 4 * kUlp;  // of fractions up to 1
 // slope(share): derivative of the potential.
 struct Found {
   Real share;
-  int looks;
+  int evaluations;
 };
 template <class Slope>
 Found search_along(const Slope& slope) {
   LineSearch search;
   search.open(-slope(Real(0)));
   Found found{1, 0};
-  for (; found.looks < 100; ++found.looks) {
+  for (; found.evaluations < 100; ++found.evaluations) {
     if (!search.is_open()) break;
     search.look(-slope(found.share));
     if (!search.overshoots()) break;
@@ -62,13 +62,13 @@ TEST_CASE("a correction overshoots if it leaves more than half the slope that it
 TEST_CASE("the minimum of a parabola is found at once") {
   for (const Real minimum : {0.12, 0.3, 0.6}) {
     const Found found = search_along([&](Real share) { return 5 * (share - minimum); });
-    CHECK(found.looks == 1);
+    CHECK(found.evaluations == 1);
     CHECK(near(found.share, minimum, {.relative = kRoundOff}));
   }
 }
 
 TEST_CASE("a minimum beyond two thirds of the correction is not searched") {
-  CHECK(search_along([](Real share) { return share - 0.7; }).looks == 0);
+  CHECK(search_along([](Real share) { return share - 0.7; }).evaluations == 0);
 }
 
 TEST_CASE("at a kink the search ends, at a fraction before it or too small to be shortened") {
@@ -78,7 +78,7 @@ TEST_CASE("at a kink the search ends, at a fraction before it or too small to be
       const Found found = search_along([&](Real share) { return share < kink ? -1 : stiffness; });
       CHECK((found.share < kink || found.share <= 0.05));
       CHECK(found.share >= 0.005);
-      CHECK(found.looks <= 8);  // 2/3 to the eighth is less than 0.05
+      CHECK(found.evaluations <= 8);  // 2/3 to the eighth is less than 0.05
     }
 }
 
@@ -100,9 +100,9 @@ TEST_CASE("where there is no potential a correction is halved while the residual
   search.look(1);
   CHECK_FALSE(search.overshoots());
   Real share = 1;
-  int looks = 0;
-  for (search.look(2); search.overshoots(); search.look(2)) share += search.shorten(), ++looks;
-  CHECK((share == Real(0.0625) && looks == 4));
+  int evaluations = 0;
+  for (search.look(2); search.overshoots(); search.look(2)) share += search.shorten(), ++evaluations;
+  CHECK((share == Real(0.0625) && evaluations == 4));
   search.open(3), search.look(2);
   CHECK((search.is_open() && !search.overshoots()));
 }

@@ -27,25 +27,25 @@ class CountedReports : public Reports {
   std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }
   std::vector<TriangleLoad> triangle_loads() override { return {}; }
 
-  int looks = 0;
+  int queries = 0;
 
  private:
-  void find_loads() override { ++looks; }
+  void find_loads() override { ++queries; }
 };
 
-struct Told {
+struct Reported {
   ParticleLedger ledger;
   ShapePack shapes;
   std::vector<ContactSum> contacts;  // on bodies, then on walls
 };
 
-Told tell(Reports& reports, const std::vector<int>& walls) {
-  Told told{reports.ledger(0), reports.pack_shapes(), reports.carrier_contacts()};
-  for (const ContactSum& wall : reports.wall_contacts(walls)) told.contacts.push_back(wall);
-  return told;
+Reported tell(Reports& reports, const std::vector<int>& walls) {
+  Reported reported{reports.ledger(0), reports.pack_shapes(), reports.carrier_contacts()};
+  for (const ContactSum& wall : reports.wall_contacts(walls)) reported.contacts.push_back(wall);
+  return reported;
 }
 
-void check_same(const Told& a, const Told& b) {
+void check_same(const Reported& a, const Reported& b) {
   CHECK((a.ledger.contact_elastic == b.ledger.contact_elastic && a.ledger.contacts == b.ledger.contacts));
   CHECK((a.shapes.force == b.shapes.force && a.shapes.contacts == b.shapes.contacts));
   REQUIRE(a.contacts.size() == b.contacts.size());
@@ -60,7 +60,7 @@ void check_same(const Told& a, const Told& b) {
 TEST_CASE("reports query the contacts with bodies once per instant") {
   CountedReports reports;
   reports.ledger(0), reports.pack_shapes();
-  CHECK(reports.looks == 2);
+  CHECK(reports.queries == 2);
   {
     const Reports::Instant now(reports);
     reports.ledger(0), reports.start_output();
@@ -69,13 +69,13 @@ TEST_CASE("reports query the contacts with bodies once per instant") {
       reports.pack_shapes();
     }
     reports.pack_shapes();
-    CHECK(reports.looks == 3);
+    CHECK(reports.queries == 3);
   }
   reports.ledger(0), reports.ledger(0);
-  CHECK(reports.looks == 5);
+  CHECK(reports.queries == 5);
   const Reports::Instant later(reports);
   reports.ledger(0);
-  CHECK(reports.looks == 6);
+  CHECK(reports.queries == 6);
 }
 
 TEST_CASE("reports of one instant are those taken one by one, also after steps") {
@@ -87,7 +87,7 @@ TEST_CASE("reports of one instant are those taken one by one, also after steps")
     Reports& reports = box.backend->reports();
     std::vector<Real> elastic;
     for (int k = 0; k < 3; ++k) {
-      Told one_by_one = tell(reports, walls), together;
+      Reported one_by_one = tell(reports, walls), together;
       {
         const Reports::Instant now(reports);
         together = tell(reports, walls);

@@ -75,7 +75,7 @@ std::vector<Entry> expected_row(const BuiltRows& built, Index i) {
 }
 
 // A beam of triangles on a body that is skewed across periodic sides, a ring on the ground, and particles.
-const char* const kGrainsAndMeshes = R"(
+const char* const kParticlesAndMeshes = R"(
 [space]
 dimension = 3
 min = [-1.0, -1.0, -1.0]
@@ -129,7 +129,7 @@ seed = 3
 )";
 
 // The triangles within `past` of particle i, image by image, in the order of the groups.
-std::vector<std::vector<Index>> triangles_in_reach(const BuiltRows& built, Index i, Index s, Real past) {
+std::vector<std::vector<Index>> triangles_in_range(const BuiltRows& built, Index i, Index s, Real past) {
   const SurfacePlaces places = built.side.places();
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
@@ -205,7 +205,7 @@ TEST_CASE(
 }
 
 TEST_CASE("rows hold the triangles that come near a particle, farther out of meshes that move") {
-  const BuiltRows built(model_of(kGrainsAndMeshes));
+  const BuiltRows built(model_of(kParticlesAndMeshes));
   const SurfaceRows& rows = built.list.surfaces;
   std::size_t found = 0, images = 0;
   for (Index s = 0; s < built.side.size(); ++s) {
@@ -220,7 +220,7 @@ TEST_CASE("rows hold the triangles that come near a particle, farther out of mes
     for (Index i = 0; i < built.layout.active; ++i) {
       CAPTURE(s, i);
       const Real past = mesh_skin(built.store.position[i].w, moves ? kMeshSkins * kSkin : kSkin);
-      CHECK(of_particle[static_cast<std::size_t>(i)] == triangles_in_reach(built, i, s, past));
+      CHECK(of_particle[static_cast<std::size_t>(i)] == triangles_in_range(built, i, s, past));
     }
   }
   CHECK(found > 50);

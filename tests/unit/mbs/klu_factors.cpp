@@ -94,7 +94,7 @@ TEST_CASE(
     factors.options().tol = tolerance;
     REQUIRE(factors.analyze(pattern));
     std::vector<Real> angle(kLinks, 0.3);
-    int kept = 0, chosen = 0;
+    int reused = 0, chosen = 0;
     for (int i = 0; i < 300; ++i) {
       // Mostly small rotations; at times other lengths and inertias, whose pivots differ.
       for (Real& a : angle) a += (i % 10 == 0 ? 1 : 0.01) * turn(random);
@@ -102,13 +102,13 @@ TEST_CASE(
       const std::vector<Real> values = chain_values(pattern, angle, 1e-3 * scale, 0.5 * std::sqrt(scale));
       const Result result = factors.factor(values);
       REQUIRE((result == Result::factored || result == Result::refactored));
-      (result == Result::refactored ? kept : chosen)++;
+      (result == Result::refactored ? reused : chosen)++;
       REQUIRE(same_bits(solution(factors, pattern.rows()), solution_anew(pattern, values, tolerance)));
     }
-    INFO("tolerance " << tolerance << ": " << kept << " kept, " << chosen << " chosen");
-    CHECK(kept > 0);
+    INFO("tolerance " << tolerance << ": " << reused << " kept, " << chosen << " chosen");
+    CHECK(reused > 0);
     CHECK(chosen > 1);
-    if (tolerance < 0.01) CHECK(kept > 200);
+    if (tolerance < 0.01) CHECK(reused > 200);
   }
 }
 

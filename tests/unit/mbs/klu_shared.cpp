@@ -18,19 +18,19 @@ TEST_CASE("factors of a loop that passes its flat position are those of factorin
   HhtMethod method(system, model.integrator.hht_alpha, run.state.position, run.state.velocity,
                    system.inverse_mass());
   std::vector<Real> values(method.pattern().column.size());
-  KluFactors kept;
-  REQUIRE(kept.analyze(method.pattern()));
+  KluFactors reused;
+  REQUIRE(reused.analyze(method.pattern()));
   int refactored = 0;
   for (int i = 0; i < 1300; ++i) {
     method.predict(run.state, run.time, 1e-3);
     method.evaluate_residual();
     method.newton_matrix(values);
-    refactored += kept.factor(values) == KluFactors::Result::refactored;
+    refactored += reused.factor(values) == KluFactors::Result::refactored;
     KluFactors fresh;
     REQUIRE(fresh.analyze(method.pattern()));
     REQUIRE(fresh.factor(values) == KluFactors::Result::factored);
     std::vector<Real> one = method.residual(), other = one;
-    REQUIRE(kept.solve(one));
+    REQUIRE(reused.solve(one));
     REQUIRE(fresh.solve(other));
     REQUIRE(same_bits(one, other));
     run.step(1e-3);

@@ -166,29 +166,29 @@ TEST_CASE("reports of a state depend on the state alone, and leave no trace in t
   friction.name = "rub", friction.joint = 1, friction.lever = 0.4, friction.stiffness = 1e4;
   model.joint_frictions = {friction};
   const ContactWrenches push{{BodyWrench{}, BodyWrench{{0.5, -2, 0}, {0, 0, 0.1}}}, {}};
-  MultibodyRun plain(model), asked(model);
+  MultibodyRun plain(model), queried(model);
   for (int i = 0; i < 20; ++i) {
-    for (MultibodyRun* run : {&plain, &asked}) {
+    for (MultibodyRun* run : {&plain, &queried}) {
       run->multibody.predict(run->state, run->time, 1e-3);
       for (int k = 0; k < 6; ++k) run->multibody.correct(push);
       run->multibody.accept(run->state, push.wrench);
       run->time += 1e-3;
     }
-    const std::vector<Reaction> told = asked.multibody.reactions(asked.state, asked.time);
-    const Real effort = asked.multibody.joint_efforts(asked.state, asked.time)[0].effort;
+    const std::vector<Reaction> reported = queried.multibody.reactions(queried.state, queried.time);
+    const Real effort = queried.multibody.joint_efforts(queried.state, queried.time)[0].effort;
     if (i > 14)  // it slides
-      CHECK(near(std::abs(effort), 0.4 * norm(told[1].force), {.relative = 1e-12}));
+      CHECK(near(std::abs(effort), 0.4 * norm(reported[1].force), {.relative = 1e-12}));
     MultibodyRun fresh(model);  // as after a restart
-    const std::vector<Reaction> again = fresh.multibody.reactions(asked.state, asked.time);
-    for (std::size_t k = 0; k < told.size(); ++k) {
-      CHECK(same_bits(told[k].force, again[k].force));
-      CHECK(same_bits(told[k].torque, again[k].torque));
+    const std::vector<Reaction> again = fresh.multibody.reactions(queried.state, queried.time);
+    for (std::size_t k = 0; k < reported.size(); ++k) {
+      CHECK(same_bits(reported[k].force, again[k].force));
+      CHECK(same_bits(reported[k].torque, again[k].torque));
     }
-    CHECK(same_bits(effort, fresh.multibody.joint_efforts(asked.state, asked.time)[0].effort));
+    CHECK(same_bits(effort, fresh.multibody.joint_efforts(queried.state, queried.time)[0].effort));
   }
-  CHECK(same_bits(plain.state.position, asked.state.position));
-  CHECK(same_bits(plain.state.multipliers, asked.state.multipliers));
-  CHECK(same_bits(plain.state.memory, asked.state.memory));
+  CHECK(same_bits(plain.state.position, queried.state.position));
+  CHECK(same_bits(plain.state.multipliers, queried.state.multipliers));
+  CHECK(same_bits(plain.state.memory, queried.state.memory));
 }
 
 // The rod is perpendicular to the guide, so that its row is redundant to the guide's.

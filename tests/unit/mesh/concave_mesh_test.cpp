@@ -65,7 +65,7 @@ Touch touch_at(const SurfaceMesh& mesh, Vec3 c) {
 
 struct Jumps {
   Real force = 0, overlap = 0;  // the largest change per displacement [m/m]
-  int places = 0;               // positions compared
+  int positions = 0;            // positions compared
 };
 
 // Along short random lines in a box, where no overlap is more than a tenth of the radius.
@@ -84,7 +84,7 @@ Jumps jumps_in(const SurfaceMesh& mesh, Vec3 min, Vec3 max, unsigned seed) {
       if (touch.most > 0 && touch.most < 0.1 * kRadius) {
         jumps.force = std::max(jumps.force, norm(touch.force - last.force) / kStep);
         jumps.overlap = std::max(jumps.overlap, std::abs(touch.overlap - last.overlap) / kStep);
-        ++jumps.places;
+        ++jumps.positions;
       }
       last = touch;
     }
@@ -139,48 +139,48 @@ TEST_CASE("in a bend the bottom is touched once, both walls apart") {
 TEST_CASE("on a screw flight and core are touched apart, and both in their corner") {
   const SurfaceMesh mesh = sheet_mesh(screw(200));
   // Above the middle of the flight's face; a height along the axis exceeds the distance from the flight.
-  const auto place = [](Real from_core, Real above_flight) {
+  const auto position = [](Real from_core, Real above_flight) {
     const Real angle = 1.5 * M_PI, radius = kCore + from_core;
     const Real slope = std::atan(kPitch / (2 * M_PI * radius));
     return Vec3{radius * std::cos(angle), radius * std::sin(angle),
                 kPitch * angle / (2 * M_PI) + above_flight / std::cos(slope)};
   };
-  CHECK(contacts_at(mesh, place(0.95, 0.95), kRadius).size() == 2);
-  CHECK(contacts_at(mesh, place(1.5, 0.95), kRadius).size() == 1);
-  CHECK(contacts_at(mesh, place(0.95, 1.2), kRadius).size() == 1);
-  CHECK(contacts_at(mesh, place(1.5, 1.2), kRadius).empty());
+  CHECK(contacts_at(mesh, position(0.95, 0.95), kRadius).size() == 2);
+  CHECK(contacts_at(mesh, position(1.5, 0.95), kRadius).size() == 1);
+  CHECK(contacts_at(mesh, position(0.95, 1.2), kRadius).size() == 1);
+  CHECK(contacts_at(mesh, position(1.5, 1.2), kRadius).empty());
   // Inside the core, behind its wall.
-  CHECK(contacts_at(mesh, place(-0.95, 0.5), kRadius).size() == 1);
+  CHECK(contacts_at(mesh, position(-0.95, 0.5), kRadius).size() == 1);
 }
 
 TEST_CASE("between flat sides the force changes no faster than the sphere moves, for each contact") {
   int seed = 20;
   for (const Real degrees : {60, 90, 120, 145}) {
     const Jumps jumps = jumps_in(sheet_mesh(valley(degrees * kDegree)), {-3, 0.5, -1}, {3, 3.5, 3}, seed++);
-    CHECK(jumps.places > 1000);
+    CHECK(jumps.positions > 1000);
     CHECK(jumps.force < 2 + 1e-6);
   }
   const Jumps in_slot = jumps_in(sheet_mesh(slot(1.95)), {0.9, 0.5, 0.9}, {1.05, 3.5, 3}, seed++);
-  CHECK(in_slot.places > 1000);
+  CHECK(in_slot.positions > 1000);
   CHECK(in_slot.force < 3 + 1e-6);
   const Jumps at_block =
       jumps_in(closed_mesh(block({0, 0, 0}, {2, 2, 2}, 3)), {-1, -1, -1}, {3, 3, 3}, seed++);
-  CHECK(at_block.places > 1000);
+  CHECK(at_block.positions > 1000);
   CHECK(at_block.force < 1 + 1e-6);
 }
 
 TEST_CASE("on curved surfaces the overlap changes no faster than the sphere moves") {
   const Jumps in_bend = jumps_in(sheet_mesh(bend(1.2, 36)), {-0.3, 0.5, -0.3}, {0.3, 3.5, 1}, 30);
-  CHECK(in_bend.places > 1000);
+  CHECK(in_bend.positions > 1000);
   CHECK(in_bend.overlap < 2 + 1e-6);
   const Jumps on_screw = jumps_in(sheet_mesh(screw(100)), {-5, -5, 0.5}, {5, 5, 6}, 31);
-  CHECK(on_screw.places > 1000);
+  CHECK(on_screw.positions > 1000);
   CHECK(on_screw.overlap < 3 + 1e-6);
   const Jumps in_drum = jumps_in(sheet_mesh(drum_shell(144, 10, 4, 1)), {-3, 0.5, -9.2}, {3, 3.5, -8.4}, 32);
-  CHECK(in_drum.places > 1000);
+  CHECK(in_drum.positions > 1000);
   CHECK(in_drum.overlap < 1 + 1e-6);
   const Jumps in_sphere = jumps_in(closed_mesh(flipped(icosphere(3, 5))), {-2, -2, 3}, {2, 2, 4}, 33);
-  CHECK(in_sphere.places > 1000);
+  CHECK(in_sphere.positions > 1000);
   CHECK(in_sphere.overlap < 1 + 1e-6);
 }
 

@@ -125,8 +125,8 @@ TEST_CASE("points in a plane, on a line, or at one position have no hull") {
     plane.push_back(turn * p);
     line.push_back(turn * Vec3{p.x, 0, 0});
   }
-  const std::vector<Vec3> place(5, {1, 2, 3});
-  for (const std::vector<Vec3>& points : {{}, place, line, plane, unit_grid(4, 4).vertices})
+  const std::vector<Vec3> position(5, {1, 2, 3});
+  for (const std::vector<Vec3>& points : {{}, position, line, plane, unit_grid(4, 4).vertices})
     CHECK_THROWS_AS(convex_hull(points), InputError);
 }
 

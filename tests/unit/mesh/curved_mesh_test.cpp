@@ -18,12 +18,12 @@ constexpr Real kRadius = 1;  // of the particle [m]
 Real force_error(const SurfaceMesh& mesh, Real distance, Real overlap) {
   MeshRandom random(1);
   Real sum = 0;
-  constexpr int kPlaces = 3000;
-  for (int i = 0; i < kPlaces; ++i) {
+  constexpr int kPositions = 3000;
+  for (int i = 0; i < kPositions; ++i) {
     const Real error = norm(push_on(mesh, distance * random.direction(), kRadius)) / overlap - 1;
     sum += error * error;
   }
-  return std::sqrt(sum / kPlaces);
+  return std::sqrt(sum / kPositions);
 }
 
 // A point mass of 1 kg on a linear spring, released without friction at the height of the drum's axis: the
@@ -99,14 +99,14 @@ TEST_CASE("a drum of n facets has force errors of second order") {
     const SurfaceMesh drum = sheet_mesh(drum_shell(facets, 10, 4, 1));
     MeshRandom random(5);
     Real sum = 0;
-    constexpr int kPlaces = 4000;
-    for (int i = 0; i < kPlaces; ++i) {
+    constexpr int kPositions = 4000;
+    for (int i = 0; i < kPositions; ++i) {
       const Real angle = random.in(0, 2 * M_PI);
       const Vec3 c{9.05 * std::sin(angle), 2, -9.05 * std::cos(angle)};
       const Real error = norm(push_on(drum, c, kRadius)) / 0.05 - 1;
       sum += error * error;
     }
-    const Real error = std::sqrt(sum / kPlaces);
+    const Real error = std::sqrt(sum / kPositions);
     if (last > 0) CHECK(near(std::log2(last / error), 2, {.absolute = 0.1}));
     last = error;
   }

@@ -154,13 +154,13 @@ TEST_CASE(
     "they") {
   const Real angle = kPi / 6;
   for (const Real radius : {0.3, 0.05, 1.0, 7.0}) {
-    const Real grain = 0.01;
-    const Index n = fitting_segments(radius, grain, angle);
+    const Real particle_radius = 0.01;
+    const Index n = fitting_segments(radius, particle_radius, angle);
     CAPTURE(radius, n);
     CHECK(n % 4 == 0);
-    CHECK(facet_deviation(CylinderShape{radius, 1, n}) <= 0.05 * grain);
-    if (n > 16) CHECK(facet_deviation(CylinderShape{radius, 1, n - 4}) > 0.05 * grain);
-    CHECK(2 * kPi * radius / n > 0.4 * 2 * grain);
+    CHECK(facet_deviation(CylinderShape{radius, 1, n}) <= 0.05 * particle_radius);
+    if (n > 16) CHECK(facet_deviation(CylinderShape{radius, 1, n - 4}) > 0.05 * particle_radius);
+    CHECK(2 * kPi * radius / n > 0.4 * 2 * particle_radius);
   }
   CHECK(fitting_segments(1, 100, angle) == 16);
   CHECK(fitting_segments(1, 1e-9, angle) == 360);

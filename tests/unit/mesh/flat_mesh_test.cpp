@@ -36,7 +36,7 @@ std::vector<TriangleMesh> flat_meshes() {
 }
 
 // Positions over a mesh: random, over vertices, over edges, and one ulp beside either.
-Vec3 place_over(const TriangleMesh& mesh, MeshRandom& random) {
+Vec3 position_over(const TriangleMesh& mesh, MeshRandom& random) {
   const auto& t = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
   const Vec3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
   const Index kind = random.below(4);
@@ -64,7 +64,7 @@ TEST_CASE("an axis-aligned flat mesh has the bits of the plane everywhere") {
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
     for (int i = 0; i < 100000; ++i) {
-      const Vec3 p = place_over(mesh, random);
+      const Vec3 p = position_over(mesh, random);
       if (!inside_border(p, size)) continue;
       const Vec3 c = p + Vec3{0, 0, offset + random.in(0.001, 0.01)};
       const Real radius = 0.01;
@@ -89,7 +89,7 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
     int wrong = 0;
     Real error = 0;
     for (int i = 0; i < 30000; ++i) {
-      Vec3 c = place_over(mesh, random);
+      Vec3 c = position_over(mesh, random);
       if (!inside_border(c, size)) continue;
       const Real height = random.in(0.001, 0.01);
       c.z = height;
@@ -115,7 +115,7 @@ TEST_CASE("a flat mesh far from its origin, or very small, is one plane") {
       REQUIRE(surface.parts.size() == 1);
       int wrong = 0;
       for (int i = 0; i < 10000; ++i) {
-        Vec3 c = place_over(mesh, random);
+        Vec3 c = position_over(mesh, random);
         if (std::min(c.x, c.y) < 1e-6 || std::max(c.x, c.y) > 1 - 1e-6) continue;
         c.z = 0.05;
         const auto contacts = contacts_at(surface, placed(c), 0.1 * size);

@@ -43,23 +43,23 @@ TEST_CASE("points inside closed meshes and outside, those in line with edges and
         drum_mesh({r, 0.25, 2, 0.25, 3, 0.25, 0.25, 12}), screw_mesh({0.25, r, 1, 0.25, 2, 2.5, 8})}) {
     const SurfaceMesh mesh = build_surface_mesh(made, kFeatureAngle, false);
     const MeshView view = mesh.view();
-    int wrong = 0, looked_at = 0;
-    const auto look = [&](Vec3 p) {
+    int wrong = 0, tested = 0;
+    const auto query = [&](Vec3 p) {
       if (distance(view, p) < 1e-9) return;
-      ++looked_at;
+      ++tested;
       wrong += is_inside(view, p) != (winding(view, p) > 0.5);
     };
     // A lattice some of whose lines contain vertices, edges and faces.
     for (int x = -6; x <= 6; ++x)
       for (int y = -6; y <= 6; ++y)
-        for (int z = -6; z <= 6; ++z) look({Real(x) / 4, Real(y) / 4, Real(z) / 4});
+        for (int z = -6; z <= 6; ++z) query({Real(x) / 4, Real(y) / 4, Real(z) / 4});
     MeshRandom random(3);
-    for (int k = 0; k < 500; ++k) look(random.in({-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}));
+    for (int k = 0; k < 500; ++k) query(random.in({-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}));
     // On the lines through the vertices.
     for (std::size_t v = 0; v < mesh.vertices.size() && v < 100; ++v)
-      look(mesh.vertices[v] - Vec3{random.in(0, 2), 0, 0});
+      query(mesh.vertices[v] - Vec3{random.in(0, 2), 0, 0});
     CHECK(wrong == 0);
-    CHECK(looked_at > 2000);
+    CHECK(tested > 2000);
   }
 }
 

@@ -106,16 +106,16 @@ TEST_CASE("a long row of triangles without area takes as many steps as it has") 
 TEST_CASE("corners that lie on each other but for round-off become one") {
   TriangleMesh mesh = cube();
   mesh.vertices.push_back(mesh.vertices[6] + Vec3{1e-14, 0, 0});
-  const Index twin = static_cast<Index>(mesh.vertices.size()) - 1;
+  const Index duplicate = static_cast<Index>(mesh.vertices.size()) - 1;
   // A triangle at the corner gets the other vertex, and a needle on either side closes the gap.
   const auto at =
       std::ranges::find_if(mesh.triangles, [](const auto& t) { return std::ranges::find(t, 6) != t.end(); });
   std::array<Index, 3>& one = *at;
   std::ranges::rotate(one, std::ranges::find(one, 6));
   const Index next = one[1], last = one[2];
-  one[0] = twin;
-  mesh.triangles.push_back({6, next, twin});
-  mesh.triangles.push_back({twin, last, 6});
+  one[0] = duplicate;
+  mesh.triangles.push_back({6, next, duplicate});
+  mesh.triangles.push_back({duplicate, last, 6});
   const MeshRepair repair = repair_of(mesh);
   CHECK(repair.without_area.count == 2);
   CHECK(repair.mesh.mesh.vertices.size() == 8);

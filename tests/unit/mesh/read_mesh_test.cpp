@@ -154,7 +154,7 @@ TEST_CASE("messages for files that cannot be read") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("scree_meshes_" + std::to_string(::getpid()));
   fs::create_directory(folder);
-  const auto said = [&](const std::string& name) -> std::string {
+  const auto message = [&](const std::string& name) -> std::string {
     try {
       read_mesh((folder / name).string());
       return "";
@@ -165,19 +165,19 @@ TEST_CASE("messages for files that cannot be read") {
     }
   };
   const std::string at = (folder / "").string();
-  CHECK(said("none.stl") == at + "none.stl: cannot be read: No such file or directory");
+  CHECK(message("none.stl") == at + "none.stl: cannot be read: No such file or directory");
   fs::create_directory(folder / "folder.stl");
-  CHECK(said("folder.stl") == at + "folder.stl: is a folder; must be a file");
+  CHECK(message("folder.stl") == at + "folder.stl: is a folder; must be a file");
   fs::create_symlink("/dev/zero", folder / "endless.stl");
-  CHECK(said("endless.stl") == at + "endless.stl: is not a regular file");
+  CHECK(message("endless.stl") == at + "endless.stl: is no regular file");
   std::ofstream(folder / "empty.ply");
-  CHECK(said("empty.ply") == at + "empty.ply: is empty");
+  CHECK(message("empty.ply") == at + "empty.ply: is empty");
   std::ofstream(folder / "step.stp") << "x";
-  CHECK(said("step.stp") == at + "step.stp: must end with .stl, .obj or .ply");
+  CHECK(message("step.stp") == at + "step.stp: must end with .stl, .obj or .ply");
   std::ofstream(folder / "a.obj") << obj();
-  CHECK(said("a.obj") == "");
+  CHECK(message("a.obj") == "");
   fs::resize_file(folder / "empty.ply", std::uintmax_t(1) << 31);  // sparse: no block of it is written
-  CHECK(said("empty.ply") == at + "empty.ply: 2147483648 bytes; must be less than 2147483648");
+  CHECK(message("empty.ply") == at + "empty.ply: 2147483648 bytes; must be less than 2147483648");
   fs::remove_all(folder);
 }
 
@@ -218,32 +218,32 @@ TEST_CASE("messages for broken STL") {
 
 TEST_CASE("messages for broken OBJ") {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
-  const auto said = [&](const std::string& rest) { return refusal(corners + rest, "a.obj"); };
-  CHECK(said("") == "a.obj: has no triangles");
-  CHECK(said("f 1 2 5") == "a.obj:5: vertex number 5: must be 1 to 4, those above this line, or -1 to -4");
-  CHECK(said("f 1 2 0").starts_with("a.obj:5: vertex number 0: must be"));
-  CHECK(said("f 1 2 -5").starts_with("a.obj:5: vertex number -5: must be"));
-  CHECK(said("f 1 2 4294967299").starts_with("a.obj:5: vertex number 4294967299: must be"));
-  CHECK(said("f 1 2 99999999999999999999") ==
+  const auto message = [&](const std::string& rest) { return refusal(corners + rest, "a.obj"); };
+  CHECK(message("") == "a.obj: has no triangles");
+  CHECK(message("f 1 2 5") == "a.obj:5: vertex number 5: must be 1 to 4, those above this line, or -1 to -4");
+  CHECK(message("f 1 2 0").starts_with("a.obj:5: vertex number 0: must be"));
+  CHECK(message("f 1 2 -5").starts_with("a.obj:5: vertex number -5: must be"));
+  CHECK(message("f 1 2 4294967299").starts_with("a.obj:5: vertex number 4294967299: must be"));
+  CHECK(message("f 1 2 99999999999999999999") ==
         "a.obj:5: vertex number \"99999999999999999999\": is too large");
-  CHECK(said("f 1 2 x") == "a.obj:5: vertex number \"x\": must be a whole number");
-  CHECK(said("f 1 /2 3") == "a.obj:5: ends before a vertex number");
-  CHECK(said("f 1 2") == "a.obj:5: 2 corners; a face must have at least 3");
-  CHECK(said("f 1 4 2 3") ==
+  CHECK(message("f 1 2 x") == "a.obj:5: vertex number \"x\": must be a whole number");
+  CHECK(message("f 1 /2 3") == "a.obj:5: ends before a vertex number");
+  CHECK(message("f 1 2") == "a.obj:5: 2 corners; a face must have at least 3");
+  CHECK(message("f 1 4 2 3") ==
         "a.obj:5: a face cannot be cut into triangles: it crosses itself or has no area");
-  CHECK(said("v 3 3 0\nv 2 0.2 0\nf 1 5 3 6 4").ends_with("it crosses itself or has no area"));
-  CHECK(said("l 1 2") == "a.obj:5: \"l\": points and lines are no surface; leave them out");
-  CHECK(said("curv 1 2") == "a.obj:5: \"curv\": no statement of a polygon mesh");
-  CHECK(said("v 1 inf 0") == "a.obj:5: coordinate \"inf\": must be a finite number");
-  CHECK(said("v 1 0") == "a.obj:5: ends before a coordinate");
-  CHECK(said(std::string(100, 'x')) ==
+  CHECK(message("v 3 3 0\nv 2 0.2 0\nf 1 5 3 6 4").ends_with("it crosses itself or has no area"));
+  CHECK(message("l 1 2") == "a.obj:5: \"l\": points and lines are no surface; leave them out");
+  CHECK(message("curv 1 2") == "a.obj:5: \"curv\": no statement of a polygon mesh");
+  CHECK(message("v 1 inf 0") == "a.obj:5: coordinate \"inf\": must be a finite number");
+  CHECK(message("v 1 0") == "a.obj:5: ends before a coordinate");
+  CHECK(message(std::string(100, 'x')) ==
         "a.obj:5: \"" + std::string(40, 'x') + "...\": no statement of a polygon mesh");
   std::string many = "f", places;
   for (int k = 0; k < 1001; ++k) {
     places += "v " + std::to_string(k % 2) + " " + std::to_string(k) + " 0\n";
     many += " " + std::to_string(k + 5);
   }
-  CHECK(said(places + many) ==
+  CHECK(message(places + many) ==
         "a.obj:1006: a face cannot be cut into triangles: 1001 corners and not convex; must be "
         "at most 1000 then");
 }

@@ -78,24 +78,24 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
       const auto n = static_cast<Index>(row.size());
       const auto contacts = contacts_of_row(surface, c, kRadius, row);
       const StandingRow<Alone> at{view, kind_of_row(view, row.data(), n), row.data(), n, c, kRadius};
-      Standing standing = kNoStanding;
+      Standing cached = kNoStanding;
       if (contacts.empty())
-        standing = at.clear();
+        cached = at.clear();
       else if (contacts.size() == 1 && contacts[0].feature < view.part_count)
-        standing = at.over(contacts[0].triangle);
-      for (int k = 0; k < 10 && standing.room > 0; ++k) {
+        cached = at.over(contacts[0].triangle);
+      for (int k = 0; k < 10 && cached.room > 0; ++k) {
         const Real part_of_room = k % 2 == 0 ? random.in(0, 1) : Real(0.999999);
-        const Vec3 moved = c + part_of_room * standing.room * random.direction();
-        if (!standing.holds(moved)) continue;
+        const Vec3 moved = c + part_of_room * cached.room * random.direction();
+        if (!cached.holds(moved)) continue;
         const auto found = contacts_of_row(surface, moved, kRadius, row);
-        if (standing.triangle < 0) {
+        if (cached.triangle < 0) {
           ++clear, wrong += !found.empty();
           continue;
         }
-        const Index part = view.triangles[standing.triangle].part;
+        const Index part = view.triangles[cached.triangle].part;
         const bool touches = std::abs(dot(moved - view.parts[part].point, view.parts[part].normal)) < kRadius;
         ++over, wrong += found.size() != touches ||
-                         (touches && (found[0].feature != part || found[0].triangle != standing.triangle));
+                         (touches && (found[0].feature != part || found[0].triangle != cached.triangle));
       }
     }
     CHECK(wrong == 0);
@@ -120,12 +120,12 @@ TEST_CASE("beside an edge a sphere stays over a triangle while what lies past th
           const Index row[] = {0, 1}, below = view.vertices[view.triangles[0].vertex[2]].y > 0 ? 0 : 1;
           const Vec3 c{0.5, inside, height};
           const StandingRow<Alone> at{view, RowKind::smooth, row, 2, c, 2 * height};
-          const Standing standing = at.over(below);
-          stands += standing.room > 0;
+          const Standing cached = at.over(below);
+          stands += cached.room > 0;
           for (int k = 0; k <= 8; ++k) {
             const Real turn = M_PI * k / 16;
-            const Vec3 moved = c + 0.999999 * standing.room * Vec3{0, -std::cos(turn), std::sin(turn)};
-            wrong += standing.room > 0 &&
+            const Vec3 moved = c + 0.999999 * cached.room * Vec3{0, -std::cos(turn), std::sin(turn)};
+            wrong += cached.room > 0 &&
                      !(mesh_detail::distance_to(view, view.triangles[1 - below], moved) > moved.z);
           }
         }

@@ -87,7 +87,7 @@ TEST_CASE("beyond facets, edges and corners of a smooth open surface the force h
       Passage passage(mesh);
       Vec3 c = (kDome + side * 0.95) * out, force;
       Real work = 0, energy = 0;
-      const auto look = [&](Vec3 at) {
+      const auto query = [&](Vec3 at) {
         const auto& contacts = passage.at(at);
         REQUIRE(contacts.size() == 1);
         CHECK(near(contacts[0].distance, side * (norm(at) - kDome), {.absolute = kSag}));
@@ -95,12 +95,12 @@ TEST_CASE("beyond facets, edges and corners of a smooth open surface the force h
         energy = std::pow(kRadius - contacts[0].distance, 2) / 2;
         return passage.force();
       };
-      force = look(c);
+      force = query(c);
       const Real start = energy;
       for (int k = 0; k < 400; ++k) {
         const Vec3 next =
             (kDome + side * (0.95 * std::cos(k / 40.0))) * unit_normal(c + 0.02 * random.direction());
-        const Vec3 then = look(next);
+        const Vec3 then = query(next);
         work += dot(Real(0.5) * (force + then), next - c);
         c = next, force = then;
       }

@@ -44,14 +44,14 @@ class ThreadLane {
   int lane_;
 };
 
-struct Looked {
+struct Queried {
   Nearest found;
   MeshContact contact{-1, -1, 0, {}, {}};
-  Standing standing = kNoStanding;
+  Standing cached = kNoStanding;
 
-  friend bool operator==(const Looked& a, const Looked& b) {
+  friend bool operator==(const Queried& a, const Queried& b) {
     return a.found == b.found && (a.found != Nearest::one || same_contacts({a.contact}, {b.contact})) &&
-           a.standing.room == b.standing.room && a.standing.triangle == b.standing.triangle;
+           a.cached.room == b.cached.room && a.cached.triangle == b.cached.triangle;
   }
 };
 
@@ -61,17 +61,17 @@ struct Place {
 };
 
 template <class Team>
-std::vector<Looked> looks(const MeshView& view, const std::vector<Place>& places, const Team& team) {
-  std::vector<Looked> all;
-  for (const Place& at : places) {
+std::vector<Queried> queries(const MeshView& view, const std::vector<Place>& positions, const Team& team) {
+  std::vector<Queried> all;
+  for (const Place& at : positions) {
     const auto n = static_cast<Index>(at.row.size());
-    Looked look{};
-    look.found = NearestContact(view, at.c, kRadius).find(at.row.data(), n, -1, team, look.contact);
+    Queried query{};
+    query.found = NearestContact(view, at.c, kRadius).find(at.row.data(), n, -1, team, query.contact);
     const StandingRow<Team> row{view, kind_of_row(view, at.row.data(), n), at.row.data(), n, at.c, kRadius,
                                 team};
-    if (look.found == Nearest::none) look.standing = row.clear();
-    if (look.found == Nearest::one) look.standing = row.over(look.contact.triangle);
-    all.push_back(look);
+    if (query.found == Nearest::none) query.cached = row.clear();
+    if (query.found == Nearest::one) query.cached = row.over(query.contact.triangle);
+    all.push_back(query);
   }
   return all;
 }
@@ -84,25 +84,25 @@ TEST_CASE("a team finds at the triangles of a row what one alone does, and all o
   for (const SurfaceMesh& surface : {sheet_mesh(hills(12, 0.005, 2)), closed_mesh(drum_shell(60, 0.5, 1, 3)),
                                      closed_mesh(potato(4, 0.002, 5))}) {
     const MeshView view = surface.view();
-    std::vector<Place> places;
-    while (places.size() < 2000) {
+    std::vector<Place> positions;
+    while (positions.size() < 2000) {
       const Vec3 c = place_near(surface, 1.2 * kRadius, random);
       const auto row = triangles_near(surface, c, 1.2 * kRadius);
       if (kind_of_row(view, row.data(), static_cast<Index>(row.size())) == RowKind::smooth)
-        places.push_back({c, row});
+        positions.push_back({c, row});
     }
     ThreadLane::Shared shared;
-    std::array<std::vector<Looked>, kLanes> of_lane;
+    std::array<std::vector<Queried>, kLanes> of_lane;
     std::vector<std::thread> threads;
     for (int lane = 0; lane < kLanes; ++lane)
       threads.emplace_back([&, lane] {
-        of_lane[static_cast<std::size_t>(lane)] = looks(view, places, ThreadLane(shared, lane));
+        of_lane[static_cast<std::size_t>(lane)] = queries(view, positions, ThreadLane(shared, lane));
       });
     for (std::thread& thread : threads) thread.join();
-    const std::vector<Looked> alone = looks(view, places, Alone{});
-    for (const std::vector<Looked>& of_one : of_lane) CHECK(of_one == alone);
-    for (const Looked& look : alone)
-      touching += look.found == Nearest::one, unclear += look.found == Nearest::unclear;
+    const std::vector<Queried> alone = queries(view, positions, Alone{});
+    for (const std::vector<Queried>& of_one : of_lane) CHECK(of_one == alone);
+    for (const Queried& query : alone)
+      touching += query.found == Nearest::one, unclear += query.found == Nearest::unclear;
   }
   CHECK(touching > 1000);
   CHECK(unclear > 0);

@@ -38,7 +38,7 @@ position = [0.0, 1.0, 0.0]
 )";
 
 std::string bushing(const std::string& rest) { return kDeck + "[[bushings]]\nname = \"b\"\n" + rest; }
-const std::string kPlaced = "bodies = [\"ground\", \"link.0\"]\npoint = [0.0, 0.0, 0.5]\n";
+const std::string kAtMarker = "bodies = [\"ground\", \"link.0\"]\npoint = [0.0, 0.0, 0.5]\n";
 const std::string kSoft = "stiffness = [1, 2, 3, 4, 5, 6]\n";
 
 // 36 numbers: a diagonal of ones with one other pair.
@@ -61,7 +61,7 @@ std::string refusal(const std::string& rest) {
 
 TEST_CASE("a bushing has its point and axes in both bodies, and its matrices") {
   const std::string axes = "axis = [0.0, 2.0, 0.0]\nsecond_axis = [0.0, 0.0, 3.0]\n";
-  const Model model = model_of(bushing(kPlaced + axes + kSoft + "damping = " + matrix(1, 4, 0.5, 0.5) +
+  const Model model = model_of(bushing(kAtMarker + axes + kSoft + "damping = " + matrix(1, 4, 0.5, 0.5) +
                                        "preload = [1, 2, 3, 4, 5, 6]\n"));
   const Bushing& b = model.bushings.at(0);
   CHECK(b.body[0] == kGround);
@@ -147,40 +147,40 @@ TEST_CASE("invalid bushings are refused with the key and the allowed values") {
     CHECK(contains(message, key));
     CHECK(contains(message, text));
   };
-  refused(kPlaced, "bushings.b.stiffness", "missing");
+  refused(kAtMarker, "bushings.b.stiffness", "missing");
   refused("bodies = [\"ground\", \"link.0\"]\n" + kSoft, "bushings.b.point", "exactly one of the keys");
-  refused(kPlaced + "local_points = [[0, 0, 0], [0, 0, 0]]\n" + kSoft, "bushings.b.point", "exactly one");
+  refused(kAtMarker + "local_points = [[0, 0, 0], [0, 0, 0]]\n" + kSoft, "bushings.b.point", "exactly one");
   refused("bodies = [\"ground\", \"flat\"]\npoint = [0, 1, 0]\n" + kSoft, "bushings.b.bodies",
           "between spatial bodies");
   refused("bodies = [\"link.0\", \"flat\"]\npoint = [0, 1, 0]\n" + kSoft, "bushings.b.bodies",
           "both must be of one kind");
   refused("chain = \"link\"\npoint = [0, 1, 0]\n" + kSoft, "bushings.b.point", "not used with chain or each");
   refused("markers = [\"a\", \"b\"]\n" + kSoft, "bushings.b.markers", "marker");
-  refused(kPlaced + kSoft + "axis = [1, 0, 0]\n", "bushings.b.axis", "belong together");
-  refused(kPlaced + kSoft + "axis = [1, 0, 0]\nsecond_axis = [0.1, 1, 0]\n", "bushings.b.second_axis",
+  refused(kAtMarker + kSoft + "axis = [1, 0, 0]\n", "bushings.b.axis", "belong together");
+  refused(kAtMarker + kSoft + "axis = [1, 0, 0]\nsecond_axis = [0.1, 1, 0]\n", "bushings.b.second_axis",
           "must be perpendicular to axis");
-  refused(kPlaced + kSoft + "axis = [0, 0, 0]\nsecond_axis = [0, 1, 0]\n", "bushings.b.axis",
+  refused(kAtMarker + kSoft + "axis = [0, 0, 0]\nsecond_axis = [0, 1, 0]\n", "bushings.b.axis",
           "must not be 0");
-  refused(kPlaced + "stiffness = [1, 2, 3]\n", "bushings.b.stiffness",
+  refused(kAtMarker + "stiffness = [1, 2, 3]\n", "bushings.b.stiffness",
           "must have 6 entries, its diagonal, or 36, row by row; it has 3");
-  refused(kPlaced + "stiffness = [1, 1, 1, 1, -2, 1]\n", "bushings.b.stiffness",
+  refused(kAtMarker + "stiffness = [1, 1, 1, 1, -2, 1]\n", "bushings.b.stiffness",
           "its diagonal entry 5 is -2, below 0");
-  refused(kPlaced + "stiffness = " + matrix(3, 1, 0.25, 0.5), "bushings.b.stiffness",
+  refused(kAtMarker + "stiffness = " + matrix(3, 1, 0.25, 0.5), "bushings.b.stiffness",
           "is not symmetric: row 4, column 2 is 0.25, row 2, column 4 is 0.5");
-  refused(kPlaced + "stiffness = " + matrix(0, 4, 1.1, 1.1), "bushings.b.stiffness",
+  refused(kAtMarker + "stiffness = " + matrix(0, 4, 1.1, 1.1), "bushings.b.stiffness",
           "is not positive semidefinite: of its first 5 rows");
-  refused(kPlaced + kSoft + "damping = " + matrix(0, 4, -1.1, -1.1), "bushings.b.damping",
+  refused(kAtMarker + kSoft + "damping = " + matrix(0, 4, -1.1, -1.1), "bushings.b.damping",
           "is not positive semidefinite");
-  refused(kPlaced + kSoft + "preload = [1, 2]\n", "bushings.b.preload", "6");
+  refused(kAtMarker + kSoft + "preload = [1, 2]\n", "bushings.b.preload", "6");
   // On the boundary: a deflection without energy.
-  CHECK(model_of(bushing(kPlaced + "stiffness = " + matrix(0, 4, 1, 1))).bushings.size() == 1);
-  CHECK(model_of(bushing(kPlaced + "stiffness = [0, 0, 0, 0, 0, 1]\n")).bushings.size() == 1);
+  CHECK(model_of(bushing(kAtMarker + "stiffness = " + matrix(0, 4, 1, 1))).bushings.size() == 1);
+  CHECK(model_of(bushing(kAtMarker + "stiffness = [0, 0, 0, 0, 0, 1]\n")).bushings.size() == 1);
 }
 
 TEST_CASE("a zero on the diagonal with something beside it is refused") {
   std::string text = "[";
   for (int i = 0; i < 36; ++i) text += i == 1 || i == 6 ? "0.5, " : i % 7 == 0 && i > 0 ? "1, " : "0, ";
-  CHECK(contains(refusal(kPlaced + "stiffness = " + text + "]\n"), "beside a 0 on the diagonal"));
+  CHECK(contains(refusal(kAtMarker + "stiffness = " + text + "]\n"), "beside a 0 on the diagonal"));
 }
 
 }  // namespace scree

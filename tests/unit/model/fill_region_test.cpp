@@ -68,7 +68,7 @@ void check_free(const Model& model) {
 
 TEST_CASE("a cylinder on an oblique axis, cut by a box") {
   const std::string region = "cylinder_radius = 0.4\nends = [[-0.5, -0.2, 0.1], [0.7, 0.6, 0.5]]\n";
-  const Vec3 from{-0.5, -0.2, 0.1}, way{1.2, 0.8, 0.4};
+  const Vec3 from{-0.5, -0.2, 0.1}, direction{1.2, 0.8, 0.4};
   for (const bool cut : {false, true}) {
     const Model model =
         model_of(kSpace + group(cut ? 300 : 900, region + (cut ? "max = [2.0, 0.1, 2.0]\n" : ""),
@@ -76,10 +76,10 @@ TEST_CASE("a cylinder on an oblique axis, cut by a box") {
     int far = 0;
     for (std::size_t i = 0; i < model.particles.size(); ++i) {
       const Vec3 p = model.particles.position[i] - from;
-      const Real r = model.particles.radius[i], along = dot(p, way) / norm(way),
-                 across = norm(cross(p, way)) / norm(way);
+      const Real r = model.particles.radius[i], along = dot(p, direction) / norm(direction),
+                 across = norm(cross(p, direction)) / norm(direction);
       REQUIRE(along >= r - kRoundOff);
-      REQUIRE(along <= norm(way) - r + kRoundOff);
+      REQUIRE(along <= norm(direction) - r + kRoundOff);
       REQUIRE(across <= 0.4 - r + kRoundOff);
       if (cut) REQUIRE(model.particles.position[i].y <= 0.1 - r + kRoundOff);
       far += across > 0.3;

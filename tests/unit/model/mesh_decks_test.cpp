@@ -95,14 +95,14 @@ TEST_CASE("a mesh of a file is stretched along each axis, and mirrored without t
 }
 
 TEST_CASE("a mesh that is far longer than the space may want a scale") {
-  const auto is_told = [](const char* points) {
+  const auto is_reported = [](const char* points) {
     const auto warnings = model_warnings(kSmallLine, {fmt::format("meshes.line.points={}", points)});
     return std::ranges::any_of(warnings, [](const std::string& text) {
       return contains(text, "mesh \"line\": is 40 m long, in a space of 2 m: is its scale right?");
     });
   };
-  CHECK(is_told("[[0, 0], [30, 0], [0, 40]]"));
-  CHECK_FALSE(is_told("[[0, 0], [0.3, 0], [0, 0.4]]"));
+  CHECK(is_reported("[[0, 0], [30, 0], [0, 40]]"));
+  CHECK_FALSE(is_reported("[[0, 0], [0.3, 0], [0, 0.4]]"));
 }
 
 TEST_CASE("a solid is the inside of its mesh, of the mesh's hull, or a shell") {

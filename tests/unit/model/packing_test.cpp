@@ -32,17 +32,17 @@ Packing packing(int dimension, Real fraction, Real smallest, Real length) {
 Real tried_chance(const Packing& p, Real radius) {
   constexpr int kTried = 20000;
   RandomNumbers random(7);
-  const std::vector<Vec3> places = random_packing(
+  const std::vector<Vec3> positions = random_packing(
       p.box, p.radius, {}, [](Vec3, Real) { return true; }, random);
-  REQUIRE(places.size() == p.radius.size());
+  REQUIRE(positions.size() == p.radius.size());
   int free = 0;
   for (int n = 0; n < kTried; ++n) {
     const Real low = 4, high = p.box.max.x - 4;
     Vec3 at{random.uniform(low, high), random.uniform(low, high), 0};
     if (p.box.dimension == 3) at.z = random.uniform(low, high);
     bool is_free = true;
-    for (std::size_t i = 0; i < places.size() && is_free; ++i)
-      is_free = norm(at - places[i]) >= radius + p.radius[i];
+    for (std::size_t i = 0; i < positions.size() && is_free; ++i)
+      is_free = norm(at - positions[i]) >= radius + p.radius[i];
     free += is_free;
   }
   return static_cast<Real>(free) / kTried;

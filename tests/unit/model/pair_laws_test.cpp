@@ -104,8 +104,8 @@ TEST_CASE("keys of rolling and twisting become the pair's resistance") {
   CHECK((given.stiffness == 0.7 && given.stiffness_factor == 0 && given.twisting_friction == 0));
   const RollingResistance flat = rolling("rolling_friction = 0.1\nrolling_damping = 2e-4\n", 2);
   CHECK((flat.stiffness_factor == 3 && flat.damping == 2e-4 && flat.twisting_friction == 0));
-  const RollingResistance twist = rolling("twisting_friction = 0.2\n");
-  CHECK((twist.friction == 0 && twist.damping == 0 && twist.twisting_friction == 0.2));
+  const RollingResistance twisting = rolling("twisting_friction = 0.2\n");
+  CHECK((twisting.friction == 0 && twisting.damping == 0 && twisting.twisting_friction == 0.2));
 }
 
 TEST_CASE("stiff rolling springs shorten the explicit step, soft ones do not") {

@@ -22,7 +22,7 @@ std::string with_shape(const std::string& shape, int dimension = 2, const std::s
          "shapes = [{ radius = 0.05, " + shape + " }]\n";
 }
 
-ShapePlaces places_of(const std::string& shape, int dimension = 2) {
+ShapePlaces positions_of(const std::string& shape, int dimension = 2) {
   const Deck deck = parse_deck(with_shape(shape, dimension), "deck.toml", {});
   return {deck.root.tables("bodies").front().tables("shapes").front(), dimension};
 }
@@ -40,10 +40,10 @@ std::string error_of(const std::string& shape, int dimension = 2) {
 }  // namespace
 
 TEST_CASE("a row of shapes begins at its offset, an array is filled along x first") {
-  CHECK(all_of(places_of("offset = [0.5, 0.25]")) == std::vector<Vec3>{{0.5, 0.25, 0}});
-  CHECK(all_of(places_of("offset = [0.5, 0.0], count = 3, spacing = [-0.25, 0.5]")) ==
+  CHECK(all_of(positions_of("offset = [0.5, 0.25]")) == std::vector<Vec3>{{0.5, 0.25, 0}});
+  CHECK(all_of(positions_of("offset = [0.5, 0.0], count = 3, spacing = [-0.25, 0.5]")) ==
         std::vector<Vec3>{{0.5, 0, 0}, {0.25, 0.5, 0}, {0, 1, 0}});
-  CHECK(all_of(places_of("size = [2, 3], spacing = [0.25, 0.5]")) ==
+  CHECK(all_of(positions_of("size = [2, 3], spacing = [0.25, 0.5]")) ==
         std::vector<Vec3>{{0, 0, 0}, {0.25, 0, 0}, {0, 0.5, 0}, {0.25, 0.5, 0}, {0, 1, 0}, {0.25, 1, 0}});
   const Model model = model_of(with_shape("size = [3, 2, 2], spacing = [0.125, 0.25, 0.5]", 3));
   REQUIRE(model.bodies.front().shapes.size() == 12);
@@ -53,11 +53,11 @@ TEST_CASE("a row of shapes begins at its offset, an array is filled along x firs
 TEST_CASE("sides of an array are an outline or a tray") {
   const auto inside = [](Vec3 p) { return p.x > 0 && p.x < 0.75 && p.y > 0 && p.y < 0.5; };
   const std::string array = "size = [4, 3], spacing = [0.25, 0.25], sides = ";
-  const std::vector<Vec3> outline = all_of(places_of(array + R"(["x_min", "x_max", "y_min", "y_max"])"));
+  const std::vector<Vec3> outline = all_of(positions_of(array + R"(["x_min", "x_max", "y_min", "y_max"])"));
   CHECK(outline.size() == 10);
   CHECK(std::ranges::none_of(outline, inside));
-  CHECK(all_of(places_of(array + R"(["x_min", "x_max", "y_min"])")).size() == 8);
-  CHECK(all_of(places_of(array + R"(["y_max"])")) ==
+  CHECK(all_of(positions_of(array + R"(["x_min", "x_max", "y_min"])")).size() == 8);
+  CHECK(all_of(positions_of(array + R"(["y_max"])")) ==
         std::vector<Vec3>{{0, 0.5, 0}, {0.25, 0.5, 0}, {0.5, 0.5, 0}, {0.75, 0.5, 0}});
 }
 
@@ -69,9 +69,10 @@ TEST_CASE("of any sides the count is right, and all shapes lie between the corne
       for (unsigned s = 0; s < names.size(); ++s)
         if ((sides >> s & 1) != 0) list += (list.empty() ? "\"" : ", \"") + std::string(names[s]) + '"';
       CAPTURE(size, list);
-      const ShapePlaces places = places_of("size = " + std::string(size) + ", spacing = [0.25, 0.25, 0.25]" +
-                                               (list.empty() ? "" : ", sides = [" + list + "]"),
-                                           3);
+      const ShapePlaces places =
+          positions_of("size = " + std::string(size) + ", spacing = [0.25, 0.25, 0.25]" +
+                           (list.empty() ? "" : ", sides = [" + list + "]"),
+                       3);
       const std::vector<Vec3> all = all_of(places), corners = places.corners();
       REQUIRE(std::ssize(all) == places.count());
       for (const Real Vec3::*along : {&Vec3::x, &Vec3::y, &Vec3::z}) {

@@ -33,15 +33,15 @@ static off_t disk_end = std::numeric_limits<off_t>::max();
 
 // Points at which a process may be killed: before its writes, and on either side of an exchange of names. It
 // kills itself at the one that is so many ahead (0: at none), so that no clock decides which one it is.
-static long places_passed = 0, places_to_death = 0;
+static long points_passed = 0, points_to_death = 0;
 
-static void pass_place() {
-  ++places_passed;
-  if (places_to_death > 0 && --places_to_death == 0) kill(getpid(), SIGKILL);
+static void pass_point() {
+  ++points_passed;
+  if (points_to_death > 0 && --points_to_death == 0) kill(getpid(), SIGKILL);
 }
 
 extern "C" ssize_t pwrite(int file, const void* data, std::size_t bytes, off_t at) {
-  pass_place();
+  pass_point();
   if (at + static_cast<off_t>(bytes) <= disk_end) return syscall(SYS_pwrite64, file, data, bytes, at);
   errno = ENOSPC;
   return -1;
@@ -52,14 +52,14 @@ static bool can_exchange = true;
 
 extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
                          unsigned int flags) noexcept {
-  pass_place();
+  pass_point();
   if (!can_exchange) {
     errno = EINVAL;
     return -1;
   }
   const auto result = static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
   const int error = errno;
-  pass_place();
+  pass_point();
   errno = error;
   return result;
 }
@@ -123,10 +123,10 @@ int die_within(double share, const std::function<std::function<void()>()>& begin
   return wait_for(start_child([&] {
     const std::function<void()> append = begin();
     append(), acknowledge();
-    const long before = places_passed;
+    const long before = points_passed;
     append(), acknowledge();
-    const long of_append = places_passed - before;
-    places_to_death = 1 + static_cast<long>(share * static_cast<double>(of_append - 1));
+    const long of_append = points_passed - before;
+    points_to_death = 1 + static_cast<long>(share * static_cast<double>(of_append - 1));
     for (;;) append(), acknowledge();
   }));
 }

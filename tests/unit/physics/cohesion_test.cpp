@@ -78,8 +78,8 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
   CHECK(at(-0.1 * reach, false).load.force == Vec3{});
   CHECK_FALSE(at(-0.1 * reach, false).history.touched);
   CHECK(at(0.1 * reach, false).history.touched);
-  const Real making = law.normal.of_pair(size).making_loss();  // in a step of 1 s, without rate
-  CHECK(at(0.1 * reach, false).load.loss == making);
+  const Real formation = law.normal.of_pair(size).making_loss();  // in a step of 1 s, without rate
+  CHECK(at(0.1 * reach, false).load.loss == formation);
   CHECK(at(0.1 * reach, true).load.loss == 0);
   CHECK(at(-0.1 * reach, true).load.force.z < 0);
   CHECK(at(-0.1 * reach, true).history.touched);

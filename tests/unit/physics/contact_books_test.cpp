@@ -18,7 +18,7 @@ constexpr Real kTruncation = 1.0 / kParts;  // one of them contains a jump
 
 constexpr Real kStep = 1e-3, kReach = 2e-4;  // [s], [m]
 
-struct BookedLaw {
+struct AccountedLaw {
   const char* name;
   KelvinVoigt law;
   Real (*dissipation)(const KelvinVoigt&, const ContactStep&);
@@ -29,7 +29,7 @@ struct BookedLaw {
 };
 
 template <class Law>
-BookedLaw booked(const char* name, Real stiffness, Real damping, Real exponent, bool tension) {
+AccountedLaw accounted(const char* name, Real stiffness, Real damping, Real exponent, bool tension) {
   return {
       name,
       {stiffness, damping, exponent, tension},
@@ -40,13 +40,13 @@ BookedLaw booked(const char* name, Real stiffness, Real damping, Real exponent, 
       [](const KelvinVoigt& p, Real d) { return Law(p).energy(d); }};
 }
 
-const BookedLaw kLaws[] = {booked<LinearLaw>("linear, cut", 1e6, 400, 1, false),
-                           booked<LinearLaw>("linear, tension", 1e6, 400, 1, true),
-                           booked<PowerLaw>("n = 1.5, cut", 1e8, 400, 1.5, false),
-                           booked<PowerLaw>("n = 1.5, tension", 1e8, 400, 1.5, true),
-                           booked<LinearLaw>("linear, cut, undamped", 1e6, 0, 1, false),
-                           booked<PowerLaw>("n = 1.5, cut, undamped", 1e8, 0, 1.5, false),
-                           booked<PowerLaw>("n = 1.5, tension, undamped", 1e8, 0, 1.5, true)};
+const AccountedLaw kLaws[] = {accounted<LinearLaw>("linear, cut", 1e6, 400, 1, false),
+                              accounted<LinearLaw>("linear, tension", 1e6, 400, 1, true),
+                              accounted<PowerLaw>("n = 1.5, cut", 1e8, 400, 1.5, false),
+                              accounted<PowerLaw>("n = 1.5, tension", 1e8, 400, 1.5, true),
+                              accounted<LinearLaw>("linear, cut, undamped", 1e6, 0, 1, false),
+                              accounted<PowerLaw>("n = 1.5, cut, undamped", 1e8, 0, 1.5, false),
+                              accounted<PowerLaw>("n = 1.5, tension, undamped", 1e8, 0, 1.5, true)};
 
 constexpr Real kOverlaps[] = {-kReach, -0.01 * kReach, 0, 0.3 * kReach, kReach};
 
@@ -61,7 +61,7 @@ void for_each_step(const Visit& visit) {
 
 // Work of the law's own loss along a path with a given rate at each instant, at the middle of small parts.
 template <class Overlap, class Rate>
-Real integrated(const BookedLaw& law, const Overlap& overlap, const Rate& rate) {
+Real integrated(const AccountedLaw& law, const Overlap& overlap, const Rate& rate) {
   Real sum = 0;
   for (int k = 0; k < kParts; ++k) {
     const Real t = (k + 0.5) / kParts, d = overlap(t);
@@ -70,14 +70,14 @@ Real integrated(const BookedLaw& law, const Overlap& overlap, const Rate& rate) 
   return sum;
 }
 
-bool holds(const BookedLaw& law, Real overlap, Real rate) {
+bool holds(const AccountedLaw& law, Real overlap, Real rate) {
   return overlap > 0 && (law.law.tension || law.at_instant(law.law, overlap, rate).force > 0);
 }
 
 }  // namespace
 
 TEST_CASE("the dissipation of a contact over a step is the law's loss along its path") {
-  for (const BookedLaw& law : kLaws) {
+  for (const AccountedLaw& law : kLaws) {
     for_each_step([&](const ContactStep& c) {
       CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
       const Real dissipated = law.dissipation(law.law, c);
@@ -98,7 +98,7 @@ TEST_CASE("the dissipation of a contact over a step is the law's loss along its 
 }
 
 TEST_CASE("a contact never gives energy by its damper, and without one dissipates exactly nothing") {
-  for (const BookedLaw& law : kLaws)
+  for (const AccountedLaw& law : kLaws)
     for_each_step([&](const ContactStep& c) {
       CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
       const Real dissipated = law.dissipation(law.law, c);
@@ -107,7 +107,7 @@ TEST_CASE("a contact never gives energy by its damper, and without one dissipate
 }
 
 TEST_CASE("work, elastic energy, dissipation and the integrator's part add up") {
-  for (const BookedLaw& law : kLaws)
+  for (const AccountedLaw& law : kLaws)
     for_each_step([&](const ContactStep& c) {
       const auto stored = [&](Real d) { return d > 0 ? law.energy(law.law, d) : 0; };
       const Real work = 0.37;
@@ -119,7 +119,7 @@ TEST_CASE("work, elastic energy, dissipation and the integrator's part add up") 
 
 // The linear law without damping, on the straight path of an impact, for which step_contact_force is exact.
 TEST_CASE("the integrator does nothing to an undamped linear contact that opens or closes") {
-  for (const BookedLaw& law : kLaws) {
+  for (const AccountedLaw& law : kLaws) {
     if (law.law.exponent != 1 || law.law.normal_damping > 0) continue;
     for_each_step([&](const ContactStep& c) {
       if (c.overlap0 > 0 && c.overlap1 > 0 && law.over_step(law.law, c).force == 0) return;

@@ -14,8 +14,8 @@ namespace {
 constexpr Real kRoundOff = 64 * kUlp;
 constexpr int kCases = 1000;
 
-using Roll = RollingAndTwisting<ElasticPlasticRolling>;
-using Twist = RollingAndTwisting<FreeRolling, MarshallTwisting>;
+using RollingOnly = RollingAndTwisting<ElasticPlasticRolling>;
+using TwistingOnly = RollingAndTwisting<FreeRolling, MarshallTwisting>;
 using Both = RollingAndTwisting<ElasticPlasticRolling, MarshallTwisting>;
 using Drag = RollingAndTwisting<ViscousRolling>;
 
@@ -27,14 +27,14 @@ ContactHistory written_and_read(const ContactHistory& history) {
 }
 
 // Component of a moment along the normal.
-Real twist_of(Vec3 moment, const ContactMotion& c) { return dot(moment, c.normal1); }
+Real twisting_moment(Vec3 moment, const ContactMotion& c) { return dot(moment, c.normal1); }
 
 }  // namespace
 
 TEST_CASE("the history of a law, and its order in files") {
   static_assert(ContactLaw<LinearLaw>::kHistory == 0 && !ContactLaw<LinearLaw>::kMoves);
   static_assert(ContactLaw<LinearLaw, LinearSlider>::kHistory == 3);
-  static_assert(ContactLaw<LinearLaw, Frictionless, Roll>::kHistory == 3);
+  static_assert(ContactLaw<LinearLaw, Frictionless, RollingOnly>::kHistory == 3);
   static_assert(ContactLaw<HertzLaw, MindlinSlider, Both>::kHistory == 6);
   static_assert(ContactLaw<HertzLaw, MindlinSlider, Drag>::kHistory == 3);
   static_assert(ContactLaw<JkrLaw, MindlinSlider, Both>::kHistory == 7);
@@ -43,10 +43,10 @@ TEST_CASE("the history of a law, and its order in files") {
   const ContactHistory all{{1, 2, 3}, {4, 5, 6}, true};
   const ContactHistory seven = written_and_read<ContactLaw<JkrLaw, MindlinSlider, Both>>(all);
   CHECK((seven.spring == all.spring && seven.moment == all.moment && seven.touched));
-  const ContactHistory moment = written_and_read<ContactLaw<LinearLaw, Frictionless, Roll>>(all);
+  const ContactHistory moment = written_and_read<ContactLaw<LinearLaw, Frictionless, RollingOnly>>(all);
   CHECK((moment.spring == Vec3{} && moment.moment == all.moment && !moment.touched));
-  const ContactHistory neck = written_and_read<ContactLaw<JkrLaw>>(all);
-  CHECK((neck.spring == Vec3{} && neck.moment == Vec3{} && neck.touched));
+  const ContactHistory jkr = written_and_read<ContactLaw<JkrLaw>>(all);
+  CHECK((jkr.spring == Vec3{} && jkr.moment == Vec3{} && jkr.touched));
 }
 
 TEST_CASE("a contact that opens forgets, and a force that is cut holds nothing") {
@@ -82,7 +82,8 @@ TEST_CASE("forces and moments stay within their limits") {
     const Vec3 moment = out.history.moment;
     const Real radius = c.pair.size.effective_radius(), a = std::sqrt(radius * d);
     CHECK(norm(across(moment, n)) <= mu_roll * radius * normal * (1 + kRoundOff));
-    CHECK(std::abs(twist_of(moment, c.pair.motion)) <= Real(2) / 3 * a * mu * normal * (1 + kRoundOff));
+    CHECK(std::abs(twisting_moment(moment, c.pair.motion)) <=
+          Real(2) / 3 * a * mu * normal * (1 + kRoundOff));
   }
 }
 
@@ -99,14 +100,15 @@ TEST_CASE("rolling and twisting springs take their stiffness from the contact") 
     const Real rolling = 2.25 * (1.5 * 100 * a) * 1e-4 * radius * radius;
     CHECK(near(across(out.history.moment, c.pair.motion.normal1), rolling * c.pair.motion.rolling,
                {.absolute = 1e-12 * norm(out.history.moment)}));
-    CHECK(near(twist_of(out.history.moment, c.pair.motion), 8 * 40 * a * a * a / 2 * c.pair.motion.twisting,
+    CHECK(near(twisting_moment(out.history.moment, c.pair.motion),
+               8 * 40 * a * a * a / 2 * c.pair.motion.twisting,
                {.absolute = 1e-12 * norm(out.history.moment)}));
-    const Real rubs = dot(out.history.spring, out.history.spring) / (2 * 8 * 40 * a),
+    const Real friction_energy = dot(out.history.spring, out.history.spring) / (2 * 8 * 40 * a),
                rolls = rolling / 2 * dot(c.pair.motion.rolling, c.pair.motion.rolling) +
                        8 * 40 * a * a * a / 4 * c.pair.motion.twisting * c.pair.motion.twisting,
-               energy = rubs + rolls;
+               energy = friction_energy + rolls;
     const SpringEnergies springs = law.springs_of(c.pair, out.history);
-    CHECK(near(springs.friction, rubs, {.relative = 1e-12}));
+    CHECK(near(springs.friction, friction_energy, {.relative = 1e-12}));
     CHECK(near(springs.rolling, rolls, {.relative = 1e-12}));
     CHECK(springs.sum() == springs.friction + springs.rolling);
     // From rest and without losses, it is the work of the springs.

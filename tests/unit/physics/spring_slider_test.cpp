@@ -14,7 +14,7 @@ constexpr int kCases = 10000;
 
 struct RandomStep {
   SpringSlider slider;
-  Vec3 old, way;
+  Vec3 old, displacement;
   Real h = 0.1;
 };
 
@@ -24,7 +24,7 @@ RandomStep random_step(RandomNumbers& random) {
   const Real k = 2 + random(), limit = 1.5 + random();
   out.slider = {k, random() > 0 ? k : 2 + random(), random() > 0 ? 0 : 0.2 + 0.1 * random(), limit};
   out.old = (limit * random() / 1.8) * random.vector();
-  out.way = (2 * random()) * random.vector();
+  out.displacement = (2 * random()) * random.vector();
   return out;
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("force and history stay within the limit") {
   RandomNumbers random;
   for (int k = 0; k < kCases; ++k) {
     const RandomStep s = random_step(random);
-    const SpringStep out = spring_step(s.slider, s.old, s.way, s.h);
+    const SpringStep out = spring_step(s.slider, s.old, s.displacement, s.h);
     CHECK(norm(out.spring) <= s.slider.limit * (1 + kRoundOff));
     CHECK(norm(out.acting) <= s.slider.limit * (1 + kRoundOff));
   }
@@ -53,10 +53,11 @@ TEST_CASE("work, elastic energy and losses add up, and no loss is negative") {
   int slid = 0, damped = 0, unloaded = 0;
   for (int k = 0; k < kCases; ++k) {
     const RandomStep s = random_step(random);
-    const SpringStep out = spring_step(s.slider, s.old, s.way, s.h);
+    const SpringStep out = spring_step(s.slider, s.old, s.displacement, s.h);
     const Real shrink =
         s.slider.stiffness < s.slider.stiffness0 ? s.slider.stiffness / s.slider.stiffness0 : 1;
-    const Real work = dot(Real(0.5) * (shrink * s.old + out.spring) + (out.acting - out.spring), s.way);
+    const Real work =
+        dot(Real(0.5) * (shrink * s.old + out.spring) + (out.acting - out.spring), s.displacement);
     const Real gain =
         spring_energy(out.spring, s.slider.stiffness) - spring_energy(s.old, s.slider.stiffness0);
     CHECK(near(work, gain + out.losses.sum(), {.absolute = kRoundOff}));

@@ -76,16 +76,16 @@ std::vector<Neighbor> densest_lattice(int dimension) {
 
 // Force and torque on a particle of radius and mass 1 whose contacts, of nearly zero overlap, are changed by
 // a small motion of it and of its neighbours.
-ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 way, Vec3 turn) {
+ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 displacement, Vec3 turn) {
   ContactLoadOf<Real, Vec3> sum{};
   constexpr Real kOverlap = 1e-3;
   const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(1, 0, false), {slip_stiffness, 1e9, 0}};
   for (const Neighbor& neighbor : densest_lattice(dimension)) {
-    const Vec3 other = neighbor.next_layer ? -way : way;
+    const Vec3 other = neighbor.next_layer ? -displacement : displacement;
     const ContactGeometry geometry =
-        sphere_pair(-(2 - kOverlap) * neighbor.direction + (way - other), Real(2));
+        sphere_pair(-(2 - kOverlap) * neighbor.direction + (displacement - other), Real(2));
     const MovingPair pair{{geometry, {}, {1, 1, 1, 1}},
-                          sphere_motion(geometry, way - other, {turn, 1, 1}, {turn, 1, 1}, 1)};
+                          sphere_motion(geometry, displacement - other, {turn, 1, 1}, {turn, 1, 1}, 1)};
     const ContactOutcome out = law.load(pair, {});
     sum.force += out.load.force, sum.torque_i += out.load.torque_i;
   }

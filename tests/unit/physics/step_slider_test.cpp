@@ -16,7 +16,7 @@ constexpr int kCases = 100000;
 
 struct RandomStep {
   SpringSlider slider;
-  Vec3 old, way;
+  Vec3 old, displacement;
   Real h = 0.1;
   Real end_limit = 0;
 };
@@ -30,11 +30,13 @@ RandomStep random_step(RandomNumbers& random) {
                 1.001 + random()};
   out.end_limit = random() > 0 ? out.slider.limit : out.slider.limit * (1 + random());
   out.old = (2 * random()) * random.vector();
-  out.way = (4 * random()) * random.vector();
+  out.displacement = (4 * random()) * random.vector();
   return out;
 }
 
-StepSpring step_of(const RandomStep& s) { return step_spring(s.slider, s.old, s.way, s.h, s.end_limit); }
+StepSpring step_of(const RandomStep& s) {
+  return step_spring(s.slider, s.old, s.displacement, s.h, s.end_limit);
+}
 
 }  // namespace
 
@@ -44,7 +46,7 @@ TEST_CASE("over an implicit step no spring with slider gives energy, and the ene
   for (int k = 0; k < kCases; ++k) {
     const RandomStep s = random_step(random);
     const StepSpring out = step_of(s);
-    const Real work = dot(out.mean, s.way);
+    const Real work = dot(out.mean, s.displacement);
     const Real gain =
         spring_energy(out.spring, s.slider.stiffness) - spring_energy(s.old, s.slider.stiffness0);
     REQUIRE(work - gain >= -kRoundOff);
@@ -72,11 +74,12 @@ TEST_CASE("the derivatives of the mean force are those of differences") {
     const StepSpring at = step_of(s);
     const Vec3 direction = random.vector();
     RandomStep plus = s, minus = s;
-    plus.way = s.way + kDifference * direction, minus.way = s.way - kDifference * direction;
+    plus.displacement = s.displacement + kDifference * direction,
+    minus.displacement = s.displacement - kDifference * direction;
     if (step_of(plus).grip != step_of(minus).grip) continue;  // a kink between the two
-    const Vec3 by_way = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
+    const Vec3 by_displacement = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
     const Vec3 derivative = at.stiffness * (direction - dot(at.direction, direction) * at.direction);
-    CHECK(near(by_way, derivative, {.absolute = kTruncation}));
+    CHECK(near(by_displacement, derivative, {.absolute = kTruncation}));
     plus = s, minus = s;
     plus.slider.limit += kDifference, minus.slider.limit -= kDifference;
     const Vec3 by_limit = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
@@ -101,7 +104,7 @@ TEST_CASE("in an implicit step a dashpot acts beside a spring within its limit, 
 // A slip that reverses while the limit falls: the spring sticks, slides, releases, and slides again as the
 // limit reaches it.
 TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones as steps shrink") {
-  const auto way_to = [](Real t) { return 0.12 * std::sin(3.5 * t); };
+  const auto displacement_to = [](Real t) { return 0.12 * std::sin(3.5 * t); };
   const auto limit_at = [](Real t) { return t < 0.4 ? 0.3 : 0.3 - 2.5 * (t - 0.4); };
   constexpr Real kStiffness = 5, kDashpot = 0.5;
   enum class Steps { explicit_, implicit_, dashpot_at_all_times };
@@ -111,16 +114,16 @@ TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones 
     Real impulse = 0;
     for (int k = 0; k < steps; ++k) {
       const Real t = k * h, first = limit_at(t), last = limit_at(t + h);
-      const Vec3 way{way_to(t + h) - way_to(t), 0, 0};
+      const Vec3 displacement{displacement_to(t + h) - displacement_to(t), 0, 0};
       SpringSlider slider{kStiffness, kStiffness, kDashpot, last};
       if (kind != Steps::explicit_) {
         if (kind == Steps::implicit_)
           slider.dashpot *= dashpot_part({kStiffness, kStiffness, kDashpot, first}, spring);
         slider.limit = (first + last) / 2;
-        const StepSpring out = step_spring(slider, spring, way, h, last);
+        const StepSpring out = step_spring(slider, spring, displacement, h, last);
         spring = out.spring, impulse += h * out.mean.x;
       } else {
-        const SpringStep out = spring_step(slider, spring, way, h);
+        const SpringStep out = spring_step(slider, spring, displacement, h);
         spring = out.spring, impulse += h * out.acting.x;
       }
     }
@@ -143,8 +146,8 @@ TEST_CASE("while a spring with slider sticks, steps of half the size quarter the
     Vec3 spring;
     Real impulse = 0;
     for (int k = 0; k < steps; ++k) {
-      const Real way = std::sin((k + 1) * h) - std::sin(k * h);
-      const StepSpring out = step_spring({1, 1, 0, 10}, spring, {way, 0, 0}, h, 10);
+      const Real displacement = std::sin((k + 1) * h) - std::sin(k * h);
+      const StepSpring out = step_spring({1, 1, 0, 10}, spring, {displacement, 0, 0}, h, 10);
       spring = out.spring, impulse += h * out.mean.x;
     }
     return std::abs(impulse - (1 - std::cos(2.0)));

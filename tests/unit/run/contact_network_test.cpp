@@ -32,7 +32,7 @@ struct Sums {
 };
 
 // Whether a and b are a whole number of periods apart.
-bool same_place(Vec3 a, Vec3 b, Vec3 period) {
+bool same_position(Vec3 a, Vec3 b, Vec3 period) {
   const auto apart = [](Real x, Real length) {
     return length > 0 ? std::abs(x - length * std::round(x / length)) : std::abs(x);
   };
@@ -52,7 +52,7 @@ void check_line(const ContactLine& line, const Model& model, const std::vector<V
     REQUIRE(line.first <= line.second);
     const auto j = static_cast<std::size_t>(line.second);
     reach += model.particles.radius[j];
-    REQUIRE(same_place(line.start + c.branch, position[j], Subdomain(model.space).period()));
+    REQUIRE(same_position(line.start + c.branch, position[j], Subdomain(model.space).period()));
   }
   // The centre may be behind a wall.
   REQUIRE(near(norm(c.branch), std::abs(reach - c.overlap), {.absolute = kRoundOff}));

@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kParticles = 4;
 
 // Four particles with 2, 0, 3 and 1 contacts.
-State remembering_state(int numbers) {
+State state_with_history(int numbers) {
   State state;
   for (GlobalId id = 0; id < kParticles; ++id) {
     fill_fields(state.particles.emplace_back(), id);
@@ -60,7 +60,7 @@ std::string refusal(const State& state) {
 TEST_CASE("contact histories pass through a file bit for bit") {
   for (const int numbers : {1, 3, 4, 7}) {
     CAPTURE(numbers);
-    const State state = remembering_state(numbers);
+    const State state = state_with_history(numbers);
     CHECK(difference(unpack(pack(state)).contacts, state.contacts) == "");
     const ScratchDirectory folder;
     write_checkpoint(folder / "c.h5", pack(state));
@@ -80,7 +80,7 @@ TEST_CASE("contact histories pass through a file bit for bit") {
 }
 
 TEST_CASE("a checkpoint has rows of contacts only with a law with history") {
-  const State state = remembering_state(0);
+  const State state = state_with_history(0);
   for (const auto& [name, rows] : pack(state).real_rows) CHECK_FALSE(contains(name, "contacts"));
   for (const auto& [name, rows] : pack(state).integer_rows) CHECK_FALSE(contains(name, "contacts"));
   CHECK(unpack(pack(state)).contacts.numbers == 0);
@@ -95,20 +95,20 @@ TEST_CASE("a checkpoint has rows of contacts only with a law with history") {
     return "";
   };
   CHECK(trouble(pack(state)) == "");
-  const State remembering = remembering_state(3);
-  CHECK(trouble(pack(remembering)) == "");
+  const State with_history = state_with_history(3);
+  CHECK(trouble(pack(with_history)) == "");
   for (const char* name : {"contacts/count", "contacts/partner", "contacts/image"}) {
-    Checkpoint partial = pack(remembering);
+    Checkpoint partial = pack(with_history);
     partial.integer_rows.erase(name);
     CHECK(contains(trouble(partial), std::string(name) + " is missing"));
   }
-  Checkpoint partial = pack(remembering);
+  Checkpoint partial = pack(with_history);
   partial.real_rows.erase("contacts/history");
   CHECK(contains(trouble(partial), "is not known"));
 }
 
 TEST_CASE("the hash covers contact histories, and nothing else where there are none") {
-  const State state = remembering_state(7);
+  const State state = state_with_history(7);
   const std::uint64_t hash = state_hash(state, true);
   for (std::size_t k = 0; k < state.contacts.keys.size(); ++k) {
     State other = state;
@@ -126,11 +126,11 @@ TEST_CASE("the hash covers contact histories, and nothing else where there are n
   State none = state;
   none.contacts = no_contacts(7, kParticles);
   CHECK(state_hash(none, true) != hash);
-  CHECK(state_hash(none, true) == state_hash(remembering_state(0), true));
+  CHECK(state_hash(none, true) == state_hash(state_with_history(0), true));
 }
 
 TEST_CASE("contacts that no state of the deck can have are refused") {
-  const State state = remembering_state(3);
+  const State state = state_with_history(3);
   CHECK(refusal(state) == "");
   const auto with = [&](const auto& change) {
     State other = state;

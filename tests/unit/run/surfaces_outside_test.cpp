@@ -31,7 +31,7 @@ std::string at_start(const std::vector<std::string>& overrides, const std::strin
 }
 
 // Message on one particle that escapes there while the disc is static at its position.
-std::string leaving_at(Vec3 position, std::vector<std::string> overrides) {
+std::string escaping_at(Vec3 position, std::vector<std::string> overrides) {
   overrides.push_back(kDrift);
   const Model model = model_of(kDisc, overrides);
   const std::vector<BodyMotion> motion{start_motion(model.bodies.front())};
@@ -68,15 +68,15 @@ TEST_CASE("walls of triangles whose motion crosses an open side are warned of, w
 
 TEST_CASE("a particle leaves at surfaces where it is in their box or beside it, in any image") {
   const std::vector<std::string> right = {"bodies.disc.position=[0.65,0]"};
-  CHECK(contains(leaving_at({1.02, 0, 0}, right),
-                 "particle 7 leaves the domain at t = 0.5 s at the surfaces of body \"disc\""));
-  CHECK(contains(leaving_at({1.02, 0.13, 0}, right), "particle 7"));
-  CHECK(leaving_at({1.02, 0.15, 0}, right).empty());
-  CHECK(leaving_at({-1.02, 0, 0}, right).empty());
-  CHECK(leaving_at({1.02, 0, 0}, {"bodies.disc.position=[0.55,0]"}).empty());  // the disc is inside
+  CHECK(contains(escaping_at({1.02, 0, 0}, right),
+                 "particle 7 leaves the space at t = 0.5 s at the surfaces of body \"disc\""));
+  CHECK(contains(escaping_at({1.02, 0.13, 0}, right), "particle 7"));
+  CHECK(escaping_at({1.02, 0.15, 0}, right).empty());
+  CHECK(escaping_at({-1.02, 0, 0}, right).empty());
+  CHECK(escaping_at({1.02, 0, 0}, {"bodies.disc.position=[0.55,0]"}).empty());  // the disc is inside
   const std::string walls = "space={dimension=2,min=[-1,-1],max=[1,1],y_min=\"periodic\",y_max=\"periodic\"}";
-  CHECK(contains(leaving_at({1.02, 4, 0}, {walls, "bodies.disc.position=[0.65,0]"}), "particle 7"));
-  CHECK(leaving_at({1.02, 5, 0}, {walls, "bodies.disc.position=[0.65,0]"}).empty());
+  CHECK(contains(escaping_at({1.02, 4, 0}, {walls, "bodies.disc.position=[0.65,0]"}), "particle 7"));
+  CHECK(escaping_at({1.02, 5, 0}, {walls, "bodies.disc.position=[0.65,0]"}).empty());
 }
 
 }  // namespace scree

@@ -58,7 +58,7 @@ TEST_CASE("six spheres in a zigzag between rough walls: static forces, positions
     }
     pack.step();
   }
-  Errors forces, places, turns;
+  Errors forces, positions, turns;
   const Real weight = kMass * kGravity;
   Real carried = 0;
   for (const auto& row : contacts.rows()) {
@@ -76,12 +76,12 @@ TEST_CASE("six spheres in a zigzag between rough walls: static forces, positions
   CHECK(near(carried, 6 * weight, {.relative = 1e-9}));
   for (const auto& row : spheres.rows()) {
     const auto i = static_cast<std::size_t>(row["i"]);
-    const Vec3 way = pack.grains[i].position - start[i].position;
-    places.add(norm(way - Vec3{row["dx"], 0, row["dz"]}) / 1.5e-6);
+    const Vec3 displacement = pack.grains[i].position - start[i].position;
+    positions.add(norm(displacement - Vec3{row["dx"], 0, row["dz"]}) / 1.5e-6);
     turns.add((turned[i] - row["theta"]) / 1.7e-4);
   }
   CHECK(keeps(forces.worst(), {.promise = 1e-8, .measured = 4.3e-10}));
-  CHECK(keeps(places.worst(), {.promise = 1e-8, .measured = 1.0e-10}));
+  CHECK(keeps(positions.worst(), {.promise = 1e-8, .measured = 1.0e-10}));
   CHECK(keeps(turns.worst(), {.promise = 1e-6, .measured = 2.0e-7}));
 }
 

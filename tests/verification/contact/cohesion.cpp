@@ -27,12 +27,12 @@ PlaneRun<ContactLaw<Normal>> head_on(const Normal& law, const ReferenceTable::Ro
 // Approximate duration of the impact without cohesion.
 Real impact_time(const ReferenceTable::Row& row) { return 3 * row["d_max"] / row["v"]; }
 
-struct NeckErrors {
+struct JkrErrors {
   Errors energy, overlap, force;  // of the rebound, relative to the impact; largest overlap, and force there
-  Errors books;                   // relative to the impact's energy
+  Errors balance;                 // relative to the impact's energy
 };
 
-void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {
+void add_jkr(const ReferenceTable::Row& row, Real parts, JkrErrors& errors) {
   const Real v = row["v"];
   const JkrLaw law{4 * row["E_star"] / 3, std::sqrt(5.0) * row["z"], row["w"]};
   auto run = head_on(law, row, impact_time(row) / parts);
@@ -49,7 +49,7 @@ void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {
   const Real start = kinetic_energy(run.grain.mass, {0, 0, v}),
              end = kinetic_energy(run.grain.mass, run.velocity());
   const Real left = run.closed ? law.of_pair(run.pair().size).energy(run.geometry().overlap) : 0;
-  errors.books.add((start - end - left - run.sums.normal) / start);
+  errors.balance.add((start - end - left - run.sums.normal) / start);
   errors.energy.add(rebound * rebound - row["e"] * row["e"]);
   errors.overlap.add(largest / row["d_max"] - 1);
   errors.force.add(force / row["F_at_d_max"] - 1);
@@ -59,24 +59,24 @@ void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {
 
 TEST_CASE("JKR impacts: rebound and sticking") {
   const ReferenceTable table("contact/jkr_impact.csv");
-  NeckErrors coarse, fine;
+  JkrErrors coarse, fine;
   for (const auto& row : table.rows()) {
     CAPTURE(row.word("set"), row["z"], row["v"]);
-    add_neck(row, 200, coarse);
-    add_neck(row, 400, fine);
+    add_jkr(row, 200, coarse);
+    add_jkr(row, 400, fine);
   }
   CHECK(keeps(coarse.energy.worst(), {.promise = 2e-2, .measured = 3.1e-3}));
   CHECK(keeps(fine.energy.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
   CHECK(keeps(fine.overlap.worst(), {.promise = 1e-4, .measured = 1.2e-5}));
   CHECK(keeps(fine.force.worst(), {.promise = 2e-4, .measured = 2.3e-5}));
-  CHECK(keeps(fine.books.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
+  CHECK(keeps(fine.balance.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
   CHECK(order_between(coarse.energy, fine.energy) > 0.9);
 }
 
 TEST_CASE("DMT attraction: nothing is dissipated where it appears and ends") {
   const ReferenceTable table("contact/dmt.csv");
   const auto errors_at = [&](Real parts) {
-    NeckErrors errors;
+    JkrErrors errors;
     for (const auto& row : table.rows()) {
       const AttractedLaw<HertzLaw> law{HertzLaw(4 * row["E_star"] / 3, 0, true), 0,
                                        2 * std::numbers::pi_v<Real> * row["w"], 0};
@@ -93,7 +93,7 @@ TEST_CASE("DMT attraction: nothing is dissipated where it appears and ends") {
     }
     return errors;
   };
-  const NeckErrors coarse = errors_at(100), fine = errors_at(200);
+  const JkrErrors coarse = errors_at(100), fine = errors_at(200);
   CHECK(keeps(fine.energy.worst(), {.promise = 5e-2, .measured = 1.3e-2}));
   CHECK(keeps(fine.overlap.worst(), {.promise = 1e-3, .measured = 3.3e-5}));
   CHECK(order_between(coarse.overlap, fine.overlap) > 0.9);

@@ -123,8 +123,8 @@ struct OtherSide {
 
 TEST_CASE("both sides of a pair keep mirrored springs to the last bit, and its energy balance closes") {
   const ReferenceTable table("contact/pair_oblique_3d.csv");
-  const auto books_at = [&](Real parts) {
-    Errors books;
+  const auto balance_at = [&](Real parts) {
+    Errors balance;
     for (const auto& row : table.rows()) {
       if (row.word("law") != "mindlin") continue;
       auto run = pair_run(WholeImpact(row), parts, 0.5);
@@ -143,11 +143,11 @@ TEST_CASE("both sides of a pair keep mirrored springs to the last bit, and its e
       CHECK(near(total_angular_momentum(run), turning, {.absolute = kConserved}));
       const Real lost = run.sums.normal + run.sums.friction.sum() + run.sums.rolling.sum();
       CHECK(run.sums.rolling.sum() > 0);
-      books.add((energy - run.i.energy() - run.j.energy() - lost) / energy);
+      balance.add((energy - run.i.energy() - run.j.energy() - lost) / energy);
     }
-    return books;
+    return balance;
   };
-  const Errors coarse = books_at(100), fine = books_at(200);
+  const Errors coarse = balance_at(100), fine = balance_at(200);
   CHECK(keeps(coarse.worst(), {.promise = 2e-3, .measured = 5.5e-4}));
   CHECK(keeps(fine.worst(), {.promise = 1e-3, .measured = 2.6e-4}));
   CHECK(order_between(coarse, fine) > 0.9);

@@ -44,16 +44,16 @@ restitution = 0.3
 
 // Particles in layers of side x side, each a little off its lattice position, above z.
 std::string grains(int count, int side, Real radius, Real z, Real mass) {
-  std::string places;
+  std::string positions;
   for (int i = 0; i < count; ++i) {
     const auto off = [&](int k) { return Real(0.1) * radius * std::sin(Real(7 * i + 3 * k)); };
     const auto at = [&](int k) { return Real(2.3) * radius * (k - Real(0.5) * (side - 1)); };
-    places += fmt::format("[{}, {}, {}], ", at(i % side) + off(0), at(i / side % side) + off(1),
-                          z + Real(1.2) * radius + Real(2.3) * radius * (i / (side * side)) + off(2));
+    positions += fmt::format("[{}, {}, {}], ", at(i % side) + off(0), at(i / side % side) + off(1),
+                             z + Real(1.2) * radius + Real(2.3) * radius * (i / (side * side)) + off(2));
   }
   return fmt::format(
       "[[particles]]\nname = \"grains\"\nkind = \"list\"\nradius = {}\nmass = {}\npositions = [{}]\n", radius,
-      mass, places);
+      mass, positions);
 }
 
 // An open box of two-sided meshes, with its body on a joint with the ground at the origin.
@@ -108,7 +108,7 @@ struct Load {
   Real end;
 };
 
-constexpr const char* kHinge =
+constexpr const char* kRevolute =
     "type = \"revolute\"\naxis = [0.0, 1.0, 0.0]\n[[joint_springs]]\nname = \"damper\"\njoint = \"hinge\"\n"
     "stiffness = 0.0\ndamping = 0.05\nfree = 0.0\n";
 
@@ -117,11 +117,11 @@ constexpr const char* kHinge =
 // With the force at the predicted position alone the first, the third and the fifth of these become
 // unstable.
 TEST_CASE("particles in a light bin have their weight at its revolute joint") {
-  for (const Load& load : {Load{"40 grains of 0.5 kg", kHinge, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
-                           Load{"40 grains that rub", kHinge, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
-                           Load{"40 grains of 10 kg", kHinge, 40, 3, 0.015, 10, 0.3, 1.2e-4, 1, 2},
+  for (const Load& load : {Load{"40 grains of 0.5 kg", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
+                           Load{"40 grains that rub", kRevolute, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
+                           Load{"40 grains of 10 kg", kRevolute, 40, 3, 0.015, 10, 0.3, 1.2e-4, 1, 2},
                            Load{"100 grains", "type = \"fixed\"", 100, 4, 0.012, 0.2, 0.3, 1e-4, 1, 1},
-                           Load{"10 substeps", kHinge, 40, 3, 0.015, 0.5, 0, 1.2e-4, 10, 1.2}}) {
+                           Load{"10 substeps", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 10, 1.2}}) {
     CAPTURE(load.name);
     SimulationRun run(model_of(head(load.step, load.end, load.substeps, load.friction) +
                                bin(load.joint, 0.3) +

@@ -107,7 +107,7 @@ Vec3 ball_force(const BodyMotion& top) {
 TEST_CASE("reactions in the plane do not see that an impact elsewhere changes the steps") {
   const Model model = model_of(planar_deck());
   SimulationRun run(model);
-  Largest multipliers, free, driven, drive, rubbing, rub;
+  Largest multipliers, free, driven, drive, frictional, rub;
   run.run([&] {
     const std::vector<Real>&q = run.bodies().position, &v = run.bodies().velocity;
     const std::vector<Reaction> reactions = run.multibody().reactions(run.bodies(), run.time());
@@ -123,12 +123,12 @@ TEST_CASE("reactions in the plane do not see that an impact elsewhere changes th
     drive.take(reactions[3].torque, {0, 0, torque});
 
     const Real effort = run.multibody().joint_efforts(run.bodies(), run.time())[0].effort;
-    rubbing.take(reactions[2].force, pin_force(q[8], v[8], pin_acceleration(q[8], effort)));
+    frictional.take(reactions[2].force, pin_force(q[8], v[8], pin_acceleration(q[8], effort)));
     if (run.time() > 0.01)  // it slides
       rub.take({0, 0, effort}, {0, 0, std::copysign(kMu * kPin * norm(reactions[2].force), -v[8])});
   });
   CHECK(multipliers.share() > 0.2);  // of the steps: there is a significant oscillation
-  for (const Largest& found : {free, rubbing})
+  for (const Largest& found : {free, frictional})
     CHECK(measured("reactions/adaptive", "", at_most(found.share(), 2e-5)));
   for (const Largest& found : {driven, drive, rub})  // fixed by the driver's motion, or the reaction itself
     CHECK(measured("reactions/driven", "", at_most(found.share(), 1e-12)));
@@ -137,7 +137,7 @@ TEST_CASE("reactions in the plane do not see that an impact elsewhere changes th
 TEST_CASE("nor do spatial reactions, minimum-norm ones of redundant revolute joints included") {
   const Model model = model_of(spatial_deck());
   SimulationRun run(model);
-  Largest multipliers, top, hinges;
+  Largest multipliers, top, revolute_joints;
   run.run([&] {
     const std::vector<BodyMotion> motion = run.multibody().motion(run.bodies());
     const std::vector<Reaction> reactions = run.multibody().reactions(run.bodies(), run.time());
@@ -149,10 +149,11 @@ TEST_CASE("nor do spatial reactions, minimum-norm ones of redundant revolute joi
     const Vec3 centre = motion[1].position - Vec3{2, 0, 0};
     const Real turn = std::atan2(centre.z, centre.x);
     const Vec3 both = pin_force(turn, motion[1].spin.y, pin_acceleration(turn, 0));
-    for (const std::size_t k : {1, 2}) hinges.take(reactions[k].force, Real(0.5) * Vec3{both.x, 0, both.y});
+    for (const std::size_t k : {1, 2})
+      revolute_joints.take(reactions[k].force, Real(0.5) * Vec3{both.x, 0, both.y});
   });
   CHECK(multipliers.share() > 0.05);
-  for (const Largest& found : {top, hinges})
+  for (const Largest& found : {top, revolute_joints})
     CHECK(measured("reactions/adaptive", "", at_most(found.share(), 2e-5)));
 }
 

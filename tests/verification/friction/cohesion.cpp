@@ -51,8 +51,8 @@ Model model_without_spins(const GrainDeck& deck) {
 }
 
 struct ImpactErrors {
-  Errors energy;  // of the rebound, relative to the impact
-  Errors books;   // relative to the impact's energy
+  Errors energy;   // of the rebound, relative to the impact
+  Errors balance;  // relative to the impact's energy
 };
 
 void add_impact(const Row& row, const std::string& more, Real parts, bool pair, ImpactErrors& errors) {
@@ -66,10 +66,10 @@ void add_impact(const Row& row, const std::string& more, Real parts, bool pair, 
   CHECK(holds == (row["e"] == 0));
   const Real rebound = holds ? 0 : rate / row["v"], start = row["m_star"] * row["v"] * row["v"] / 2;
   errors.energy.add(rebound * rebound - row["e"] * row["e"]);
-  errors.books.add(run.balance_error() / start);
+  errors.balance.add(run.balance_error() / start);
 }
 
-ImpactErrors neck_errors(const std::string& more, Real parts, bool pair) {
+ImpactErrors jkr_errors(const std::string& more, Real parts, bool pair) {
   const ReferenceTable table("contact/jkr_impact.csv");
   ImpactErrors errors;
   for (const auto& row : table.rows()) {
@@ -84,10 +84,10 @@ ImpactErrors neck_errors(const std::string& more, Real parts, bool pair) {
 TEST_CASE("spheres with JKR contacts rebound from a wall and from each other, or stick") {
   for (const bool pair : {false, true})
     for (const std::string more : {"", "friction = 0.5\nrolling_friction = 0.1\n"}) {
-      const ImpactErrors coarse = neck_errors(more, 200, pair), fine = neck_errors(more, 400, pair);
+      const ImpactErrors coarse = jkr_errors(more, 200, pair), fine = jkr_errors(more, 400, pair);
       CHECK(keeps(coarse.energy.worst(), {.promise = 2e-2, .measured = 3.1e-3}));
       CHECK(keeps(fine.energy.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
-      CHECK(keeps(fine.books.worst(), {.promise = 1e-2, .measured = 1.6e-3}));
+      CHECK(keeps(fine.balance.worst(), {.promise = 1e-2, .measured = 1.6e-3}));
       CHECK(order_between(coarse.energy, fine.energy) > 0.9);
     }
 }
@@ -126,7 +126,7 @@ TEST_CASE("a JKR contact that breaks dissipates the energy of its springs") {
   const ReferenceTable table("contact/jkr_impact.csv");
   const auto& row = table.rows()[2];
   REQUIRE((row["z"] == 0 && row["e"] > 0.8));
-  const auto books_at = [&](Real parts, bool pair) {
+  const auto balance_at = [&](Real parts, bool pair) {
     GrainDeck deck =
         impact_deck_of(row, "friction = 0.4\nrolling_friction = 0.2\ntwisting_friction = 0.3\n", parts, pair);
     Grain& grain = deck.grains.back();
@@ -145,8 +145,8 @@ TEST_CASE("a JKR contact that breaks dissipates the energy of its springs") {
   };
   for (const bool pair : {false, true}) {
     CAPTURE(pair);
-    const auto [coarse, held] = books_at(500, pair);
-    const auto [fine, held_too] = books_at(2000, pair);
+    const auto [coarse, held] = balance_at(500, pair);
+    const auto [fine, held_too] = balance_at(2000, pair);
     CHECK(held > 1e-3);
     CHECK(std::abs(fine) < held_too / 20);
     CHECK(keeps(coarse, {.promise = 1e-3, .measured = 3.4e-4}));

@@ -16,17 +16,17 @@ namespace {
 
 constexpr Real kRadius = 0.05, kMass = 1, kStep = 1e-4;  // [m], [kg], [s]
 
-struct Sticking {
+struct AdhesiveLaw {
   const char* name;
   std::string law, materials;
   Real press;  // overlap at the start over the radius
 };
 
 // Laws whose history is a spring and a moment, and one with the state of JKR, too.
-const std::vector<Sticking>& sticking_laws() {
+const std::vector<AdhesiveLaw>& adhesive_laws() {
   static const std::string rolls =
       "friction = 0.5\ntangential_damping_ratio = 0.3\nrolling_friction = 0.2\nrolling_damping_ratio = 0.3\n";
-  static const std::vector<Sticking> laws{
+  static const std::vector<AdhesiveLaw> laws{
       {"linear", "stiffness = 1e5\nrestitution = 0.3\nattraction = 50.0\n" + rolls, "", 0.01},
       {"neck", "restitution = 0.3\nwork_of_adhesion = 200.0\n" + rolls, hertz_materials(2e7, 0.3), 0.01}};
   return laws;
@@ -35,7 +35,7 @@ const std::vector<Sticking>& sticking_laws() {
 // A sphere and its twelve neighbours in the densest lattice, each with its own velocity and spin, so that
 // the contacts slide and roll before they stick. Opposite ones have the same velocity and opposite spins:
 // there is no angular momentum, and the clump comes to rest.
-Model clump(const Sticking& of) {
+Model clump(const AdhesiveLaw& of) {
   GrainDeck deck{.law = of.law, .grains = {{.radius = kRadius, .mass = kMass}}, .step = kStep, .end = 10};
   deck.materials = of.materials, deck.plane = false;
   const Real place = std::sqrt(Real(2)) * kRadius * (1 - of.press / 2);
@@ -116,7 +116,7 @@ State moving(State state, Vec3 velocity, Vec3 omega) {
 }
 
 // Spheres with friction in an open domain. flight: velocity of all of them [m/s].
-Model gas(Vec3 flight, const std::vector<std::string>& settings) {
+Model gas(Vec3 uniform_velocity, const std::vector<std::string>& settings) {
   std::string sides;
   for (const char* side : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"})
     sides += fmt::format("{} = \"periodic\"\n", side);
@@ -145,7 +145,7 @@ angular_velocity = [30.0, -20.0, 10.0]
 seed = 5
 )",
                          settings);
-  for (Vec3& v : model.particles.velocity) v += flight;
+  for (Vec3& v : model.particles.velocity) v += uniform_velocity;
   return model;
 }
 
@@ -169,10 +169,10 @@ std::map<std::pair<GlobalId, GlobalId>, Vec3> springs_by_pair(const State& state
 TEST_CASE("the springs of a gas in a periodic box are the same under a uniform velocity") {
   for (const std::vector<std::string>& method : {std::vector<std::string>{}, implicit_steps(0)}) {
     CAPTURE(method.empty());
-    SimulationRun resting(gas({}, method)), flying(gas({7, -5, 3}, method));
-    for (SimulationRun* run : {&resting, &flying}) run->run();
+    SimulationRun resting(gas({}, method)), translating(gas({7, -5, 3}, method));
+    for (SimulationRun* run : {&resting, &translating}) run->run();
     const auto before = springs_by_pair(resting.complete_state()),
-               after = springs_by_pair(flying.complete_state());
+               after = springs_by_pair(translating.complete_state());
     REQUIRE(before.size() > 20);
     REQUIRE(after.size() == before.size());
     Real scale = 0, error = 0;
@@ -186,16 +186,16 @@ TEST_CASE("the springs of a gas in a periodic box are the same under a uniform v
 }
 
 TEST_CASE("a translating clump keeps its springs as a static one does") {
-  for (const Sticking& law : sticking_laws()) {
+  for (const AdhesiveLaw& law : adhesive_laws()) {
     CAPTURE(law.name);
     const Model model = clump(law);
     const State start = settled(model);
     REQUIRE(largest(Springs(start).forces) > 1);  // [N]
-    SimulationRun flying(model, moving(start, {0.3, -0.2, 0.1}, {}));
-    flying.run_until(2);
+    SimulationRun translating(model, moving(start, {0.3, -0.2, 0.1}, {}));
+    translating.run_until(2);
     CAPTURE(largest(Springs(start).forces), largest(Springs(start).moments), start.contacts.keys.size());
-    CHECK(
-        keeps(change(Springs(flying.complete_state()), Springs(start)), {.promise = 1e-6, .measured = 1e-9}));
+    CHECK(keeps(change(Springs(translating.complete_state()), Springs(start)),
+                {.promise = 1e-6, .measured = 1e-9}));
   }
 }
 
@@ -204,7 +204,7 @@ TEST_CASE("a translating clump keeps its springs as a static one does") {
 // own length.
 TEST_CASE("a clump that rotates rigidly rotates its springs with it") {
   const Vec3 axis = (1 / std::sqrt(Real(14))) * Vec3{1, -2, 3};
-  for (const Sticking& law : sticking_laws()) {
+  for (const AdhesiveLaw& law : adhesive_laws()) {
     CAPTURE(law.name);
     const Model model = clump(law);
     const State start = settled(model);

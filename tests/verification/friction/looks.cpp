@@ -45,12 +45,12 @@ void for_each_box(const Check& check) {
 
 TEST_CASE("queries of the bodies after a step and in reports do not change contact histories") {
   for_each_box([](const Model& model) {
-    RememberingBox one(model, {}, make_test_backend), looked_at(model, {}, make_test_backend);
-    for (RememberingBox* box : {&one, &looked_at}) box->start(), box->take_steps(60);
-    one.take_steps(40), looked_at.take_steps(40, kMovingStep, 3);
-    looked_at.backend->reports().ledger(kMovingStep), looked_at.backend->reports().carrier_contacts();
-    CHECK(difference(one.state().contacts, looked_at.state().contacts) == "");
-    CHECK(differing_fields(one.state().particles, looked_at.state().particles) == "");
+    RememberingBox one(model, {}, make_test_backend), queried(model, {}, make_test_backend);
+    for (RememberingBox* box : {&one, &queried}) box->start(), box->take_steps(60);
+    one.take_steps(40), queried.take_steps(40, kMovingStep, 3);
+    queried.backend->reports().ledger(kMovingStep), queried.backend->reports().carrier_contacts();
+    CHECK(difference(one.state().contacts, queried.state().contacts) == "");
+    CHECK(differing_fields(one.state().particles, queried.state().particles) == "");
     CHECK(!with_bodies(one).keys.empty());
   });
 }

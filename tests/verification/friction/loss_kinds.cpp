@@ -58,7 +58,7 @@ SimulationRun run_on_wall(const std::string& law, Vec3 velocity, Vec3 spin, Real
 }
 
 // Agitated spheres between walls that escape through one side. rubs: keys of the pair.
-Model leaving_model(const std::string& rubs, const std::vector<std::string>& settings) {
+Model escaping_model(const std::string& rubs, const std::vector<std::string>& settings) {
   return model_of(R"(
 [space]
 dimension = 3
@@ -155,7 +155,7 @@ TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave,
                                        Case{"tangential_damping_ratio = 0.2\n", hht}, Case{rolling, {}}})
     for (const std::string damping : {"", "damping = 20.0\n"}) {
       CAPTURE(rubs, damping, settings.size());
-      SimulationRun run(leaving_model(rubs + damping, settings));
+      SimulationRun run(escaping_model(rubs + damping, settings));
       RubbingLosses before{};
       Real grown_with_leavers = 0;
       run.run([&] {

@@ -69,27 +69,27 @@ Real per_step(std::int64_t count, const StepCounts& counts) {
 
 TEST_CASE("Newton iterations of a pack with friction") {
   struct Expected {
-    Real sharpness, slick, rubbing;  // iterations per step, without friction and with it
+    Real sharpness, frictionless, frictional;  // iterations per step, without friction and with it
     bool freezes;
   };
   for (const Expected& e : {Expected{0.63, 5.0, 4.5, false}, Expected{1.2, 6.0, 5.4, false},
                             Expected{1.9, 6.9, 6.5, false}, Expected{6.3, 11.7, 44, true}}) {
-    const StepCounts slick = counts_of(e.sharpness, 0), rubbing = counts_of(e.sharpness, 0.5);
-    const Real newton[2] = {per_step(slick.newton_iterations, slick),
-                            per_step(rubbing.newton_iterations, rubbing)};
+    const StepCounts frictionless = counts_of(e.sharpness, 0), frictional = counts_of(e.sharpness, 0.5);
+    const Real newton[2] = {per_step(frictionless.newton_iterations, frictionless),
+                            per_step(frictional.newton_iterations, frictional)};
     INFO(fmt::format(
         "sqrt(2K/m) h = {}: {:.1f} Newton iterations per step without friction, {:.1f} with it; {:.0f} "
         "and {:.0f} products; limits frozen in {} of {} steps, {} steps rejected",
-        e.sharpness, newton[0], newton[1], per_step(slick.linear_iterations, slick),
-        per_step(rubbing.linear_iterations, rubbing), rubbing.frozen_steps, rubbing.steps,
-        rubbing.rejected_newton));
+        e.sharpness, newton[0], newton[1], per_step(frictionless.linear_iterations, frictionless),
+        per_step(frictional.linear_iterations, frictional), frictional.frozen_steps, frictional.steps,
+        frictional.rejected_newton));
     const std::string sharpness = fmt::format("{}", e.sharpness);
-    CHECK(measured("newton/" + sharpness + ", slick", "", at_most(newton[0], 1.1 * e.slick)));
-    CHECK(measured("newton/" + sharpness + ", rubbing", "", at_most(newton[1], 1.1 * e.rubbing)));
-    note("newton/" + sharpness + ", products", "", per_step(rubbing.linear_iterations, rubbing));
-    note("newton/" + sharpness + ", frozen", "%", per_step(100 * rubbing.frozen_steps, rubbing));
-    note("newton/" + sharpness + ", rejected", "%", per_step(100 * rubbing.rejected_newton, rubbing));
-    CHECK((rubbing.frozen_steps > 0) == e.freezes);
+    CHECK(measured("newton/" + sharpness + ", slick", "", at_most(newton[0], 1.1 * e.frictionless)));
+    CHECK(measured("newton/" + sharpness + ", rubbing", "", at_most(newton[1], 1.1 * e.frictional)));
+    note("newton/" + sharpness + ", products", "", per_step(frictional.linear_iterations, frictional));
+    note("newton/" + sharpness + ", frozen", "%", per_step(100 * frictional.frozen_steps, frictional));
+    note("newton/" + sharpness + ", rejected", "%", per_step(100 * frictional.rejected_newton, frictional));
+    CHECK((frictional.frozen_steps > 0) == e.freezes);
   }
 }
 

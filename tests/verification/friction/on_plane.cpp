@@ -20,7 +20,7 @@ Real slip_period(Real mass, Real stiffness) { return swing_period(2 * mass / 7, 
 Real step_in(Real time, Real longest) { return time / std::ceil(time / longest); }
 
 struct RollingErrors {
-  Errors speed, place, loss;  // relative to v0, to x_roll, and to the slider's loss
+  Errors speed, position, loss;  // relative to v0, to x_roll, and to the slider's loss
 };
 
 // After the slip a sphere oscillates about v = 5/7 v0: five periods of it.
@@ -31,7 +31,7 @@ void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors
   const Grain grain{.velocity = {v0, 0, 0}, .radius = row["R"], .mass = row["m"]};
   SimulationRun run(
       resting_model(grain, row["mu"], row["kt"], 0, inclined_gravity(0), h, t_roll + 6 * period, settings));
-  errors.place.add(PlaneState(run, t_roll, h).x / row["x_roll"] - 1);
+  errors.position.add(PlaneState(run, t_roll, h).x / row["x_roll"] - 1);
   for (int k = 0; k <= 50; ++k) {
     const Real t = t_roll + k * period / 10;
     const PlaneState at(run, t, h);
@@ -76,7 +76,7 @@ TEST_CASE("a sphere that slides on a wall rolls in the end, at five sevenths of 
   }
   CHECK(keeps(coarse.speed.worst(), {.promise = 1e-2, .measured = 1.4e-3}));
   CHECK(keeps(fine.speed.worst(), {.promise = 1e-3, .measured = 1.2e-4}));
-  CHECK(keeps(fine.place.worst(), {.promise = 1e-3, .measured = 5.3e-5}));
+  CHECK(keeps(fine.position.worst(), {.promise = 1e-3, .measured = 5.3e-5}));
   CHECK(keeps(fine.loss.worst(), {.promise = 1e-4, .measured = 3.4e-6}));
   CHECK(order_between(coarse.speed, fine.speed) > 1.8);
 }
@@ -128,7 +128,7 @@ TEST_CASE("sliding, rolling and inclines in implicit steps") {
     }
     CHECK(keeps(coarse.speed.worst(), {.promise = 2e-2, .measured = 8e-3}));
     CHECK(keeps(fine.speed.worst(), {.promise = 5e-3, .measured = 1.5e-3}));
-    CHECK(keeps(fine.place.worst(), {.promise = 2e-3, .measured = 7.1e-4}));
+    CHECK(keeps(fine.position.worst(), {.promise = 2e-3, .measured = 7.1e-4}));
     CHECK(keeps(fine.loss.worst(), {.promise = 2e-3, .measured = 8.8e-4}));
     CHECK(order_between(coarse.speed, fine.speed) > 1.9);
     const Errors coarse_incline = incline_errors(100, implicit_steps(alpha)),

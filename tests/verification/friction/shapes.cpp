@@ -59,10 +59,10 @@ Model model_on(const Floor& floor, const std::string& body, Real slope, Real end
   return model;
 }
 
-std::string spatial_body(const Floor& floor, Vec3 place, Vec3 velocity, Real mass, Real inertia,
+std::string spatial_body(const Floor& floor, Vec3 start_position, Vec3 velocity, Real mass, Real inertia,
                          const std::string& shapes) {
   const Quaternion q = quaternion_of(floor.turn);
-  return "[[bodies]]\nname = \"body\"\nkind = \"spatial\"\nposition = " + text(floor.turn * place) +
+  return "[[bodies]]\nname = \"body\"\nkind = \"spatial\"\nposition = " + text(floor.turn * start_position) +
          "\nvelocity = " + text(floor.turn * velocity) +
          fmt::format(
              "\nquaternion = [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\nmass = {}\ninertia_tensor = [{}, {}, "
@@ -72,8 +72,8 @@ std::string spatial_body(const Floor& floor, Vec3 place, Vec3 velocity, Real mas
 
 constexpr Real kRadius = 0.1, kMass = 2, kSpeed = 3;
 std::string ball(const Floor& floor, Real speed = kSpeed) {
-  const Vec3 place{0, 0, kRadius - kMass * kGravity / kStiffness};
-  return spatial_body(floor, place, {speed, 0, 0}, kMass, 0.4 * kMass * kRadius * kRadius,
+  const Vec3 start_position{0, 0, kRadius - kMass * kGravity / kStiffness};
+  return spatial_body(floor, start_position, {speed, 0, 0}, kMass, 0.4 * kMass * kRadius * kRadius,
                       fmt::format("[{{ radius = {} }}]", kRadius));
 }
 

@@ -216,16 +216,16 @@ history_contacts = ["x_min", "x_max", "z_min"]
                              settings));
   run.run();
   const std::vector<Particle> after = run.particles();
-  Errors places, turns;
+  Errors start_positions, turns;
   for (const auto& row : spheres.rows()) {
     const auto i = static_cast<std::size_t>(row["i"]);
     const Vec3 start{i % 2 == 0 ? R : Real(0.034) - R, 0, R + 2 * R * kRise * static_cast<Real>(i)};
     const Vec3 moved = after[i].position - start;
-    places.add((moved.x - row["dx"]) / 1e-6), places.add((moved.z - row["dz"]) / 1e-6);
+    start_positions.add((moved.x - row["dx"]) / 1e-6), start_positions.add((moved.z - row["dz"]) / 1e-6);
     const Quaternion& q = after[i].orientation;
     turns.add((2 * q.y - row["theta"]) / 1e-4);
   }
-  CHECK(keeps(places.worst(), {.promise = 1e-3, .measured = 1e-8}));
+  CHECK(keeps(start_positions.worst(), {.promise = 1e-3, .measured = 1e-8}));
   CHECK(keeps(turns.worst(), {.promise = 1e-3, .measured = 2.6e-7}));
   CHECK(run.particle_ledger().kinetic < 1e-24);  // of some 1e-6 J
   // Forces on the walls, opposite to those on the spheres; both in the sums over a wall's contacts.

@@ -19,11 +19,11 @@ constexpr Real kRadius = 0.05, kStiffness = 1e5, kMass = 1, kSpin = 1e-6;
 std::string lattice_deck(Real slip_stiffness, Real damping_ratio, Real step, int steps) {
   const Real edge = 2 * kRadius * Real(0.999) * std::sqrt(Real(2)), length = kCells * edge;
   std::string positions;
-  for (int place = 0; place < kCells * kCells * kCells; ++place)
+  for (int position = 0; position < kCells * kCells * kCells; ++position)
     for (const Vec3 corner : {Vec3{0, 0, 0}, Vec3{0.5, 0.5, 0}, Vec3{0.5, 0, 0.5}, Vec3{0, 0.5, 0.5}}) {
-      const Vec3 p =
-          edge * (corner + Vec3{static_cast<Real>(place % kCells), static_cast<Real>(place / kCells % kCells),
-                                static_cast<Real>(place / kCells / kCells)});
+      const Vec3 p = edge * (corner + Vec3{static_cast<Real>(position % kCells),
+                                           static_cast<Real>(position / kCells % kCells),
+                                           static_cast<Real>(position / kCells / kCells)});
       positions += fmt::format("[{}, {}, {}], ", p.x, p.y, p.z);
     }
   std::string sides;

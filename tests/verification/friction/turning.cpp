@@ -30,7 +30,7 @@ SimulationRun& run_of(std::unique_ptr<SimulationRun>& run, Real h) {
 }
 
 // Angle between the orientation and the rotation by spin * t [rad].
-Real misturn(const Quaternion& q, Vec3 spin, Real t) {
+Real angle_error(const Quaternion& q, Vec3 spin, Real t) {
   const Real angle = norm(spin) * t / 2, s = std::sin(angle) / norm(spin);
   const Quaternion exact{std::cos(angle), s * spin.x, s * spin.y, s * spin.z};
   return 2 * std::acos(std::min(Real(1), std::abs(dot(q, exact))));
@@ -49,7 +49,7 @@ TEST_CASE("free spheres keep their spins, and their orientations follow them to 
       CHECK((after[k].angular_velocity == kFreeSpins[k]));
       CHECK(near(dot(after[k].orientation, after[k].orientation), 1, {.absolute = 4 * kUlp}));
       const Real w = norm(kFreeSpins[k]), promised = kEnd * w * (h * w) * (h * w) / 48;
-      const Real error = misturn(after[k].orientation, kFreeSpins[k], kEnd);
+      const Real error = angle_error(after[k].orientation, kFreeSpins[k], kEnd);
       CAPTURE(k, fine, error, promised);
       CHECK(error < 1.01 * promised + 1e-7);  // acos() near 1
       if (w > 100) errors[fine].add(error);

@@ -122,7 +122,7 @@ Overrides with(Overrides a, const Overrides& b) {
   return a;
 }
 
-const std::vector<Overrides> kImplicitWays = {
+const std::vector<Overrides> kImplicitVariants = {
     {"integrator.hht_alpha=0.0"},
     {"integrator.hht_alpha=-0.3"},
     {"integrator.contact_events=end-of-step"},
@@ -145,11 +145,11 @@ Bounded undamped_loss(const Outcome& run) {
 
 TEST_CASE("a particle that leaves while it touches another takes the contact's energy along") {
   for (const std::string policy : {"remove", "drift"}) {
-    std::vector<Overrides> ways = kImplicitWays;
-    ways.push_back({"integrator.particles=velocity-verlet"});
-    for (const Overrides& way : ways) {
-      CAPTURE(policy, text(way));
-      const Outcome run = outcome_of(kCrossing, with(way, {"space.leaving=" + policy}));
+    std::vector<Overrides> variants = kImplicitVariants;
+    variants.push_back({"integrator.particles=velocity-verlet"});
+    for (const Overrides& settings : variants) {
+      CAPTURE(policy, text(settings));
+      const Outcome run = outcome_of(kCrossing, with(settings, {"space.leaving=" + policy}));
       CHECK(run.left == 1);
       CHECK(measured("ledger/leaving", "",
                      keeps(run.largest_share(), {.promise = kRoundOff, .measured = 2e-13})));
@@ -192,14 +192,14 @@ TEST_CASE("particles that escape from a hopper leave the energies balanced") {
 }
 
 TEST_CASE("the energy error of oblique impacts in implicit steps is accounted to the integrator") {
-  for (const Overrides& way : kImplicitWays)
+  for (const Overrides& settings : kImplicitVariants)
     for (const std::string step : {"3e-4", "1e-3"}) {
-      CAPTURE(text(way), step);
-      const Outcome run = outcome_of(kOblique, with(way, {"time.step=" + step}));
+      CAPTURE(text(settings), step);
+      const Outcome run = outcome_of(kOblique, with(settings, {"time.step=" + step}));
       CHECK(run.exchanged > 1);
       CHECK(measured("ledger/implicit", "",
                      keeps(run.largest_share(), {.promise = kRoundOff, .measured = 2e-14})));
-      const bool damped = way.front().find("damping") != std::string::npos;
+      const bool damped = settings.front().find("damping") != std::string::npos;
       if (!damped) CHECK(undamped_loss(run));
       if (damped) CHECK((run.loses && run.end.dissipated_contacts > 0));
     }
@@ -280,10 +280,10 @@ shapes = [{{ radius = 0.05 }}]
       contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.02\nstep = 5e-4\n",
                    fmt::format(fmt::runtime(body), "left", -0.92, -3) +
                        fmt::format(fmt::runtime(body), "right", -0.81, -7));
-  for (const Overrides& way : kImplicitWays) {
-    CAPTURE(text(way));
-    const Outcome run = outcome_of(deck, way);
-    const bool damped = way.front().find("damping") != std::string::npos;
+  for (const Overrides& settings : kImplicitVariants) {
+    CAPTURE(text(settings));
+    const Outcome run = outcome_of(deck, settings);
+    const bool damped = settings.front().find("damping") != std::string::npos;
     CHECK((damped ? run.loses && run.end.dissipated_contacts > 0 : run.end.dissipated_contacts == 0));
     CHECK(keeps(run.largest_share(), {.promise = 1e-7, .measured = 5.9e-10}));
   }

@@ -187,7 +187,7 @@ TEST_CASE("above the Stribeck rate friction falls from its static value") {
 namespace {
 
 // On a pin at one end, released from horizontal; the load of the pin changes continuously.
-Model rubbing_pendulum(Real alpha) {
+Model frictional_pendulum(Real alpha) {
   Model model = empty_model();
   model.integrator.hht_alpha = alpha;
   model.bodies = {paper_disc("bob", 0.5, 0)};
@@ -197,7 +197,7 @@ Model rubbing_pendulum(Real alpha) {
 }
 
 // Crank and slider with friction in both pins, the wrist and the guide.
-Model rubbing_crank() {
+Model frictional_crank() {
   Model model = empty_model();
   model.integrator.hht_alpha = -0.1;
   const Real crank = 0.2, rod = 0.5, angle = 0.7;
@@ -259,9 +259,9 @@ Real apart(const std::vector<Real>& a, const std::vector<Real>& b) {
 TEST_CASE("friction under a changing load is of second order, in sliding and at reversal") {
   for (const Real end : {0.3, 1.2}) {  // in the first oscillation; after two revolutions
     INFO("until " << end);
-    const Outcome exact = outcome_of(rubbing_pendulum(-0.1), 5e-5, end),
-                  coarse = outcome_of(rubbing_pendulum(-0.1), 4e-3, end),
-                  fine = outcome_of(rubbing_pendulum(-0.1), 5e-4, end);
+    const Outcome exact = outcome_of(frictional_pendulum(-0.1), 5e-5, end),
+                  coarse = outcome_of(frictional_pendulum(-0.1), 4e-3, end),
+                  fine = outcome_of(frictional_pendulum(-0.1), 5e-4, end);
     CHECK(apart(coarse.position, exact.position) < 1e-3);
     CHECK(apart(coarse.position, exact.position) / apart(fine.position, exact.position) > 50);
     CHECK(apart(coarse.velocity, exact.velocity) / apart(fine.velocity, exact.velocity) > 50);
@@ -273,8 +273,9 @@ TEST_CASE("friction under a changing load is of second order, in sliding and at 
 }
 
 TEST_CASE("a crank with friction in all joints is of second order and balances its energy to round-off") {
-  const Outcome exact = outcome_of(rubbing_crank(), 1e-4, 1), coarse = outcome_of(rubbing_crank(), 4e-3, 1),
-                fine = outcome_of(rubbing_crank(), 1e-3, 1);
+  const Outcome exact = outcome_of(frictional_crank(), 1e-4, 1),
+                coarse = outcome_of(frictional_crank(), 4e-3, 1),
+                fine = outcome_of(frictional_crank(), 1e-3, 1);
   CHECK(apart(coarse.position, exact.position) < 2e-3);
   CHECK(apart(coarse.position, exact.position) / apart(fine.position, exact.position) > 12);
   CHECK(fine.dissipated > 1.5);
@@ -284,7 +285,7 @@ TEST_CASE("a crank with friction in all joints is of second order and balances i
 }
 
 TEST_CASE("a rejected step leaves no trace in friction") {
-  const Model model = rubbing_pendulum(-0.1);
+  const Model model = frictional_pendulum(-0.1);
   MultibodyRun straight(model), tried(model);
   const ContactWrenches none{std::vector<BodyWrench>(1), {}};
   for (int i = 0; i < 200; ++i) {

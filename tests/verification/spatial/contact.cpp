@@ -50,7 +50,7 @@ std::string deck(const std::string& particles, const Quaternion* frame) {
 struct Outcome {
   Real spin;      // of the plate about the revolute joint [rad/s]
   Vec3 velocity;  // of the particle, in the scene's frame [m/s]
-  Vec3 grain_spin;
+  Vec3 particle_spin;
   Real dissipated;
 };
 
@@ -69,7 +69,7 @@ void check_same(const Outcome& one, const Outcome& other, Real bound) {
   const Within allowed{.relative = bound};
   CHECK(measured("plate/motion", "", near(one.spin, other.spin, allowed)));
   CHECK(measured("plate/motion", "", near(one.velocity, other.velocity, allowed)));
-  CHECK(measured("plate/motion", "", near(one.grain_spin, other.grain_spin, allowed)));
+  CHECK(measured("plate/motion", "", near(one.particle_spin, other.particle_spin, allowed)));
   CHECK(measured("plate/motion", "", near(one.dissipated, other.dissipated, allowed)));
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("spheres on a spatial body collide with particles as those on a planar
     CAPTURE(particles);
     const Outcome planar = outcome(particles, nullptr);
     CHECK(std::abs(planar.spin) > 2);
-    CHECK(norm(planar.grain_spin) > 1);
+    CHECK(norm(planar.particle_spin) > 1);
     const Quaternion aligned, turned = normalized({0.4, 0.5, -0.2, 0.7});
     check_same(outcome(particles, &aligned), planar, kIterated);
     check_same(outcome(particles, &turned), planar, kIterated);

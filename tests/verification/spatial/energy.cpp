@@ -89,32 +89,32 @@ void add_bushing(Model& model) {
   model.bushings = {rubber};
 }
 
-struct Books {
+struct Balance {
   Real gap = 0;  // largest error of the energy balance [J]
   Real dissipated = 0, driven = 0, stored = 0;
 };
 
-Books books_of(const Model& model, Real h) {
+Balance balance_of(const Model& model, Real h) {
   MultibodyRun run(model, 1e-11);
   const Real start = energy(run);
-  Books books;
+  Balance balance;
   for (int i = 0; i < static_cast<int>(std::lround(1 / h)); ++i) {
     run.step(h);
-    books.gap = std::max(books.gap, std::abs(energy(run) - start));
-    books.stored = std::max(books.stored, run.multibody.energies(run.state, run.time).elastic);
+    balance.gap = std::max(balance.gap, std::abs(energy(run) - start));
+    balance.stored = std::max(balance.stored, run.multibody.energies(run.state, run.time).elastic);
   }
-  books.dissipated = run.state.dissipated, books.driven = run.state.driver_work;
-  return books;
+  balance.dissipated = run.state.dissipated, balance.driven = run.state.driver_work;
+  return balance;
 }
 
 // Over four steps, each half of the one before. dissipated, driven, stored: at least [J].
 void check_order(const Model& model, Real dissipated, Real driven, Real stored) {
-  Books before = books_of(model, 2e-3);
+  Balance before = balance_of(model, 2e-3);
   const Real first = before.gap;
   for (const Real h : {1e-3, 5e-4, 2.5e-4}) {
-    const Books books = books_of(model, h);
-    CHECK(measured("crane/halved", "", in_range(before.gap / books.gap, 3.6, 4.4)));
-    before = books;
+    const Balance balance = balance_of(model, h);
+    CHECK(measured("crane/halved", "", in_range(before.gap / balance.gap, 3.6, 4.4)));
+    before = balance;
   }
   CHECK(measured("crane/order", "", at_least(std::log2(first / before.gap) / 3, 1.95)));
   CHECK(before.gap < 1e-5);

@@ -92,7 +92,7 @@ TEST_CASE(
 namespace {
 
 // Two free bodies in rigid rotation, on a joint between them.
-Model flying_pair(JointKind kind) {
+Model free_pair(JointKind kind) {
   Model model = spatial_model(-0.05);
   model.gravity = {};
   model.bodies = {spatial_body("one", 2, {0.1, 0.2, 0.15}, {0, 0, 0}),
@@ -106,7 +106,7 @@ Model flying_pair(JointKind kind) {
 
 // A motor, a spring and a limit on the displacement.
 Model pushed_pair() {
-  Model model = flying_pair(JointKind::translational);
+  Model model = free_pair(JointKind::translational);
   model.motors = {pusher(0.5, 4, 10)};
   model.motors[0].limit = 3;
   model.joint_springs = {{"spring", 0, 20, 0.5, {}, {}, {}}};
@@ -118,7 +118,7 @@ Model pushed_pair() {
 
 // Those on the displacement of a cylindrical joint, and others on its angle.
 Model pushed_and_turned_pair() {
-  Model model = flying_pair(JointKind::cylindrical);
+  Model model = free_pair(JointKind::cylindrical);
   const Model pushed = pushed_pair();
   for (const JointCoordinate coordinate : {JointCoordinate::displacement, JointCoordinate::angle}) {
     for (Motor e : pushed.motors) e.coordinate = coordinate, model.motors.push_back(e);
@@ -131,7 +131,7 @@ Model pushed_and_turned_pair() {
   return model;
 }
 
-void check_momentum_and_books(const Model& model) {
+void check_momentum_and_energy(const Model& model) {
   struct Gap {
     Real energy = 0, momentum = 0, spin = 0;
   };
@@ -173,6 +173,6 @@ void check_momentum_and_books(const Model& model) {
 }  // namespace
 
 TEST_CASE("efforts on a joint between two free rotating bodies keep momentum, and balance the energy") {
-  check_momentum_and_books(pushed_pair());
-  check_momentum_and_books(pushed_and_turned_pair());
+  check_momentum_and_energy(pushed_pair());
+  check_momentum_and_energy(pushed_and_turned_pair());
 }

@@ -206,7 +206,7 @@ Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, V
 }
 
 // Power of the reaction on the joint's own motion, and whether the joint can transmit the reaction.
-void look_at_reaction(const Model& model, const Balance& b, Real t, Gaps& gaps) {
+void check_reaction(const Model& model, const Balance& b, Real t, Gaps& gaps) {
   const Vec3 force = b.reaction.force, torque = b.reaction.torque;
   gaps.most = std::max(gaps.most, norm(force) + norm(torque));
   const BodyMotion &one = b.motion[0], &two = b.motion[1];
@@ -247,7 +247,7 @@ Gaps gaps_of(const Model& model, Real h) {
     const Momentum now = momentum_of(after, model);
     gaps.impulse = std::max(gaps.impulse, norm(now.linear - start.linear - given.linear));
     gaps.swing = std::max(gaps.swing, norm(now.angular - start.angular - given.angular));
-    look_at_reaction(model, after, run.time, gaps);
+    check_reaction(model, after, run.time, gaps);
     before = after;
   }
   return gaps;

@@ -25,15 +25,15 @@ constexpr Real kRadius = 1e-3, kYoung = 1e5, kWork = 0.1, kPi = std::numbers::pi
 
 // Johnson, Kendall and Roberts' closed forms, for R*.
 Real pull_off(Real radius) { return 1.5 * kPi * kWork * radius; }
-Real longest_neck(Real radius) {
+Real pull_off_distance(Real radius) {
   return 3 * std::cbrt(kPi * kPi * kWork * kWork * radius / (64 * kYoung * kYoung));
 }
-Real neck_loss(Real radius) {
+Real formation_loss(Real radius) {
   return 7.09219597186396 * std::cbrt(std::pow(kWork, 5) * std::pow(radius, 4) / (kYoung * kYoung));
 }
 
 // A heavy sphere in touch with a target at z = 0 below it.
-struct StickyDeck {
+struct CohesiveDeck {
   std::string target;  // tables of the contact record's "target"
   Real step = 1e-6, end = 1.2e-3;
   std::string law = fmt::format("work_of_adhesion = {}\n", kWork);
@@ -79,10 +79,10 @@ struct Pull {
   Real largest = 0;  // [N]
   Real broken = 0;   // displacement of the target at that time [m]
   Real last = 0;     // before the break [N]
-  Real books = 0;    // balance error [J]
+  Real balance = 0;  // balance error [J]
 };
 
-Pull pull_apart(const StickyDeck& deck) {
+Pull pull_apart(const CohesiveDeck& deck) {
   SimulationRun run(deck.model());
   Pull out;
   REQUIRE(run.particle_ledger().contacts == 1);
@@ -101,7 +101,7 @@ Pull pull_apart(const StickyDeck& deck) {
   REQUIRE(out.broken > 0);
   run.run();
   CHECK(run.particle_ledger().contacts == 0);
-  out.books = run.balance_error();
+  out.balance = run.balance_error();
   return out;
 }
 
@@ -140,10 +140,11 @@ TEST_CASE("JKR holds a sphere with up to 3/2 pi w R*, and breaks at the pull-off
     CHECK(measured("neck/pull_off", "",
                    keeps(pull.largest / pull_off(c.radius) - 1, {.promise = 1e-5, .measured = 4.2e-8})));
     CHECK(near(pull.last, Real(5) / 9 * pull_off(c.radius), {.relative = 0.1}));
-    const Real way = kSpeed * 1e-6;  // displacement in a step [m]
-    CHECK(measured("neck/length", "steps", at_most((pull.broken - longest_neck(c.radius)) / way, 1.1)));
+    const Real displacement = kSpeed * 1e-6;  // displacement in a step [m]
+    CHECK(measured("neck/length", "steps",
+                   at_most((pull.broken - pull_off_distance(c.radius)) / displacement, 1.1)));
     CHECK(measured("neck/balance", "",
-                   keeps(pull.books / neck_loss(c.radius), {.promise = 1e-2, .measured = 6e-4})));
+                   keeps(pull.balance / formation_loss(c.radius), {.promise = 1e-2, .measured = 6e-4})));
   }
 }
 
@@ -156,7 +157,7 @@ TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
         "{{ type = \"translation\", direction = {}, displacement = {{ kind = \"ramp\", rate = {} }} }}",
         direction, rate);
   };
-  const StickyDeck deck{
+  const CohesiveDeck deck{
       .target = box(fmt::format("offset = [{:.17g}, 0.0002, -0.005]\nrefine = 0.0003\n", kEdge - 0.005)) +
                 "[[walls]]\nname = \"target\"\nmaterial = \"stiff\"\nmesh = \"box\"\nmotions = [" +
                 ramp("[-1, 0, 0]", kAcross) + ", " + ramp("[0, 0, -1]", kSinking) + "]\n"};
@@ -171,7 +172,7 @@ TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
     const Real overlap = kRadius - std::sqrt(over * over + past * past);
     const std::vector<Real> on_target = run.contact_values();
     const Real pull = norm(Vec3{on_target[0], on_target[1], on_target[2]});
-    if (overlap < -0.999 * longest_neck(kRadius)) continue;
+    if (overlap < -0.999 * pull_off_distance(kRadius)) continue;
     CHECK(near(pull, std::abs(law.elastic(overlap)), {.relative = 1e-8, .absolute = 1e-9 * law.pull_off}));
     beyond_touch += overlap<0, past_edge += past> 0;
   }
@@ -182,10 +183,10 @@ TEST_CASE("a JKR contact moves along a face and over its edge without a jump") {
 namespace {
 
 // A light sphere that hits the target, with a JKR contact that forms and breaks.
-StickyDeck thrown_on(const std::string& target, Real mass, Real speed, Real step) {
+CohesiveDeck impact_on(const std::string& target, Real mass, Real speed, Real step) {
   return {.target = target,
           .step = step,
-          .end = 40 * longest_neck(kRadius) / speed,
+          .end = 40 * pull_off_distance(kRadius) / speed,
           .grain = fmt::format("positions = [[0, 0, {:.17g}]]\nvelocity = [0, 0, {}]\nmass = {}\n",
                                kRadius + speed * step / 2, -speed, mass)};
 }
@@ -229,11 +230,11 @@ TEST_CASE(
        kRadius * kSphere / (kRadius + kSphere), both, false}};
   for (const Case& c : cases) {
     CAPTURE(c.name);
-    const Real loss = neck_loss(c.radius), speed = 2 * std::sqrt(2 * loss / c.mass);
-    Real books[2];
+    const Real loss = formation_loss(c.radius), speed = 2 * std::sqrt(2 * loss / c.mass);
+    Real balance[2];
     for (const int k : {0, 1}) {
-      const Real step = longest_neck(c.radius) / speed / (50 * (1 + 3 * k));
-      StickyDeck deck = thrown_on(c.target, kMass, speed, step);
+      const Real step = pull_off_distance(c.radius) / speed / (50 * (1 + 3 * k));
+      CohesiveDeck deck = impact_on(c.target, kMass, speed, step);
       deck.output = c.mesh ? "surface_fields = [\"impact_work\"]\n" : "";
       SimulationRun run(deck.model());
       while (run.particle_ledger().contacts == 0) run.step();
@@ -247,11 +248,11 @@ TEST_CASE(
       const Real away = run.particles()[0].velocity.z -
                         (c.mass < kMass ? run.multibody().motion(run.bodies())[0].velocity.z : 0);
       CHECK(near(c.mass / 2 * (speed * speed - away * away), loss, {.relative = 3e-2}));
-      books[k] = std::abs(run.balance_error()) / loss;
+      balance[k] = std::abs(run.balance_error()) / loss;
     }
-    CAPTURE(books[0], books[1]);
-    CHECK(books[1] < 1e-2);
-    CHECK(books[1] < 0.5 * books[0]);
+    CAPTURE(balance[0], balance[1]);
+    CHECK(balance[1] < 1e-2);
+    CHECK(balance[1] < 0.5 * balance[0]);
   }
 }
 
@@ -276,13 +277,13 @@ TEST_CASE("a JKR contact under tension continues after a restart, whatever its l
       {moved("point = [0, 0, 0]\nnormal = [0, 0, 1]\n"), 0, 0}};
   for (const Case& c : cases) {
     CAPTURE(c.target);
-    Model model = StickyDeck{.target = c.target, .law = law, .grain = grain(c.start)}.model();
+    Model model = CohesiveDeck{.target = c.target, .law = law, .grain = grain(c.start)}.model();
     SimulationRun whole(model), first(model);
     const auto gap = [&] {
       const Vec3 p = first.particles()[0].position + Vec3{0, 0, kSpeed * first.time()};
       return (c.radius > 0 ? norm(p + Vec3{0, 0, c.radius}) - c.radius : p.z) - kRadius;
     };
-    while (!(gap() > longest_neck(kRadius) / 3)) first.step();
+    while (!(gap() > pull_off_distance(kRadius) / 3)) first.step();
     REQUIRE(first.particle_ledger().contacts == 1);
     SimulationRun second(model, first.complete_state());
     whole.run(), second.run();
@@ -303,7 +304,7 @@ TEST_CASE("contacts between bodies and with walls are those without cohesion") {
            "\"grain\" }]\n";
   };
   const auto end_of = [&](const std::string& law) {
-    const StickyDeck deck{
+    const CohesiveDeck deck{
         .target = ball("target", "position = [0, 0, -0.005]\nvelocity = [0, 0.01, -0.5]\n") +
                   ball("other", "position = [0, 0.0005, -0.0095]\nvelocity = [0, 0, 0.2]\n") +
                   "[[walls]]\nname = \"floor\"\npoint = [0, 0, -0.0117]\nnormal = [0, 0, 1]\nmaterial = "

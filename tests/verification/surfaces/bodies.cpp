@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 // A free block and a particle that hits its upper side off its centre.
-std::string block_and_grain(const std::string& method, Real step, const std::string& more = "") {
+std::string block_and_particle(const std::string& method, Real step, const std::string& more = "") {
   return fmt::format(
       "[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[time]\nend = 0.02\nstep = "
       "{:.17g}\ncontrol = "
@@ -58,7 +58,7 @@ TEST_CASE("a block of triangles hit off its centre moves by the impulse, better 
   Real errors[2];
   for (const int k : {0, 1}) {
     const Real stiffness = k == 0 ? 1e5 : 1e7;
-    const Model model = model_of(block_and_grain("velocity-verlet", k == 0 ? 4e-5 : 4e-6),
+    const Model model = model_of(block_and_particle("velocity-verlet", k == 0 ? 4e-5 : 4e-6),
                                  {fmt::format("contact.pairs.0.stiffness={}", stiffness)});
     SimulationRun run(model);
     run.run();
@@ -85,9 +85,9 @@ TEST_CASE(
   for (const std::string method : {"velocity-verlet", "hht"}) {
     Real drift[2];
     for (const int k : {0, 1}) {
-      const Model model =
-          model_of(block_and_grain(method, 1e-4 / (1 + k), "friction = 0.4\ntangential_damping_ratio = 0.1"),
-                   {"particles.grain.velocity=[1.5, -0.5, -2]"});
+      const Model model = model_of(
+          block_and_particle(method, 1e-4 / (1 + k), "friction = 0.4\ntangential_damping_ratio = 0.1"),
+          {"particles.grain.velocity=[1.5, -0.5, -2]"});
       SimulationRun run(model);
       const Momenta before = momenta(run, model);
       run.run();
@@ -104,7 +104,7 @@ TEST_CASE(
 
 // The block rotated in space, hit along its own axes.
 TEST_CASE("a rotated and moved mesh has the same contact forces") {
-  const Model upright = model_of(block_and_grain("velocity-verlet", 4e-5, "friction = 0.4"));
+  const Model upright = model_of(block_and_particle("velocity-verlet", 4e-5, "friction = 0.4"));
   Model turned = upright;
   const Quaternion frame = normalized({0.4, 0.5, -0.2, 0.7});
   const Mat3 a = rotation_matrix(frame);

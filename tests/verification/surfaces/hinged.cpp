@@ -78,7 +78,7 @@ TEST_CASE(
       CAPTURE(method, alpha);
       const Model model = model_of(deck(method, alpha));
       SimulationRun run(model);
-      Real largest = 0, force_error = 0, torque_error = 0, record_error = 0, grain_error = 0;
+      Real largest = 0, force_error = 0, torque_error = 0, record_error = 0, particle_error = 0;
       while (run.time() < kEnd - kStep / 2) {
         run.step();
         const Sums now = sums_of(run, model);
@@ -89,7 +89,7 @@ TEST_CASE(
         raise(torque_error, rates.angular - now.torque);
         raise(record_error, now.recorded - now.contact);
         const Particle grain = run.particles()[0];
-        raise(grain_error, grain.force - kMass * Vec3{0, 0, -kGravity} + now.contact);
+        raise(particle_error, grain.force - kMass * Vec3{0, 0, -kGravity} + now.contact);
       }
       CHECK(largest > 30);
       CHECK(run.multibody().motion(run.bodies())[0].spin.y > 3);
@@ -99,7 +99,7 @@ TEST_CASE(
       // step.
       if (method != "hht") continue;
       CHECK(record_error < kIterated * largest);
-      CHECK(grain_error < kIterated * largest);
+      CHECK(particle_error < kIterated * largest);
     }
 }
 

@@ -51,9 +51,9 @@ BodyMotion motion_of(const SimulationRun& run) { return run.multibody().motion(r
 Vec3 axis_z(const BodyMotion& motion) { return transposed(rotation_matrix(motion.orientation)).z; }
 
 // Force of the planes on the corners of a box at these positions, frictionless and without damping [N].
-Vec3 force_at(const std::vector<Vec3>& places, Vec3 point, Vec3 normal) {
+Vec3 force_at(const std::vector<Vec3>& positions, Vec3 point, Vec3 normal) {
   Vec3 force;
-  for (const Vec3 place : places)
+  for (const Vec3 place : positions)
     force += kStiffness * std::max(-dot(normal, place - point), Real(0)) * normal;
   return force;
 }
@@ -237,13 +237,13 @@ TEST_CASE("forces of corners on planes are those of all vertices of the box that
            fmt::format("bodies.crate.quaternion=[{:.17g}, {:.17g}, {:.17g}, {:.17g}]", pose.w, pose.x, pose.y,
                        pose.z)});
       SimulationRun run(model);
-      std::vector<Vec3> places;
+      std::vector<Vec3> positions;
       for (int c = 0; c < 8; ++c)
-        places.push_back(Vec3{0.02, 0.01, height} + rotation_matrix(pose) * Vec3{c & 1 ? 0.1 : -0.1,
-                                                                                 c & 2 ? 0.1 : -0.1,
-                                                                                 c & 4 ? 0.1 : -0.1});
+        positions.push_back(Vec3{0.02, 0.01, height} + rotation_matrix(pose) * Vec3{c & 1 ? 0.1 : -0.1,
+                                                                                    c & 2 ? 0.1 : -0.1,
+                                                                                    c & 4 ? 0.1 : -0.1});
       const Vec3 slope = (1 / std::sqrt(Real(1.29))) * Vec3{-1, 0.2, 0.5};
-      const Vec3 expected = force_at(places, {}, {0, 0, 1}) + force_at(places, {0.1, 0, 0}, slope);
+      const Vec3 expected = force_at(positions, {}, {0, 0, 1}) + force_at(positions, {0.1, 0, 0}, slope);
       const std::vector<Real> found = run.contact_values();
       CHECK(near(Vec3{found[0], found[1], found[2]}, expected, {.relative = 1e-12}));
     }

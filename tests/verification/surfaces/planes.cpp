@@ -106,8 +106,8 @@ TEST_CASE(
       if (plane.contacts.numbers == 0) on_mesh.contacts = {};  // contacts that began above the open surface
       CHECK(differing_arrays(pack(on_mesh), pack(plane)) == "");
     }
-    const State on_placed = end_of(model_of(deck + kPlane + kStill));
-    CHECK(differing_arrays(pack(on_placed), pack(plane)) == kWrench);
+    const State on_posed = end_of(model_of(deck + kPlane + kStill));
+    CHECK(differing_arrays(pack(on_posed), pack(plane)) == kWrench);
   }
 }
 

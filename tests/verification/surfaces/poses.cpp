@@ -23,29 +23,30 @@ constexpr Real kReach = 0.35;  // of the block from its centre, and a sphere [m]
 std::string text(Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
 // Random positions around a block, over its faces, edges and corners, and separated from each other.
-std::vector<Vec3> places_around(Vec3 half) {
+std::vector<Vec3> positions_around(Vec3 half) {
   MeshRandom random(3);
-  std::vector<Vec3> places;
-  for (int i = 0; places.size() < kSpheres; ++i) {
+  std::vector<Vec3> positions;
+  for (int i = 0; positions.size() < kSpheres; ++i) {
     const int outside = i % 7 + 1;  // along which axes, by bits
     const auto along = [&](Real h, bool out) {
       if (!out) return random.in(-h, h);
       return (random.in(-1, 1) > 0 ? 1 : -1) * (h + random.in(0.2, 0.5) * kRadius);
     };
     const Real x = along(half.x, outside & 1), y = along(half.y, outside & 2), z = along(half.z, outside & 4);
-    const Vec3 place{x, y, z};
-    if (std::all_of(places.begin(), places.end(),
-                    [&](Vec3 other) { return norm(place - other) > 3 * kRadius; }))
-      places.push_back(place);
+    const Vec3 position{x, y, z};
+    if (std::all_of(positions.begin(), positions.end(),
+                    [&](Vec3 other) { return norm(position - other) > 3 * kRadius; }))
+      positions.push_back(position);
   }
-  return places;
+  return positions;
 }
 
 // One step of resting spheres that overlap a block at the pose that it has at the end of the step.
 std::string pressed_spheres(Vec3 centre, const std::string& wall) {
   const Vec3 half{0.2, 0.15, 0.1};
-  std::string places;
-  for (const Vec3 place : places_around(half)) places += (places.empty() ? "" : ", ") + text(centre + place);
+  std::string positions;
+  for (const Vec3 position : positions_around(half))
+    positions += (positions.empty() ? "" : ", ") + text(centre + position);
   const Vec3 far{1, 1, 1};
   return "[space]\ndimension = 3\nmin = " + text(centre - far) + "\nmax = " + text(centre + far) +
          fmt::format("\n[time]\nend = {0}\nstep = {0}\ncontrol = \"fixed\"\n", kStep) +
@@ -57,7 +58,7 @@ std::string pressed_spheres(Vec3 centre, const std::string& wall) {
          "\n[[walls]]\nname = \"block\"\nmesh = \"block\"\n" + wall +
          fmt::format(
              "[[particles]]\nname = \"spheres\"\nkind = \"list\"\npositions = [{}]\nradius = {}\nmass = {}\n",
-             places, kRadius, kMass);
+             positions, kRadius, kMass);
 }
 
 // Forces at the end of the step [N].
@@ -81,9 +82,9 @@ std::string motion(const std::string& what, const std::string& coordinate, Real 
   return fmt::format("motions = [{{ {}, {} = {{ kind = \"ramp\", rate = {:.17g} }} }}]\n", what, coordinate,
                      change / kStep);
 }
-std::string spheres_where_it_comes_to(Vec3 place) {
-  return pressed_spheres(
-      place, motion("type = \"translation\", direction = " + text(place), "displacement", norm(place)));
+std::string spheres_where_it_comes_to(Vec3 position) {
+  return pressed_spheres(position, motion("type = \"translation\", direction = " + text(position),
+                                          "displacement", norm(position)));
 }
 
 }  // namespace

@@ -99,19 +99,19 @@ Carried carried_over(const Fold& fold, const std::string& method, Vec3 spring) {
 }  // namespace
 
 TEST_CASE("a spring crosses a fold at its length, rotated into the next plane") {
-  constexpr Real kKept = 1e-12, kAcross = 1e-3, kAlong = 8e-4;  // the last two: [N]
+  constexpr Real kConserved = 1e-12, kAcross = 1e-3, kAlong = 8e-4;  // the last two: [N]
   for (const std::string& method : kMethods)
     for (const Real degrees : kDegrees) {
       const Fold fold{degrees * M_PI / 180};
       CAPTURE(method, degrees);
       const Carried straight = carried_over(fold, method, {kAcross, 0, 0});
       CHECK((straight.edge_steps > 100) == (degrees > 0));
-      CHECK(straight.longest_error < kKept);
-      CHECK(near(straight.spring, kAcross * fold.along, {.relative = kKept}));
+      CHECK(straight.longest_error < kConserved);
+      CHECK(near(straight.spring, kAcross * fold.along, {.relative = kConserved}));
       // It makes the sphere spin about the next normal, and rotates with it.
       const Carried oblique = carried_over(fold, method, {kAcross, kAlong, 0});
-      CHECK(oblique.longest_error < kKept);
-      CHECK(std::abs(dot(oblique.spring, fold.normal)) < kKept * kAcross);
+      CHECK(oblique.longest_error < kConserved);
+      CHECK(std::abs(dot(oblique.spring, fold.normal)) < kConserved * kAcross);
       CHECK(near(oblique.spring.y, kAlong, {.relative = 1e-3}));
     }
 }

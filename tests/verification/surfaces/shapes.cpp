@@ -67,11 +67,11 @@ TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and c
     for (const Vec3 towards : {Vec3{0, 0, 1}, Vec3{0, 1, 1}, Vec3{1, 1, 1}}) {
       CAPTURE(method, towards.x, towards.y);
       const Vec3 normal = (1 / norm(towards)) * towards;
-      const Vec3 place =
+      const Vec3 start_position =
           0.1 * towards + (kRadius + kGap) * normal + (towards.x > 0 ? Vec3{} : Vec3{0.013, 0, 0});
       const Vec3 velocity = -kSpeed * normal + 0.3 * cross(normal, Vec3{1, 0, 0});
       SimulationRun run(model_of(setup("", method) + "[[walls]]\nname = \"box\"\nmesh = \"box\"\n" +
-                                 sphere(place, velocity)));
+                                 sphere(start_position, velocity)));
       run.run();
       REQUIRE(run.particle_ledger().contacts == 0);
       const Vec3 found = run.multibody().motion(run.bodies())[0].velocity;
@@ -86,8 +86,8 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};  // from the box's centre to the point of contact
-    const Vec3 place = Vec3{0, 0, kRadius + kGap} - arm;
-    SimulationRun run(model_of(setup("", method) + sphere({}, {}) + box(place, {0, 0, -kSpeed})));
+    const Vec3 start_position = Vec3{0, 0, kRadius + kGap} - arm;
+    SimulationRun run(model_of(setup("", method) + sphere({}, {}) + box(start_position, {0, 0, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
     const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
     run.run();
@@ -109,9 +109,9 @@ TEST_CASE(
   for (const std::string& method : kMethods) {
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};
-    const Vec3 place = Vec3{0, 0, kRadius + kGap} - arm;
-    SimulationRun run(
-        model_of(setup("friction = 0.4\n", method) + sphere({}, {}) + box(place, {0.5, -0.2, -kSpeed})));
+    const Vec3 start_position = Vec3{0, 0, kRadius + kGap} - arm;
+    SimulationRun run(model_of(setup("friction = 0.4\n", method) + sphere({}, {}) +
+                               box(start_position, {0.5, -0.2, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
     const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
     run.run();

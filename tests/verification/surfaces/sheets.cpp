@@ -25,7 +25,7 @@ constexpr Real kRadius = 1, kMass = 1, kStiffness = 1, kInertia = 0.4 * kMass * 
 const std::string kMethods[] = {"velocity-verlet", "hht"};
 
 // A particle that hits the open surface "sheet", 6 m wide around the origin, at z = 0.
-struct SheetDeck {
+struct SurfaceDeck {
   std::string method = "velocity-verlet";
   Real friction = 0;
   std::string grain = "positions = [[0.3, 0.2, 1.5]]\nvelocity = [0.4, 0.0, -1.5]\n";
@@ -74,7 +74,7 @@ void write_strip(const std::string& file, const Strip& strip) {
     }
 }
 
-Vec3 force_on_sheet(SimulationRun& run) {
+Vec3 force_on_surface(SimulationRun& run) {
   const std::vector<Real> values = run.contact_values();
   return {values[0], values[1], values[2]};
 }
@@ -90,12 +90,12 @@ TEST_CASE("a particle whose centre penetrates an open surface is pushed back by 
   for (const std::string& method : kMethods)
     for (const Real friction : {0.0, 0.3}) {
       CAPTURE(method, friction);
-      SimulationRun run(SheetDeck{method, friction}.model());
+      SimulationRun run(SurfaceDeck{method, friction}.model());
       Real lowest = 1, worst = 0, most = 0;
       while (run.time() < 4.99) {
         run.step();
         const Particle p = run.particles()[0];
-        const Vec3 force = force_on_sheet(run);
+        const Vec3 force = force_on_surface(run);
         const Real overlap = std::max(kRadius - p.position.z, Real(0)), rub = std::hypot(force.x, force.y);
         worst = std::max(worst, std::abs(force.z + kStiffness * overlap));
         most = std::max(most, rub - friction * kStiffness * overlap);
@@ -119,7 +119,7 @@ TEST_CASE("lists, restarts and moving bodies do not change on which side of an o
   for (const std::string& method : kMethods)
     for (const Real friction : {0.0, 0.3}) {
       CAPTURE(method, friction);
-      SheetDeck deck{method, friction};
+      SurfaceDeck deck{method, friction};
       SimulationRun whole(deck.model());
       whole.run_until(2);
       const State half = whole.complete_state();
@@ -198,22 +198,22 @@ TEST_CASE("shapes keep their side of open surfaces of bodies: momentum and energ
   const std::string ball = fmt::format(fmt::runtime(body), "ball") +
                            "position = [0, 0, 1.5]\nvelocity = [0, 0, -1.5]\nshapes = [{ radius = 1.0 }]\n";
   const std::string far = "positions = [[7, 7, 7]]\n",
-                    thrown = "positions = [[0, 0, 1.5]]\nvelocity = [0, 0, -2.0]\n";
+                    launched = "positions = [[0, 0, 1.5]]\nvelocity = [0, 0, -2.0]\n";
   for (const std::string& method : kMethods)
     for (const Real friction : {0.0, 0.3}) {
       CAPTURE(method, friction);
-      SimulationRun grain(SheetDeck{method, friction, thrown, "[0, 0, 0]", plate}.model());
+      SimulationRun grain(SurfaceDeck{method, friction, launched, "[0, 0, 0]", plate}.model());
       grain.run();
       CHECK(std::abs(grain.particles()[0].velocity.z) < 1e-3);
       CHECK(near(grain.bodies().velocity[2], -2.0, {.relative = 1e-3}));
-      SimulationRun shape(SheetDeck{method, friction, far, "[0, 0, 0]", ball + wall}.model());
+      SimulationRun shape(SurfaceDeck{method, friction, far, "[0, 0, 0]", ball + wall}.model());
       shape.run();
       CHECK(near(shape.bodies().velocity[2], 1.5, {.relative = 1e-3}));
     }
 }
 
 TEST_CASE("a particle that moves around a free edge is then on the other side of the open surface") {
-  SheetDeck deck;
+  SurfaceDeck deck;
   deck.grain = "positions = [[3.4, 0.1, 1.2]]\nvelocity = [0.0, 0.0, -1.0]\n";
   deck.gravity = "[-0.3, 0.0, 0.1]";  // around the edge, and up against the surface from below
   deck.end = 8;
@@ -227,7 +227,7 @@ TEST_CASE("a particle that moves around a free edge is then on the other side of
       const Vec3 c = run.particles()[0].position, from{std::max(c.x - 3, Real(0)), 0, c.z};
       const Real overlap = std::max(kRadius - norm(from), Real(0));
       const Vec3 expected = norm(from) > 0 ? -(kStiffness * overlap / norm(from)) * from : Vec3{};
-      worst = std::max(worst, norm(force_on_sheet(run) - expected));
+      worst = std::max(worst, norm(force_on_surface(run) - expected));
     }
     CHECK(worst < 1e-12);
     CHECK(run.particles()[0].position.z < -0.5);

@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kBooks = 1e-12, kWear = 3e-12;  // [-], [1/Pa]
+constexpr Real kBalance = 1e-12, kWear = 3e-12;  // [-], [1/Pa]
 constexpr Real kGravity = 9.81, kRadius = 0.02, kDensity = 2500, kFriction = 0.3, kStiffness = 1e4;
 
 const std::string kFloor =
@@ -35,7 +35,7 @@ TriangleWorkValues sums_of(const State& state) {
   return sum;
 }
 
-std::string thrown_grain(Real height, const std::string& velocity) {
+std::string thrown_particle(Real height, const std::string& velocity) {
   return sliding_grain(fmt::format("[0.013, 0.0, {:.17g}]", height), velocity,
                        fmt::format("[0.0, 0.0, {}]", -kGravity)) +
          kFloor;
@@ -59,7 +59,7 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::vect
 
 TEST_CASE("the dissipation of all triangles is that of a particle that bounces, slides and rolls") {
   for (const Method& method : kMethods) {
-    SimulationRun run(model_of(thrown_grain(0.05, "[0.9, 0.3, -0.5]"), with(method.settings, {kWears})));
+    SimulationRun run(model_of(thrown_particle(0.05, "[0.9, 0.3, -0.5]"), with(method.settings, {kWears})));
     for (const Real t : {0.05, 0.11, 0.3, 0.8}) {
       run.run_until(t);
       const State& state = run.complete_state();
@@ -68,9 +68,9 @@ TEST_CASE("the dissipation of all triangles is that of a particle that bounces, 
       CAPTURE(method.name, t);
       CHECK(sum.impact > 0.01 * mass());
       CHECK(sum.sliding > 0.01 * mass());
-      CHECK(near(sum.impact + sum.sliding, grain.contact_loss, {.relative = kBooks}));
-      CHECK(near(sum.sliding, grain.friction_loss, {.relative = kBooks}));
-      CHECK(near(sum.worn, kWear / kFriction * sum.sliding, {.relative = kBooks}));
+      CHECK(near(sum.impact + sum.sliding, grain.contact_loss, {.relative = kBalance}));
+      CHECK(near(sum.sliding, grain.friction_loss, {.relative = kBalance}));
+      CHECK(near(sum.worn, kWear / kFriction * sum.sliding, {.relative = kBalance}));
     }
     if (method.name == "adaptive") CHECK(run.counts().rejected_error > 0);
   }
@@ -86,7 +86,7 @@ TEST_CASE("the dissipation of all triangles is that of a body's sphere that boun
         "-0.5]\nmass = {:.17g}\ninertia_tensor = [{:.17g}, {:.17g}, {:.17g}, 0, 0, 0]\nshapes = [{{ radius = "
         "{} }}]\n",
         mass(), inertia, inertia, inertia, kRadius);
-    std::string deck = thrown_grain(0.05, "[0.9, 0.3, -0.5]");
+    std::string deck = thrown_particle(0.05, "[0.9, 0.3, -0.5]");
     const std::size_t grain = deck.find("[[particles]]");
     deck.replace(grain, deck.find("[output]") - grain, ball);
     const Model model = model_of(deck, with(method.settings, {kWears}));
@@ -98,9 +98,9 @@ TEST_CASE("the dissipation of all triangles is that of a body's sphere that boun
     const TriangleWorkValues sum = sums_of(state);
     CHECK(sum.impact > 0.01 * mass());
     CHECK(sum.sliding > 0.01 * mass());
-    CHECK(near(sum.impact + sum.sliding, state.shapes.contact_loss, {.relative = kBooks}));
-    CHECK(near(sum.sliding, state.shapes.rubbing.of[kFrictionLoss], {.relative = kBooks}));
-    CHECK(near(sum.worn, kWear / kFriction * sum.sliding, {.relative = kBooks}));
+    CHECK(near(sum.impact + sum.sliding, state.shapes.contact_loss, {.relative = kBalance}));
+    CHECK(near(sum.sliding, state.shapes.rubbing.of[kFrictionLoss], {.relative = kBalance}));
+    CHECK(near(sum.worn, kWear / kFriction * sum.sliding, {.relative = kBalance}));
   }
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("without friction the dissipation of an impact is the particle's and t
       const Particle& grain = state.particles.at(0);
       const Real open = method == "hht" ? 0 : 8e-5 / 2 * grain.loss_power;
       most_open = std::max(most_open, open);
-      CHECK(near(sums_of(state).impact, grain.contact_loss + open, {.relative = kBooks}));
+      CHECK(near(sums_of(state).impact, grain.contact_loss + open, {.relative = kBalance}));
       CHECK(sums_of(state).sliding == 0);
     }
     CAPTURE(method);
@@ -136,7 +136,7 @@ TEST_CASE("the impact work of a dropped particle is the height that it loses") {
   for (const Method& method : kMethods) {
     CAPTURE(method.name);
     const Real height = 0.1;
-    SimulationRun run(model_of(thrown_grain(height, "[0.0, 0.0, 0.0]"),
+    SimulationRun run(model_of(thrown_particle(height, "[0.0, 0.0, 0.0]"),
                                with(method.settings, {kWears, "time.step=2e-5", "time.end=0.2"})));
     run.run_until(0.17);  // moving up
     const State& state = run.complete_state();
@@ -150,7 +150,7 @@ TEST_CASE("the impact work of a dropped particle is the height that it loses") {
 
 TEST_CASE("a particle thrown along a floor loses a seventh of m v^2 to friction, with wear K F s") {
   const Real overlap = mass() * kGravity / kStiffness, v = 0.8;
-  SimulationRun run(model_of(thrown_grain(kRadius - overlap, fmt::format("[{}, 0.0, 0.0]", v)), {kWears}));
+  SimulationRun run(model_of(thrown_particle(kRadius - overlap, fmt::format("[{}, 0.0, 0.0]", v)), {kWears}));
   run.run_until(0.01);
   const Real start = run.time();
   const Particle first = run.complete_state().particles.at(0);
@@ -187,7 +187,7 @@ TEST_CASE("works continue after a restart with the bits of an uninterrupted run"
 
 TEST_CASE("a floor without requested fields has no works") {
   SimulationRun run(
-      model_of(thrown_grain(0.05, "[0.9, 0.3, -0.5]"), {"output.surface_fields=[\"pressure\"]"}));
+      model_of(thrown_particle(0.05, "[0.9, 0.3, -0.5]"), {"output.surface_fields=[\"pressure\"]"}));
   run.run();
   CHECK(run.complete_state().works.empty());
 }
