@@ -139,7 +139,7 @@ struct StandingRow {
     return farther > beyond_reach ? farther : beyond_reach;
   }
   // Displacement of c for which a triangle beyond an edge stays farther away than the plane below; 0: it is
-  // beyond no edge. Derived in src/mesh/README.md, "Looks that can be spared".
+  // beyond no edge. Derived in src/mesh/README.md, "Cached narrow-phase queries".
   SCREE_HD Real permitted_beyond_edge(const MeshTriangle& other, const Below& below) const {
     const Real u = mesh_detail::uncertainty(mesh);
     const Vec3 corners[] = {mesh.vertices[other.vertex[0]], mesh.vertices[other.vertex[1]],
