@@ -104,14 +104,14 @@ class Hull {
     Index beyond;    // the face that remains
   };
 
-  // Positive where the face is visible from p; the height as a volume.
+  // Positive where the face is visible from p; six times the volume of the tetrahedron of face and p.
   GridVolume height(const std::array<Index, 3>& corner, Index p) const {
     const GridPoint a = points_[corner[0]];
     return dot(cross(from(a, points_[corner[1]]), from(a, points_[corner[2]])), from(a, points_[p]));
   }
   bool is_visible_from(Index p, const Face& face) const { return height(face.corner, p) > 0; }
 
-  // The point with the largest measure, the lowest of equals.
+  // The point with the largest height_of(point), the lowest of equals.
   template <class Height>
   Index farthest(const Height& height_of) const {
     Index best = 0;
