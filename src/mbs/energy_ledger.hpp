@@ -20,7 +20,7 @@ namespace scree {
 void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
 
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t);
-// As documented at Multibody::energy_of_forces.
+// Energy scale of the forces; documented at Multibody::energy_of_forces.
 Real energy_of_forces(const RigidBodySystem& system, const MultibodyState& state);
 
 }  // namespace scree

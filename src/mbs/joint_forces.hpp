@@ -26,7 +26,8 @@ class JointForces {
   // From here on efforts are those of instants. Returns whether an effort may differ from that of the step.
   bool end_step();
 
-  // As the functions of ForceElement; add_force returns the largest contribution [J].
+  // Sums over all laws, with the meaning of ForceElement's functions; add_force returns the largest
+  // contribution [J].
   Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
   void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SystemDerivatives& derivatives);
   Real elastic_energy(const BodyPoses& poses, Real t, const std::vector<Real>& memory) const;  // [J]

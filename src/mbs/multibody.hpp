@@ -158,8 +158,8 @@ class Multibody {
   // body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
   const std::string& start_change() const;
 
-  // Of redundant constraints with minimum-norm reactions: rows, rank and names, e.g. "20 rows of rank 17:
-  // joint 'a', joint 'b'"; empty where there are none.
+  // Note on redundant constraints with minimum-norm reactions: rows, rank and names, e.g. "20 rows of rank
+  // 17: joint 'a', joint 'b'"; empty where there are none.
   const std::string& redundancy() const;
 
   int coordinates() const;

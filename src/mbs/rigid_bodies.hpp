@@ -55,7 +55,7 @@ class RigidBodies {
   virtual void start(std::vector<Real>& position, std::vector<Real>& velocity) const = 0;
   virtual void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                          BodyPoses& poses) const = 0;
-  // As in MechanicalSystem.
+  // The body's part of MechanicalSystem::displace() and pull_back().
   virtual void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                         std::vector<Real>& position) const = 0;
   virtual void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const = 0;

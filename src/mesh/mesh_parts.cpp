@@ -65,7 +65,7 @@ class PartFinder {
     }
   }
 
-  // Of a sliver's normal only the sign is used.
+  // Only the sign of a sliver's normal is used.
   bool lies_in(const MeshPart& part, Index t) const {
     Real size = 0;
     for (const Index v : topology_.mesh.triangles[t]) {

@@ -19,7 +19,7 @@ struct NumberedMesh {
 };
 NumberedMesh numbered(TriangleMesh mesh);
 
-// As welded(), also for vertices at most `tolerance` [m] apart: each joins the first earlier vertex, in that
+// Extends welded() to vertices at most `tolerance` [m] apart: each joins the first earlier vertex, in that
 // order, that is near enough and itself kept. Triangles that collapse to an edge are removed.
 NumberedMesh welded_within(const TriangleMesh& mesh, Real tolerance);
 

@@ -96,7 +96,7 @@ bool has_inverted_shell(const TriangleMesh& mesh, const std::vector<Index>& shel
                              [](const MisplacedShell& s) { return s.volume < 0; });
 }
 
-// Which shells to invert; from the outer to the inner ones.
+// Selects the shells to invert, from the outer to the inner ones.
 std::vector<char> inverted_shells(const ShellNesting& nesting) {
   const std::size_t count = nesting.volume.size();
   std::vector<Index> order(count);

@@ -19,8 +19,8 @@ constexpr Real kSphereTile = 25, kSphereRadius = 0.5, kSphereDiameter = 1;  // w
 constexpr int kDiscRow = 100;
 constexpr Real kDiscRadius = 0.05, kDiscSpacing = 0.102, kDiscTile = kDiscRow * kDiscSpacing;  // [m]
 constexpr int kRowBodies = 20;
-// Of the plough: its distance from the walls at its start and its end, its height, deep within the bed [m],
-// and its speed [m/s].
+// The plough's distance from the walls at its start and its end, its height, deep within the bed [m], and
+// its speed [m/s].
 constexpr Real kPloughMargin = 3, kPloughHeight = 5, kPloughSpeed = 2;
 
 std::int64_t tiles_of(std::int64_t particles) {

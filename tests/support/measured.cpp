@@ -78,7 +78,7 @@ class Record {
     Row& row = found->second;
     if (is_new) return;
     row.least = std::min(row.least, number.value), row.most = std::max(row.most, number.value);
-    // Of different demands the one that all values satisfy.
+    // Keeps the demand that all values satisfy.
     row.at_least = std::min(row.at_least, number.at_least);
     row.at_most = std::max(row.at_most, number.at_most);
   }

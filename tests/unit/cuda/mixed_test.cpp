@@ -109,7 +109,7 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "
   }
   std::printf("settled heap after 1e6 steps: moved by %.1e diameters, fastest %.1e\n", moved, fastest);
   CHECK(measured("mixed/moved", "diameters", at_most(moved, 1e-4)));
-  // As after a fall by 5e-9 diameters.
+  // The bound corresponds to a fall by 5e-9 diameters.
   CHECK(measured("mixed/fastest", "m/s", at_most(fastest, 1e-4)));
 }
 

@@ -201,7 +201,7 @@ TEST_CASE("keys nested too deep are refused before they are parsed") {
   CHECK(contains(deck_error(kSmallDeck, {nested(30000) + "=1"}), refused));
   CHECK(contains(deck_error(kSmallDeck, {"time={ " + nested(30000) + " = 1 }"}), refused));
   CHECK(contains(deck_error(kSmallDeck + nested(16) + " = 1\n"), "unknown key"));
-  // As deep as both limits permit: toml++ has its own for values.
+  // Nesting as deep as both limits permit: toml++ has its own for values.
   std::string open, close;
   for (int i = 0; i < 250; ++i) open += "{ " + nested(16) + " = ", close += " }";
   CHECK(contains(deck_error(kSmallDeck + "x = " + open + "1" + close + "\n"), "unknown key"));

@@ -1,4 +1,4 @@
-// Which particles and shapes may have contacts, and their sizes.
+// Pairs of particles and shapes with possible contacts, and their sizes.
 #include "model/touching.hpp"
 
 #include "support/catch.hpp"

@@ -260,7 +260,7 @@ TEST_CASE("links in the folder are not followed") {
   HistoryWriter history(scratch.path(), {{"", "time", "s", "time"}}, true, 0);
   SnapshotWriter snapshots(scratch.path(), {.title = "title", .keep = 0});
   for (int step = 0; step < 3; ++step) {
-    // As if another process put one there during the run.
+    // Files that another process puts there during the run.
     for (const char* name : {"particles.xdmf.tmp", "bodies.xdmf.tmp"})
       if (!fs::is_symlink(scratch / name)) fs::create_symlink(elsewhere / "victim", scratch / name);
     PredictableSnapshot(step, 5, 2).append_to(snapshots);

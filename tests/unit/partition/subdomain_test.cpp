@@ -128,7 +128,7 @@ TEST_CASE("a wrapped point lies inside the box") {
   }
 }
 
-// The same motion from a point and from its image: the paths stay a period apart to the bit.
+// A point and its image with equal motions: the paths stay a period apart to the bit.
 TEST_CASE("snapped displacements add up to the same bits wherever the path is wrapped") {
   RandomNumbers random(3);
   for (const Space& s : kPeriodic) {

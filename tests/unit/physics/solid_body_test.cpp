@@ -42,7 +42,7 @@ TEST_CASE("solids about their own centres") {
   check_near(capsule.inertia, {across, 0, 0, across, 0, along});
 }
 
-// The same capsule by a sum over thin discs along its axis.
+// The capsule of the test above, as a sum over thin discs along its axis.
 TEST_CASE("a capsule is the sum of its slices") {
   constexpr Real kRadius = 0.3, kLength = 0.5, kDensity = 7;
   constexpr int kSlices = 20000;

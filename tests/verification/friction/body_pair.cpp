@@ -20,7 +20,7 @@ TEST_CASE("a heavy body's sphere and disc do to a particle what a particle does 
     }
 }
 
-// Of first order, as for two particles that slide in changing directions.
+// The error is of first order, as for two particles that slide in changing directions.
 TEST_CASE("a free body's disc and a particle part as two particles do, to the order of the method") {
   const auto errors_at = [](Real steps, int substeps) {
     Errors errors;

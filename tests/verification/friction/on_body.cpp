@@ -219,7 +219,8 @@ struct Held {
 
 }  // namespace
 
-// As on a wall, relative to the belt: it rolls at two thirds of v0 after v0 / (3 mu g).
+// The closed form is that of a wall, relative to the belt: the disc rolls at two thirds of v0 after v0 / (3
+// mu g).
 TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whether that moves or not") {
   const char* integrator = GENERATE("explicit", "implicit");
   const Real belt = GENERATE(0.0, -2.0, 3.0);

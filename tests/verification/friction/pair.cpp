@@ -11,7 +11,8 @@ namespace scree {
 namespace {
 
 constexpr Real kPhases[] = {0, 0.2, 0.4, 0.6, 0.8};
-// Of sums over hundreds of steps, relative to momenta of some 1 kg m/s and their moments at arms of 1 cm.
+// Round-off of sums over hundreds of steps, relative to momenta of some 1 kg m/s and their moments at arms
+// of 1 cm.
 constexpr Real kConserved = 1e-13;
 // For implicit steps, whose residuals are 1e-8 of the forces.
 constexpr Real kSolved = 1e-8;
@@ -113,7 +114,7 @@ TEST_CASE("two free spheres with a linear spring and slider") {
   }
 }
 
-// As in explicit steps, sliding in changing directions is of first order.
+// Sliding in changing directions is of first order, as in explicit steps.
 TEST_CASE("two free spheres in implicit steps, which keep angular momentum to second order") {
   for (const Real alpha : {0.0, -0.05}) {
     CAPTURE(alpha);

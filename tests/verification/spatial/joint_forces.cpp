@@ -116,7 +116,7 @@ Model pushed_pair() {
   return model;
 }
 
-// Those on the displacement of a cylindrical joint, and others on its angle.
+// These elements on the displacement of a cylindrical joint, and others on its angle.
 Model pushed_and_turned_pair() {
   Model model = free_pair(JointKind::cylindrical);
   const Model pushed = pushed_pair();

@@ -62,7 +62,7 @@ struct Matrices {
   Real largest_gap = 0;
 };
 
-// Of all lambda with these forces Phi_q^T lambda, the one with the least norm of S, by singular values.
+// The lambda with the least norm of S among those with these forces Phi_q^T lambda, by singular values.
 Eigen::VectorXd least(const Matrices& m, const Eigen::VectorXd& force) {
   const Eigen::VectorXd root = m.weight.cwiseSqrt();
   const Eigen::MatrixXd scaled = (root.cwiseInverse().asDiagonal() * m.jacobian).transpose();

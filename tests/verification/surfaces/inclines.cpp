@@ -48,7 +48,7 @@ std::string deck(const Grain& grain) {
 Model on_plane(const Grain& grain, Vec3 normal) {
   return model_of(deck(grain) + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal));
 }
-// The same plane as triangles, 1 m wide.
+// The plane of on_plane() as triangles, 1 m wide.
 Model on_triangles(const Grain& grain, const Mat3& turn, int n) {
   Model model = model_of(deck(grain) +
                          "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2, 2]\n[[walls]]\nname "
