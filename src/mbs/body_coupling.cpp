@@ -22,7 +22,7 @@ Block transposed(const Block& block) {
 }
 
 // block (1, rotation): the columns of rotations, multiplied by `turn` from the right.
-Block with_turned_columns(Block block, const Mat3& turn) {
+Block with_rotated_columns(Block block, const Mat3& turn) {
   for (int i = 0; i < 6; ++i) {
     const Vec3 row = transposed_times(turn, {at(block, i, 3), at(block, i, 4), at(block, i, 5)});
     at(block, i, 3) = row.x, at(block, i, 4) = row.y, at(block, i, 5) = row.z;
@@ -46,12 +46,12 @@ class Pair {
   void add(int a, int b, Block stiffness, Block damping) const {
     if (is_spatial(b)) {
       const SpatialPose& pose = poses_.spatial[b];
-      stiffness = with_turned_columns(stiffness, pose.rotation);
-      damping = with_turned_columns(damping, pose.rotation * pose.inverse_tangent);
+      stiffness = with_rotated_columns(stiffness, pose.rotation);
+      damping = with_rotated_columns(damping, pose.rotation * pose.inverse_tangent);
     }
     if (is_spatial(a))
       for (Block* block : {&stiffness, &damping})
-        *block = transposed(with_turned_columns(transposed(*block), poses_.spatial[a].rotation));
+        *block = transposed(with_rotated_columns(transposed(*block), poses_.spatial[a].rotation));
     const Columns rows = columns_of(a), columns = columns_of(b);
     for (std::size_t i = 0; i < rows.of.size(); ++i)
       for (std::size_t j = 0; j < columns.of.size(); ++j)

@@ -66,12 +66,12 @@ BushingLoad BushingElement::load(const BodyPoses& poses) const {
 
 Real BushingElement::add_force(const BodyPoses& poses, Real, Real length, std::vector<Real>& force) {
   const Deflection x = deflection(poses);
-  const Real turned = norm(three(x.value, 3));
-  if (!(turned < kMostBushingTurn))
+  const Real rotation_angle = norm(three(x.value, 3));
+  if (!(rotation_angle < kMostBushingTurn))
     throw SimulationError(fmt::format(
         "mbs_correct, rank 0: bushing '{}' is rotated by {:.4g} rad; its rotation vector is valid "
         "up to {} rad, as it jumps at half a revolution",
-        bushing_.name, turned, kMostBushingTurn));
+        bushing_.name, rotation_angle, kMostBushingTurn));
   Real largest = 0;
   for (std::size_t a = 0; a < measures_.size(); ++a) {
     Real size = std::abs(bushing_.preload[a]);

@@ -15,8 +15,8 @@ namespace {
 
 // Distances of a driver's row, of length 1, from the combinations of all other rows. kAtIt: so small that a
 // dead point alone explains the failure. kNear: a dead point explains it where velocities have grown.
-// kInReach: a dead point may explain it where the next steps lead to it.
-constexpr Real kAtIt = 1e-3, kNear = 0.03, kInReach = 0.3;
+// kInRange: a dead point may explain it where the next steps lead to it.
+constexpr Real kAtIt = 1e-3, kNear = 0.03, kInRange = 0.3;
 // Ratio of the rates of coordinates to the rates that drivers prescribe, both over their scales, from which
 // velocities count as grown.
 constexpr Real kGrown = 10;
@@ -93,11 +93,12 @@ int prescribing_row(const RigidBodySystem& system, const SparseTerm& jacobian, c
   for (const auto& [row, weight] : near.combination.weight)
     heaviest = std::max(heaviest, std::abs(weight) * length[at(row)]);
   int most = near.row;
-  std::pair<Real, Real> most_asked{-1, 0};
+  std::pair<Real, Real> most_prescribed{-1, 0};
   for (const auto& [row, weight] : near.combination.weight) {
-    const std::pair<Real, Real> asked{std::abs(weight * rate[at(row)]), std::abs(weight) * length[at(row)]};
-    if (asked.second < kTakesPart * heaviest || !std::ranges::binary_search(rows, row)) continue;
-    if (asked > most_asked) most = row, most_asked = asked;
+    const std::pair<Real, Real> prescribed{std::abs(weight * rate[at(row)]),
+                                           std::abs(weight) * length[at(row)]};
+    if (prescribed.second < kTakesPart * heaviest || !std::ranges::binary_search(rows, row)) continue;
+    if (prescribed > most_prescribed) most = row, most_prescribed = prescribed;
   }
   return most;
 }
@@ -134,11 +135,11 @@ std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real s
   if (rows.empty()) return "";
   SystemTerms terms;
   const SparseTerm& jacobian = jacobian_at(system, now, terms);
-  const Real asked = largest(rate, system.constraint_scale()),
+  const Real prescribed = largest(rate, system.constraint_scale()),
              reached = largest(now.velocity, system.coordinate_scale());
   const Nearest near = nearest(system, jacobian, rows);
-  if (near.row < 0 || near.distance > kInReach) return "";
-  const bool explains = near.distance <= kAtIt || (near.distance <= kNear && reached > kGrown * asked) ||
+  if (near.row < 0 || near.distance > kInRange) return "";
+  const bool explains = near.distance <= kAtIt || (near.distance <= kNear && reached > kGrown * prescribed) ||
                         time_left(system, now, near, step) <= kStepsLeft * step;
   if (!explains) return "";
   return fmt::format(
@@ -148,8 +149,9 @@ std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real s
       "integrator.redundant = \"minimum-norm\" pass it",
       system.constraint_name(prescribing_row(system, jacobian, near, rows, rate)),
       names_of(system, {near.combination}),
-      reached > asked && asked > 0
-          ? fmt::format(" (velocities here are {:.3g} times those that drivers prescribe)", reached / asked)
+      reached > prescribed && prescribed > 0
+          ? fmt::format(" (velocities here are {:.3g} times those that drivers prescribe)",
+                        reached / prescribed)
           : "");
 }
 

@@ -55,10 +55,10 @@ class SpringDamperElement final : public ForceElement {
     const Vec2 e = line.direction;
     const std::array<Real, 6> along = gap_gradient(g, e), across = gap_gradient(g, perp(e));
     const Real bend1 = dot(e, g.arm[0]), bend2 = -dot(e, g.arm[1]);
-    const Real turning = dot(perp(e), g.gap_rate) / line.length;
+    const Real line_spin = dot(perp(e), g.gap_rate) / line.length;
     std::array<Real, 6> tension_gradient;
     for (std::size_t k = 0; k < 6; ++k) {
-      tension_gradient[k] = stiffness_ * along[k] + damping_ * turning * across[k];
+      tension_gradient[k] = stiffness_ * along[k] + damping_ * line_spin * across[k];
     }
     tension_gradient[2] += damping_ * bend1 * poses.planar[pair_.body[0]].spin;
     tension_gradient[5] += damping_ * bend2 * poses.planar[pair_.body[1]].spin;

@@ -12,7 +12,7 @@ namespace {
 
 // A coordinate carries round-off of 1e-16 of its size, and so does the effort; this fraction of the elastic
 // scale stays far above it.
-constexpr Real kRoundingShare = 1e-6;
+constexpr Real kRoundingFraction = 1e-6;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -50,7 +50,7 @@ Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real
   if (in_step_) bridge_.guide(*law_, step_, effort_);
   for (std::size_t i = 0; i < gradient_.size(); ++i)
     force[scree::at(gradient_.column(i))] += effort_.effort * gradient_.value(i);
-  const Real rounded = kRoundingShare * std::abs(effort_.by_value * last_.value);
+  const Real rounded = kRoundingFraction * std::abs(effort_.by_value * last_.value);
   return std::max(effort_.size, rounded) * (is_angle() ? 1 : length);
 }
 

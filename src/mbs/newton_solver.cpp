@@ -19,13 +19,13 @@ constexpr Real kReuseContraction = 1e-2;
 constexpr int kMisfitPasses = 2;
 // Each pass leaves a part of the rows' yielding, or of a false misfit, in the ratio of eps S to the rows'
 // mobility in that direction: little, unless one of the bodies is far lighter than others.
-constexpr int kSharePasses = 2;
+constexpr int kYieldPasses = 2;
 // Forces that depend on the reactions converge at a step's end in two or three passes.
 constexpr int kLoadPasses = 10;
 constexpr Real kLoadRoundOff = 1e-14;
 // Relative residual that the forces between bodies in contact may leave in a Newton correction, and the
 // largest number of solutions with the factors for it.
-constexpr Real kCoupledShare = 1e-3;
+constexpr Real kCoupledResidual = 1e-3;
 constexpr int kCoupledPasses = 30;
 
 }  // namespace
@@ -109,7 +109,7 @@ bool NewtonSolver::drop_misfit(PetscSolver& solver, bool refactor) {
   std::fill(forces.begin(), forces.end(), 0);
   for (int pass = 0; pass < kMisfitPasses; ++pass) {
     gaps_.assign(gaps.begin(), gaps.end());
-    for (int share = 0; share < kSharePasses; ++share) {
+    for (int share = 0; share < kYieldPasses; ++share) {
       solve_linear(solver, refactor);
       refactor = false;
       for (std::size_t j = 0; j < gaps.size(); ++j) gaps[j] = -compliance[j] * solver.solution()[n + j];
@@ -131,7 +131,7 @@ void NewtonSolver::solve_sharing(PetscSolver& solver, bool refactor, const std::
   gaps_.assign(gaps.begin(), gaps.end());
   for (std::size_t j = 0; j < multipliers.size(); ++j) gaps[j] -= compliance[j] * multipliers[j];
   solve_linear(solver, refactor);
-  for (int pass = 0; pass < kSharePasses; ++pass) {
+  for (int pass = 0; pass < kYieldPasses; ++pass) {
     for (std::size_t j = 0; j < gaps.size(); ++j)
       gaps[j] = gaps_[j] - compliance[j] * solver.solution()[n + j];
     solve_linear(solver, false);
@@ -212,7 +212,7 @@ std::span<const Real> NewtonSolver::solve_coupled() {
   // With a large O the residual itself has to be solved for, as x = A^-1 b is no approximation.
   if (method_.is_loaded_by_contacts())
     whole = std::min(whole, product(method_.residual(), method_.residual()));
-  const Real enough = kCoupledShare * kCoupledShare * whole;
+  const Real enough = kCoupledResidual * kCoupledResidual * whole;
   directions_.clear(), images_.clear();
   for (int pass = 0; pass < kCoupledPasses && product(left_, left_) > enough; ++pass) {
     std::fill(solver_.rhs().begin(), solver_.rhs().end(), 0);

@@ -50,7 +50,7 @@ std::vector<std::string> passed_stops(const RigidBodySystem& system, const std::
     const Real stored = force.elastic_energy(poses, 0, 0),
                other = energies.kinetic + energies.elastic - stored + weight * system.length_scale();
     const char* const unit = force.is_angle() ? "rad" : "m";
-    const std::string what = fmt::format(
+    const std::string text = fmt::format(
         "{0}: violated at t = 0: joint '{1}' is at {2:.6g} {3}, {4:.4g} {3} {5} = {6:.6g}. The limit starts "
         "with {7:.4g} {8}, stores {9:.4g} J and accelerates the joint to up to {10:.3g} {3}/s",
         stop.title, stop.joint, sample.at.value, unit, passed, below ? "below lower" : "above upper", limit,
@@ -58,8 +58,8 @@ std::vector<std::string> passed_stops(const RigidBodySystem& system, const std::
     const std::string remedy = "start the joint within its limits, or move this one";
     if (other > 0 && stored > kMostStored * other)
       throw InputError(
-          fmt::format("{}, where weights and motion at t = 0 have {:.3g} J; {}", what, other, remedy));
-    findings.push_back(what + "; " + remedy);
+          fmt::format("{}, where weights and motion at t = 0 have {:.3g} J; {}", text, other, remedy));
+    findings.push_back(text + "; " + remedy);
   }
   return findings;
 }

@@ -168,13 +168,15 @@ class PlanarBodies final : public RigidBodies {
       const Real *v0 = b.at.of(start.velocity), *v1 = b.at.of(end.velocity), *f0 = b.at.of(start.applied),
                  *f1 = b.at.of(end.applied);
       loss += integrator_loss(b.body.mass, shift(q1) - shift(q0), shift(v0), shift(v1), shift(f0), shift(f1));
-      loss += integrator_loss(b.body.inertia, turn(q1) - turn(q0), turn(v0), turn(v1), turn(f0), turn(f1));
+      loss += integrator_loss(b.body.inertia, rotational(q1) - rotational(q0), rotational(v0), rotational(v1),
+                              rotational(f0), rotational(f1));
     }
   }
   void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const override {
     for (const BodyData& b : bodies_) {
       const Real* v = b.at.of(state.velocity);
-      energies.kinetic += kinetic_energy(b.body.mass, shift(v)) + kinetic_energy(b.body.inertia, turn(v));
+      energies.kinetic +=
+          kinetic_energy(b.body.mass, shift(v)) + kinetic_energy(b.body.inertia, rotational(v));
       energies.gravitational += gravitational_energy(b.body.mass, gravity_, shift(b.at.in(state.position)));
     }
   }
@@ -231,7 +233,7 @@ class PlanarBodies final : public RigidBodies {
                                 block.damping[3 * i + j]);
   }
   static Vec3 shift(const Real* v) { return {v[0], v[1], 0}; }
-  static Vec3 turn(const Real* v) { return {0, 0, v[2]}; }
+  static Vec3 rotational(const Real* v) { return {0, 0, v[2]}; }
 
   Vec3 gravity_;
   std::vector<BodyData> bodies_;

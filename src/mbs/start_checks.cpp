@@ -17,7 +17,7 @@ namespace scree {
 namespace {
 
 constexpr Real kPositionGap = 1e-10;   // of the constraint's scale
-constexpr Real kKeptGap = 1e-6;        // of the scale, during a run, where steps keep Phi to their tolerance
+constexpr Real kRunningGap = 1e-6;     // of the scale, during a run, where steps keep Phi to their tolerance
 constexpr Real kContradiction = 1e-6;  // of the scale, between redundant rows: the digits of a deck
 constexpr Real kVelocityGap = 1e-8;    // of the largest velocity plus the constraint's scale per second
 constexpr Real kAccelerationGap =
@@ -35,8 +35,8 @@ std::string driver_text(const ConstraintGroup& group, std::string_view per) {
 
 // Text on the group whose gap [m, rad], or its rate with per = "/s", exceeds the limit most, in its length
 // rows or its angle rows; empty where none does. driven: additional text on a driver.
-std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit,
-                          const std::string& what, const std::string& driven, const char* per) {
+std::string group_violation(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit,
+                            const std::string& description, const std::string& driven, const char* per) {
   std::string trouble;
   Real worst = limit;
   for (const ConstraintGroup& group : system.groups())
@@ -52,7 +52,7 @@ std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>
       worst = size / scale;
       trouble = with_label(group.deck_label,
                            fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}{6}", group.title,
-                                       group.drives ? driven : what, size, angle ? "rad" : "m", per,
+                                       group.drives ? driven : description, size, angle ? "rad" : "m", per,
                                        limit * scale, driver_text(group, per)));
     }
   return trouble;
@@ -87,8 +87,8 @@ SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
 void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit, Real t) {
   const std::string when = fmt::format("t = {:.9g}{}", t, t > 0 ? " s" : "");
   const std::string trouble =
-      group_trouble(system, gap, limit, "its two sides do not meet at " + when + ", their distance is",
-                    "its motion and the joint's coordinate at " + when + " differ by", "");
+      group_violation(system, gap, limit, "its two sides do not meet at " + when + ", their distance is",
+                      "its motion and the joint's coordinate at " + when + " differ by", "");
   if (!trouble.empty()) throw InputError(trouble);
 }
 
@@ -182,7 +182,7 @@ StartFindings check_start(const Model& model, RigidBodySystem& system, const std
   system.velocity_rhs({0, position, velocity}, rate);
   check_contradictions(system, findings.repeated, rate, kVelocityGap * rhs_scale(system, rate),
                        Asked::velocities);
-  for (Real& asked : rate) asked = -asked;
+  for (Real& required : rate) required = -required;
   const SparseTerm& jacobian = terms.constraint_jacobian;
   for (std::size_t i = 0; i < jacobian.size(); ++i)
     rate[at(jacobian.row(i))] += jacobian.value(i) * velocity[at(jacobian.column(i))];
@@ -197,29 +197,31 @@ void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dep
                                   const std::vector<Real>& position, const std::vector<Real>& velocity) {
   if (repeated.empty()) return;
   terms_at(system, position, velocity, 0);  // sets the poses of the system
-  std::vector<Real> asked(at(system.constraints()), 0);
-  system.acceleration_rhs({0, position, velocity}, asked);
-  check_contradictions(system, repeated, asked, kAccelerationGap * rhs_scale(system, asked),
+  std::vector<Real> required(at(system.constraints()), 0);
+  system.acceleration_rhs({0, position, velocity}, required);
+  check_contradictions(system, repeated, required, kAccelerationGap * rhs_scale(system, required),
                        Asked::accelerations);
 }
 
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity) {
-  const std::string what = "the velocities at t = 0 contradict it by";
-  return group_trouble(system, gap_rate, kVelocityGap * rate_scale(system, velocity), what, what, "/s");
+  const std::string description = "the velocities at t = 0 contradict it by";
+  return group_violation(system, gap_rate, kVelocityGap * rate_scale(system, velocity), description,
+                         description, "/s");
 }
 
 void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
                                const std::vector<Real>& acceleration) {
-  const std::string what = "no accelerations at t = 0 satisfy it and the other constraints, the residual is";
-  const std::string trouble =
-      group_trouble(system, misfit, kAccelerationGap * rate_scale(system, acceleration), what, what, "/s^2");
+  const std::string description =
+      "no accelerations at t = 0 satisfy it and the other constraints, the residual is";
+  const std::string trouble = group_violation(
+      system, misfit, kAccelerationGap * rate_scale(system, acceleration), description, description, "/s^2");
   if (!trouble.empty()) throw InputError(trouble);
 }
 
 void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t) {
-  check_gaps(system, terms_at(system, position, velocity, t).constraint, kKeptGap, t);
+  check_gaps(system, terms_at(system, position, velocity, t).constraint, kRunningGap, t);
 }
 
 std::string near_singular(RigidBodySystem& system, const std::vector<Real>& position, Real t) {

@@ -59,13 +59,14 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
     const Body& body = system.bodies()[b];
     const bool spatial = body.kind == BodyKind::spatial;
     const std::size_t x = static_cast<std::size_t>(system.layout().column(static_cast<int>(b))),
-                      turn = x + (spatial ? 3 : 2);
+                      rotation_column = x + (spatial ? 3 : 2);
     const Vec3 before = origin_velocity(body, &from[x]), after = origin_velocity(body, &to[x]);
     const auto differs = [&](int k) {
       return std::abs(component(after, k) - component(before, k)) > limit(x, kChanged);
     };
     const bool moves = differs(0) || differs(1) || differs(2);
-    const bool is_rotation = changed(turn) || (spatial && (changed(turn + 1) || changed(turn + 2)));
+    const bool is_rotation = changed(rotation_column) ||
+                             (spatial && (changed(rotation_column + 1) || changed(rotation_column + 2)));
     if (body.in_row || !(moves || is_rotation)) continue;
     if (++shown > kBodiesShown) {
       ++more;
@@ -76,10 +77,13 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
       add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, along(0), along(1),
                       dimension == 2 ? "" : ", " + along(2)));
     if (is_rotation && spatial)
-      add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name, number(to[turn], turn),
-                      number(to[turn + 1], turn + 1), number(to[turn + 2], turn + 2)));
+      add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name,
+                      number(to[rotation_column], rotation_column),
+                      number(to[rotation_column + 1], rotation_column + 1),
+                      number(to[rotation_column + 2], rotation_column + 2)));
     else if (is_rotation)
-      add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(to[turn], turn)));
+      add(fmt::format("bodies.{}.angular_velocity = {}", body.name,
+                      number(to[rotation_column], rotation_column)));
   }
   if (more > 0) text += fmt::format(" and the same for {} more", more);
   return text;

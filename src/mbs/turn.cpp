@@ -10,9 +10,9 @@ namespace {
 // theta'   = P_1 w_1 + P_2 w_2,  P_1 = -T^-T M_1^T,  P_2 = T^-1 M_2^T;  T^-T(u) = T^-1(-u) = T^-1(u) R^T
 // gradient = 0, -M_1 T^-1 e_k, 0, M_2 T^-T e_k
 // Hessian  = (pi1,pij) -M_1 D(theta, e_k) P_j;  (pi2,pij) -M_2 D(-theta, e_k) P_j;  D of T^-1
-class Turn final : public Measure {
+class RotationVectorComponent final : public Measure {
  public:
-  Turn(const SpatialPair& pair, const Quaternion (&frame)[2], int k)
+  RotationVectorComponent(const SpatialPair& pair, const Quaternion (&frame)[2], int k)
       : Measure(pair), frame_{rotation_matrix(frame[0]), rotation_matrix(frame[1])}, k_(k) {
     axis_ = row_of(identity3(), k);
   }
@@ -62,7 +62,7 @@ class Turn final : public Measure {
 }  // namespace
 
 std::unique_ptr<Measure> turn_measure(const SpatialPair& pair, const Quaternion (&frame)[2], int k) {
-  return std::make_unique<Turn>(pair, frame, k);
+  return std::make_unique<RotationVectorComponent>(pair, frame, k);
 }
 
 }  // namespace scree

@@ -104,7 +104,7 @@ class Coarsener {
       if (next.age_gone != age_[next.gone] || next.age_kept != age_[next.kept]) continue;
       if (!collapse(next.gone, next.kept)) refused_[next.gone] = true;
     }
-    return what_is_left();
+    return remaining();
   }
 
  private:
@@ -244,8 +244,8 @@ class Coarsener {
   }
   bool is_smooth_to(const Corners& now, Index a, Index b, Index other, Index gone, Index kept) const {
     if (has(triangles_[other], gone) && has(triangles_[other], kept)) return true;  // is removed
-    const Corners beside = moved(triangles_[other], gone, kept);
-    return !has(beside, a) || !has(beside, b) || is_smooth(area_normal(now), area_normal(beside));
+    const Corners neighbour = moved(triangles_[other], gone, kept);
+    return !has(neighbour, a) || !has(neighbour, b) || is_smooth(area_normal(now), area_normal(neighbour));
   }
 
   // Whether the border, which then runs from `beyond` to `kept`, stays near all vertices that it contained.
@@ -313,7 +313,7 @@ class Coarsener {
       moved_[v] = std::sqrt(squared_distance(vertices_[kept], vertices_[beyond], vertices_[v]));
   }
 
-  CoarseMesh what_is_left() const {
+  CoarseMesh remaining() const {
     CoarseMesh result;
     std::vector<Index> number(vertices_.size(), kNone);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {

@@ -195,7 +195,7 @@ class Hull {
   std::vector<Index> cone(const std::vector<Border>& borders, Index p) {
     std::vector<Index> made;
     for (const Border& border : borders) {
-      const Index f = place();
+      const Index f = take_slot();
       put(f, {border.from, border.to, p}, {border.beyond, kNone, kNone});
       Face& beyond = faces_[border.beyond];
       for (int e = 0; e < 3; ++e)
@@ -210,7 +210,7 @@ class Hull {
     return made;
   }
 
-  Index place() {
+  Index take_slot() {
     if (free_.empty()) {
       faces_.emplace_back();
       return static_cast<Index>(faces_.size()) - 1;

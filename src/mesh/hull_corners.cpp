@@ -80,12 +80,12 @@ Real area_of(const std::vector<PlanePoint>& corners) {
 std::vector<Index> take_corners(const std::vector<Vec3>& points, std::vector<Index> numbers,
                                 HullCorners& out) {
   std::ranges::sort(numbers);
-  std::vector<Index> place(points.size(), kNone);
+  std::vector<Index> position(points.size(), kNone);
   for (const Index number : numbers) {
-    place[static_cast<std::size_t>(number)] = static_cast<Index>(out.corners.size());
+    position[static_cast<std::size_t>(number)] = static_cast<Index>(out.corners.size());
     out.corners.push_back(points[static_cast<std::size_t>(number)]);
   }
-  return place;
+  return position;
 }
 
 void add_face(const std::vector<Index>& corners, Vec3 normal, HullCorners& out) {
@@ -107,12 +107,12 @@ HullCorners corners_of_outline(const std::vector<Vec3>& given) {
   for (Vec3& p : points) p.z = 0, in_plane.push_back({p.x, p.y, static_cast<Index>(in_plane.size())});
   const std::vector<PlanePoint> corners = outline(in_plane, kRoundOff * extent_of(points));
   HullCorners out;
-  const std::vector<Index> place = take_corners(points, numbers_of(corners), out);
+  const std::vector<Index> position = take_corners(points, numbers_of(corners), out);
   out.radius = length_of(corners) / (2 * std::numbers::pi_v<Real>);
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const PlanePoint &a = corners[k], &b = corners[(k + 1) % corners.size()];
     const Vec3 normal{b.y - a.y, a.x - b.x, 0};
-    add_face({place[static_cast<std::size_t>(a.point)], place[static_cast<std::size_t>(b.point)]},
+    add_face({position[static_cast<std::size_t>(a.point)], position[static_cast<std::size_t>(b.point)]},
              (1 / norm(normal)) * normal, out);
   }
   return out;

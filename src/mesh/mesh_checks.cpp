@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-constexpr std::size_t kMostPlaces = 5;
+constexpr std::size_t kMostPositions = 5;
 
 std::string text_of(Vec3 v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
 
@@ -24,12 +24,13 @@ class Positions {
   // text(): the name of the position.
   template <class Text>
   void add(Text text) {
-    if (count_++ < kMostPlaces) named_ += (named_.empty() ? "" : "; ") + text();
+    if (count_++ < kMostPositions) named_ += (named_.empty() ? "" : "; ") + text();
   }
   void report(const char* one, const char* many, const std::string& demand,
               std::vector<std::string>& troubles) const {
     if (count_ == 0) return;
-    const std::string more = count_ > kMostPlaces ? fmt::format("; and {} more", count_ - kMostPlaces) : "";
+    const std::string more =
+        count_ > kMostPositions ? fmt::format("; and {} more", count_ - kMostPositions) : "";
     const std::string what = count_ == 1 ? one : fmt::format("{} {}", count_, many);
     troubles.push_back(fmt::format("{}; {}: {}{}", what, demand, named_, more));
   }
@@ -89,20 +90,20 @@ class Checker {
   }
 
   void check_numbers() {
-    Positions places;
+    Positions positions;
     for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
       const auto [a, b, c] = corners_of(mesh_, i);
-      if (!is_finite(a) || !is_finite(b) || !is_finite(c)) places.add([&] { return text_of_triangle(i); });
+      if (!is_finite(a) || !is_finite(b) || !is_finite(c)) positions.add([&] { return text_of_triangle(i); });
     }
-    places.report("a triangle has a coordinate that is no finite number",
-                  "triangles have coordinates that are no finite numbers", "all must be", troubles_);
+    positions.report("a triangle has a coordinate that is no finite number",
+                     "triangles have coordinates that are no finite numbers", "all must be", troubles_);
   }
 
   void check_areas() {
-    Positions places;
+    Positions positions;
     for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i)
-      if (!has_area(corners_of(mesh_, i))) places.add([&] { return text_of_triangle(i); });
-    places.report("a triangle has no area", "triangles have no area", "each must span a plane", troubles_);
+      if (!has_area(corners_of(mesh_, i))) positions.add([&] { return text_of_triangle(i); });
+    positions.report("a triangle has no area", "triangles have no area", "each must span a plane", troubles_);
   }
 
   void check_duplicates() {
@@ -113,33 +114,33 @@ class Checker {
       rows.push_back({t[0], t[1], t[2], i});
     }
     std::sort(rows.begin(), rows.end());
-    Positions places;
+    Positions positions;
     for (std::size_t i = 1; i < rows.size(); ++i) {
       if (!std::equal(rows[i].begin(), rows[i].begin() + 3, rows[i - 1].begin())) continue;
-      places.add([&] {
+      positions.add([&] {
         return fmt::format("triangle {} and {}", number(rows[i - 1][3]), text_of_triangle(rows[i][3]));
       });
     }
-    places.report("a triangle has the corners of another", "triangles have the corners of others",
-                  "each must be there once", troubles_);
+    positions.report("a triangle has the corners of another", "triangles have the corners of others",
+                     "each must be there once", troubles_);
   }
 
   void check_edges(bool sheet) {
-    Positions open, crowded, turned;
+    Positions open, crowded, opposed;
     std::vector<Side> free;
     for_each_edge(sides_of(mesh_), [&](const Side* first, const Side* last) {
       const auto text = [&] { return edge_text(first, last); };
       if (last - first == 1 && !sheet) open.add(text), free.push_back(*first);
       if (last - first > 2 && !sheet) crowded.add(text);
-      if (last - first == 2 && first[0].forward == first[1].forward && !sheet) turned.add(text);
+      if (last - first == 2 && first[0].forward == first[1].forward && !sheet) opposed.add(text);
     });
     open.report("an edge has one triangle", "edges have one triangle",
                 "a closed mesh has two at each (an open surface needs sheet = true)" + tear_text(mesh_, free),
                 troubles_);
     crowded.report("an edge has more than two triangles", "edges have more than two triangles",
                    "a closed mesh has two at each", troubles_);
-    turned.report("an edge lies between opposite windings", "edges lie between opposite windings",
-                  "corners must run counterclockwise seen from one side of the whole", troubles_);
+    opposed.report("an edge lies between opposite windings", "edges lie between opposite windings",
+                   "corners must run counterclockwise seen from one side of the whole", troubles_);
   }
 
   void check_volume() {

@@ -63,7 +63,7 @@ void set_borders(std::vector<Bend>& bends) {
   }
 }
 
-std::vector<Bend> smooth_turns(const MeshTopology& topology, const MeshParts& parts,
+std::vector<Bend> smooth_bends(const MeshTopology& topology, const MeshParts& parts,
                                const std::vector<PartShape>& shapes, Real cosine) {
   std::vector<Bend> bends;
   for (const MeshEdge& edge : topology.edges) {
@@ -118,7 +118,7 @@ MeshCurvature mesh_curvature(const MeshTopology& topology, const MeshParts& part
   }
   const Real least_sag = kLeastSag * norm(high - low);
   const std::vector<PartShape> shapes = shapes_of(topology, parts);
-  const std::vector<Bend> bends = smooth_turns(topology, parts, shapes, cosine);
+  const std::vector<Bend> bends = smooth_bends(topology, parts, shapes, cosine);
   const std::vector<Bending> bendings = bendings_of(bends, shapes.size());
   MeshCurvature result;
   for (const Bend& bend : bends) {

@@ -40,7 +40,7 @@ std::string triangles(std::size_t count) {
 }
 const char* is_or_are(std::size_t count) { return count == 1 ? "is" : "are"; }
 
-std::string turned_text(const MeshRepair& repair, bool sheet) {
+std::string reoriented_text(const MeshRepair& repair, bool sheet) {
   const auto& [count, first] = repair.turned;
   if (sheet)
     return fmt::format(
@@ -82,7 +82,7 @@ std::string repair_text(const MeshRepair& repair, bool sheet) {
   if (const auto& [count, first] = repair.twins; count > 0)
     texts.push_back(fmt::format("{} with the corners of others {} left out (the first: {})", triangles(count),
                                 is_or_are(count), first));
-  if (repair.turned.count > 0) texts.push_back(turned_text(repair, sheet));
+  if (repair.turned.count > 0) texts.push_back(reoriented_text(repair, sheet));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 

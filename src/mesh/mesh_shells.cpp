@@ -39,9 +39,9 @@ struct Shell {
     return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
   }
   Real volume() const {
-    const Vec3 place = triangles[0][0];
+    const Vec3 origin = triangles[0][0];
     Real sum = 0;
-    for (const auto& [a, b, c] : triangles) sum += dot(a - place, cross(b - place, c - place));
+    for (const auto& [a, b, c] : triangles) sum += dot(a - origin, cross(b - origin, c - origin));
     return sum / 6;
   }
   Real area() const {
@@ -64,10 +64,10 @@ Real winding_number(Vec3 point, Vec3 a, Vec3 b, Vec3 c) {
 
 // Winding number of the shell about the point: 1 inside, 0 outside.
 Real winding_number(Vec3 point, const Shell& shell) {
-  Real turns = 0;
+  Real winding = 0;
   if (shell.may_hold(point))
-    for (const auto& [a, b, c] : shell.triangles) turns += winding_number(point, a, b, c);
-  return turns;
+    for (const auto& [a, b, c] : shell.triangles) winding += winding_number(point, a, b, c);
+  return winding;
 }
 
 // Number of points at which the surroundings of a shell are tested: each costs a pass over the triangles of
@@ -199,15 +199,15 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
     if (near[i].empty() && around != 0) misplaced.insert(i);
     const Real under = depth_under(shells[i], depth);
     for (const Index t : largest_of_parts(mesh, near[i], points)) {
-      Real turns = 0;
+      Real winding = 0;
       Index smallest = i;  // of two solids that share a volume
       for (Index j = 0; j < count; ++j) {
         const Real of_other = j == i ? 0 : winding_number(behind(mesh, t, under), shells[j]);
-        turns += of_other;
+        winding += of_other;
         if (of_other > Real(0.5) && volume[j] < volume[smallest]) smallest = j;
       }
-      const bool is_known = std::abs(turns - std::round(turns)) < Real(0.01);
-      if (is_known && std::round(turns) != around) misplaced.insert(smallest);
+      const bool is_known = std::abs(winding - std::round(winding)) < Real(0.01);
+      if (is_known && std::round(winding) != around) misplaced.insert(smallest);
     }
   }
   std::vector<MisplacedShell> result;

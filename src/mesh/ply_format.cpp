@@ -46,8 +46,8 @@ class TextBody {
 
 class BinaryBody {
  public:
-  BinaryBody(std::string_view bytes, std::size_t first, bool turned, const std::string& file)
-      : bytes_(bytes), at_(first), swapped_(turned), file_(file) {}
+  BinaryBody(std::string_view bytes, std::size_t first, bool swapped, const std::string& file)
+      : bytes_(bytes), at_(first), swapped_(swapped), file_(file) {}
 
   std::uint64_t rows_that_fit(const PlyElement& element) const {
     std::size_t row = 0;
@@ -117,24 +117,27 @@ class PlyReader {
     if (element.name == "tristrips") body_.fail("strips of triangles are not read; must be faces");
     for (std::int64_t row = 0; row < element.count; ++row) {
       body_.begin_row();
-      Vec3 place;
+      Vec3 vertex_position;
       for (const PlyProperty& property : element.properties) {
         if (property.count_type != nullptr) {
           list(property, face && is_corners(property));
-        } else if (Real* const axis = vertex ? axis_of(place, property.name) : nullptr) {
+        } else if (Real* const axis = vertex ? axis_of(vertex_position, property.name) : nullptr) {
           *axis = body_.value(*property.type);
         } else {
           body_.skip(*property.type);
         }
       }
       body_.end_row();
-      if (vertex && !is_finite(place))
+      if (vertex && !is_finite(vertex_position))
         body_.fail(fmt::format("vertex {} (from 0): coordinates must be finite", row));
-      if (vertex) mesh_.vertices.push_back(place);
+      if (vertex) mesh_.vertices.push_back(vertex_position);
     }
   }
-  static Real* axis_of(Vec3& place, const std::string& name) {
-    return name == "x" ? &place.x : name == "y" ? &place.y : name == "z" ? &place.z : nullptr;
+  static Real* axis_of(Vec3& vertex_position, const std::string& name) {
+    return name == "x"   ? &vertex_position.x
+           : name == "y" ? &vertex_position.y
+           : name == "z" ? &vertex_position.z
+                         : nullptr;
   }
   static bool is_corners(const PlyProperty& property) {
     return property.name == "vertex_indices" || property.name == "vertex_index";
@@ -195,8 +198,8 @@ TriangleMesh parse_ply(std::string_view bytes, const std::string& file) {
   const PlyHeader header = read_ply_header(words);
   if (header.form == PlyForm::ascii) return PlyReader(TextBody(words, bytes), file).mesh(header);
   if (words.position() == bytes.size()) words.fail("ends after the header: the file is cut");
-  const bool turned = header.form == PlyForm::high_byte_first;
-  return PlyReader(BinaryBody(bytes, words.position() + 1, turned, file), file).mesh(header);
+  const bool swapped = header.form == PlyForm::high_byte_first;
+  return PlyReader(BinaryBody(bytes, words.position() + 1, swapped, file), file).mesh(header);
 }
 
 }  // namespace scree

@@ -26,8 +26,8 @@ DrumArcs drum_arcs(const DrumShape& shape) {
 
 ScrewParts screw_parts(const ScrewShape& shape) {
   const Real rise = std::abs(shape.pitch), half_sector = kPi * shape.thickness / rise;
-  const auto segments_of = [&](Real turns, Index least) {
-    return std::max(least, static_cast<Index>(std::ceil(shape.segments * turns)));
+  const auto segments_of = [&](Real revolutions, Index least) {
+    return std::max(least, static_cast<Index>(std::ceil(shape.segments * revolutions)));
   };
   return {segments_of(shape.length / rise, 1), segments_of(1 - half_sector / kPi, 2),
           segments_of(half_sector / kPi, 1),

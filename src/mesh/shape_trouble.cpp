@@ -107,12 +107,12 @@ std::string shape_trouble(const DrumShape& shape) {
   if (!common.empty() || shape.lifters == 0) return common;
   // Between the tips of two lifters, and between their feet, some of the drum must be free.
   const Real half = shape.lifter_width / 2, tip = shape.radius - shape.lifter_height;
-  const Real half_turn = std::numbers::pi_v<Real> / shape.lifters;
+  const Real half_revolution = std::numbers::pi_v<Real> / shape.lifters;
   return first_unmet(
       {positive("lifter_height", shape.lifter_height),
        positive("lifter_width", shape.lifter_width),
-       {half < shape.radius && tip > 0 && std::atan2(half, tip) < half_turn &&
-            std::asin(half / shape.radius) < half_turn,
+       {half < shape.radius && tip > 0 && std::atan2(half, tip) < half_revolution &&
+            std::asin(half / shape.radius) < half_revolution,
         fmt::format("{} lifters of height {} and width {} do not fit into radius = {}", shape.lifters,
                     shape.lifter_height, shape.lifter_width, shape.radius)},
        {std::sqrt(shape.radius * shape.radius - half * half) > tip,

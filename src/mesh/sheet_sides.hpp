@@ -86,7 +86,7 @@ class SideKeeper {
         if (continues[k]) continue;
         const int before = find(contacts[k], match);
         if (before < 0) continue;
-        past += turn_to(old_.sided[before], contacts[k]);
+        past += set_side(old_.sided[before], contacts[k]);
         continues[k] = true, old_.take_out(before);
       }
     return past > 0 ? keep_nearest(contacts, count, continues) : count;
@@ -118,7 +118,7 @@ class SideKeeper {
     const bool are_faces = feature < mesh_.part_count && now.feature < mesh_.part_count;
     return -dot(previous.normal, now.normal) >= (are_faces ? mesh_.cosine : 0);
   }
-  SCREE_HD bool turn_to(Index old, MeshContact& contact) const {
+  SCREE_HD bool set_side(Index old, MeshContact& contact) const {
     if ((old < 0) == (sided_feature(mesh_, contact) < 0) || is_open(mesh_, contact.feature)) return false;
     turn_over(contact);
     return true;

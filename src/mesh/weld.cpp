@@ -31,12 +31,12 @@ std::vector<Index> first_equal(const std::vector<Vec3>& vertices) {
   entries.reserve(vertices.size());
   for (const Vec3 v : vertices) entries.push_back({bits_of(v), static_cast<Index>(entries.size())});
   std::sort(entries.begin(), entries.end());
-  std::vector<Index> twin(vertices.size());
+  std::vector<Index> equal(vertices.size());
   for (std::size_t i = 0, first = 0; i < entries.size(); ++i) {
     if (entries[i].bits != entries[first].bits) first = i;
-    twin[entries[i].vertex] = entries[first].vertex;
+    equal[entries[i].vertex] = entries[first].vertex;
   }
-  return twin;
+  return equal;
 }
 
 // Points in cells as wide as the search distance.
@@ -81,13 +81,13 @@ class NearPoints {
 TriangleMesh welded(const TriangleMesh& mesh) {
   std::vector<Vec3> vertices(mesh.vertices.size());
   std::transform(mesh.vertices.begin(), mesh.vertices.end(), vertices.begin(), without_minus_zero);
-  const std::vector<Index> twin = first_equal(vertices);
+  const std::vector<Index> equal = first_equal(vertices);
   TriangleMesh result;
   result.triangles.reserve(mesh.triangles.size());
   std::vector<Index> number(vertices.size(), -1);
   for (std::array<Index, 3> triangle : mesh.triangles) {
     for (Index& corner : triangle) {
-      corner = twin[corner];
+      corner = equal[corner];
       if (number[corner] < 0) {
         number[corner] = static_cast<Index>(result.vertices.size());
         result.vertices.push_back(vertices[corner]);

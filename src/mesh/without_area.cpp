@@ -133,15 +133,15 @@ class Joiner {
     const auto length = [&](const Edge& e) { return norm(vertices_[e.second] - vertices_[e.first]); };
     const Edge longest = *std::ranges::max_element(edges, {}, length);
     const Vec3 along = vertices_[longest.second] - vertices_[longest.first];
-    const auto place = [&](Index v) {
+    const auto along_line = [&](Index v) {
       return std::pair(dot(along, vertices_[v] - vertices_[longest.first]), v);
     };
-    std::ranges::sort(points, {}, place);
+    std::ranges::sort(points, {}, along_line);
     points.erase(std::unique(points.begin(), points.end()), points.end());
     for (auto [a, b] : edges) {
-      if (place(b) < place(a)) std::swap(a, b);
-      const auto first = std::ranges::upper_bound(points, place(a), {}, place),
-                 last = std::ranges::lower_bound(points, place(b), {}, place);
+      if (along_line(b) < along_line(a)) std::swap(a, b);
+      const auto first = std::ranges::upper_bound(points, along_line(a), {}, along_line),
+                 last = std::ranges::lower_bound(points, along_line(b), {}, along_line);
       std::vector<Index> between;
       std::copy_if(first, last, std::back_inserter(between), [&, a = a, b = b](Index v) {
         return !is_high({a, v, b});
