@@ -14,21 +14,26 @@ namespace {
 
 constexpr std::size_t kWidth = 110;
 
-// input/limits.md says the same; tests/cli/test_words.py compares them.
-constexpr const char* kLeftOut =
-    "What the model leaves out today. Particles and bodies rub, on each other and on walls; "
-    "rolling and twisting are resisted in explicit steps (velocity-verlet) only. "
-    "Attraction is explicit, and acts on particles alone: bodies attract neither each other nor walls. "
-    "Particles are discs (2D) or spheres (3D): no polygons. "
-    "They touch each other, planes, meshes and the shapes of bodies, which are discs or spheres; so do these "
-    "shapes. Meshes of bodies touch planes, with the corners of their convex hulls; meshes do not touch each "
-    "other. Bodies are rigid. "
-    "Planar ones move along x and y and turn about z, in 3D too, and forces "
-    "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
-    "universal and all the other usual joints (`input/README.md`). Joints have motors, "
-    "servos, springs, stops and dry friction, but no play; cylinders have no mass. All particles are there "
-    "at the start: none flow in, "
-    "bond or break. There is no fluid and no heat.";
+// The text of input/limits.md, in lines of kWidth; tests/cli/test_words.py compares them.
+constexpr const char* kModelLimits = R"(The model has these limits today.
+
+Particles are discs (2D) or spheres (3D); there are no polygons. All particles exist from the start: none are
+inserted, bonded or broken.
+
+Friction acts between particles, bodies and walls. Rolling and twisting resistance and adhesion are available
+in explicit steps (velocity-verlet) only. Adhesion acts on particles only: bodies are attracted neither by
+each other nor by walls.
+
+Particles, and the discs and spheres on bodies, touch each other, planes and meshes. A mesh of a body touches
+planes with the corners of its convex hull. Meshes do not touch each other.
+
+Bodies are rigid. Planar bodies move along x and y and rotate about z, also in 3D; forces along z have no
+effect on them. Bodies with `kind = "spatial"` move freely in space, with spherical, universal and all other
+common joints (`input/README.md`). Joints have motors, servos, springs, stops and dry friction, but no
+clearance. Cylinders have no mass.
+
+There is no fluid and no heat transfer.
+)";
 
 void describe_key(std::string& out, const Key& key, const std::string& selector) {
   out += "  " + key.name + "\n";
@@ -105,7 +110,7 @@ std::string keys_text() {
       "times. Each key: what it takes [unit]; default; meaning. SI units; angles in radians.",
       kWidth);
   out += "\n";
-  out += wrapped(kLeftOut, kWidth);
+  out += kModelLimits;
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");
