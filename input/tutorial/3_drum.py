@@ -1,4 +1,4 @@
-"""Tutorial 3: the motor's torque, and the grains' weight times its arm, over the second half of the run."""
+"""Tutorial 3: the torque of the motor and the torque of the particles' weight, over the second half of the run."""
 
 import math
 import sys
@@ -12,7 +12,7 @@ late = run.history.time > half
 torque = np.mean(run.history["efforts/motor/effort"][late])
 rate = np.mean(run.history["efforts/motor/rate"][late])
 
-centres = []                                                    # of mass
+centres = []                                                    # of mass of the particles
 for snapshot in run.snapshots:
     if snapshot.time > half:
         mass = np.array(snapshot.particles["mass"])
@@ -20,4 +20,4 @@ for snapshot in run.snapshots:
 x, y = np.mean(centres, axis=0)[:2]
 
 print(f"rate {rate:.2f} rad/s, torque {torque:.2f} N m, weight times arm {9.81 * mass.sum() * x:.2f} N m")
-print(f"the heap hangs {math.degrees(math.atan2(x, -y)):.0f} degrees aside")
+print(f"centre of mass {math.degrees(math.atan2(x, -y)):.0f} degrees from the vertical")

@@ -1,4 +1,4 @@
-"""Tutorial 4: the forces in the cylinders and on the bucket, and the load, weighed at the pins of the ground."""
+"""Tutorial 4: the forces in the cylinders and on the bucket, and the load as carried by the pins on the ground."""
 
 import sys
 

@@ -1,7 +1,7 @@
 """Tutorial 5: a parameter study of the drum of tutorial 3.
 
     5_study.py list LIST            writes the list of its runs
-    5_study.py table LIST RESULTS   one table of what they gave"""
+    5_study.py table LIST RESULTS   prints a table of their results"""
 
 import sys
 
@@ -10,7 +10,7 @@ import scree
 
 
 def torque(run):
-    """Of the motor, over the second half of the run [N m]."""
+    """Mean torque of the motor over the second half of the run [N m]."""
     late = run.history.time > run.history.time[-1] / 2
     return round(np.mean(run.history["efforts/motor/effort"][late]), 2)
 

@@ -143,7 +143,7 @@ class TutorialTest(unittest.TestCase):
         first.send_signal(signal.SIGUSR1)
         said = first.communicate(timeout=LIMIT)[0]
         self.assertEqual(first.returncode, STOPPED, said)
-        self.assert_log("ends so", said)
+        self.assert_log("ends with", said)
 
         second = self.job()
         said = second.communicate(timeout=LIMIT)[0]
