@@ -22,5 +22,6 @@ surface = np.array([(left + 0.02, top[strip].max()) for left, strip in zip(edges
 surface = surface[surface[:, 1] > 0.03]
 slope = -np.polyfit(surface[:, 0], surface[:, 1], 1)[0]
 
-print(f"force on the closed flap {force:.0f} N, {100 * force / weight:.0f} % of the particles' weight of {weight:.0f} N")
+share = 100 * force / weight
+print(f"force on the closed flap {force:.0f} N, {share:.0f} % of the particles' weight of {weight:.0f} N")
 print(f"slope {math.degrees(math.atan(slope)):.0f} degrees")
