@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""A parameter study from the list of its runs to the table of its results: how fast a conveyor carries grains away.
+"""A parameter study from the list of its runs to the table of its results: the throughput of a conveyor.
 
 From the root of the built repository, on a machine with SLURM:
 
-    .venv/bin/python jobs/study.py write study.txt                          # a line for each run: friction and speed
+    .venv/bin/python jobs/study.py write study.txt                          # one line per run: friction and speed
     sbatch --array=1-6 jobs/array.sbatch study.txt results/study
-    .venv/bin/python jobs/study.py table study.txt results/study study.csv   # again and again while they go on
+    .venv/bin/python jobs/study.py table study.txt results/study study.csv   # may be repeated during the runs
 
-Without SLURM, two at a time, in place of the second line:
+Without SLURM, two runs at a time (replaces the second line):
 
     .venv/bin/python jobs/study.py run study.txt results/study --at-once 2
 
-A study of another deck is a copy of this file with other words in capitals: anywhere in the repository, or anywhere at
-all where the package is installed (pip install ./postprocess).
+For another study, copy this file and edit DECK, KEYS and MEASURES. The copy may be anywhere in the repository, or anywhere
+at all if the package is installed (pip install ./postprocess).
 """
 
 import argparse
@@ -28,8 +28,8 @@ try:
 
     import scree
 except ModuleNotFoundError as error:
-    sys.exit(f"error: {HERE}: {error}. Start it by the repository's .venv/bin/python from a place in it, or install "
-             "the package: pip install REPOSITORY/postprocess")
+    sys.exit(f"error: {HERE}: {error}. Run it with the repository's .venv/bin/python from inside the repository, or "
+             "install the package: pip install REPOSITORY/postprocess")
 
 DECK = "input/examples/conveyor.toml"
 KEYS = {
@@ -37,29 +37,29 @@ KEYS = {
     "walls.belt.surface_velocity": [[0.5, 0.0, 0.0], [1.0, 0.0, 0.0]],
 }
 MEASURES = {
-    "left": lambda run: run.history["step/left"][-1],  # particles that the belt has carried out
-    "pull [N]": lambda run: np.mean(run.history["contacts/belt/fx"]),  # on the belt
-    "work [J]": lambda run: run.history["energy/driver_work"][-1],
+    "escaped": lambda run: run.history["step/left"][-1],  # particles that the belt has carried out of the domain
+    "belt force [N]": lambda run: np.mean(run.history["contacts/belt/fx"]),
+    "belt work [J]": lambda run: run.history["energy/driver_work"][-1],
 }
 
 
-def write(words):
-    same = {key: [value] for key, _, value in (setting.partition("=") for setting in words.set)}
-    count = scree.sweep.write_list(words.list, DECK, KEYS | same)
-    print(f"{words.list}: {count} runs")
+def write(arguments):
+    common = {key: [value] for key, _, value in (setting.partition("=") for setting in arguments.set)}
+    count = scree.sweep.write_list(arguments.list, DECK, KEYS | common)
+    print(f"{arguments.list}: {count} runs")
     return 0
 
 
-def run(words):
-    failed = scree.sweep.run_local(words.list, words.results, at_once=words.at_once)
+def run(arguments):
+    failed = scree.sweep.run_local(arguments.list, arguments.results, at_once=arguments.at_once)
     for element, message in failed.items():
         print(f"{element}: {message}", file=sys.stderr)
     return 1 if failed else 0
 
 
-def table(words):
-    found = scree.sweep.table(words.list, words.results, MEASURES)
-    found.to_csv(words.csv)
+def table(arguments):
+    found = scree.sweep.table(arguments.list, arguments.results, MEASURES)
+    found.to_csv(arguments.csv)
     print(found.to_string())
     return 0
 
@@ -67,21 +67,22 @@ def table(words):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for function, text in ((write, "the list of runs"), (run, "them on this machine"), (table, "their table, a CSV")):
+    for function, text in ((write, "write the list of runs"), (run, "run the list on this machine"),
+                           (table, "tabulate the results as CSV")):
         command = commands.add_parser(function.__name__, help=text)
-        command.add_argument("list", metavar="LIST", help="file with a line for each run")
+        command.add_argument("list", metavar="LIST", help="file with one line per run")
         command.set_defaults(function=function)
         if function is write:
-            command.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="the same in all runs")
+            command.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="settings of all runs")
         else:
-            command.add_argument("results", metavar="RESULTS", help="folder of their results")
+            command.add_argument("results", metavar="RESULTS", help="folder of the results")
         if function is run:
-            command.add_argument("--at-once", type=int, default=1, metavar="N")
+            command.add_argument("--at-once", type=int, default=1, metavar="N", help="number of simultaneous runs")
         elif function is table:
             command.add_argument("csv", metavar="CSV")
-    words = parser.parse_args()
+    arguments = parser.parse_args()
     try:
-        return words.function(words)
+        return arguments.function(arguments)
     except (scree.ScreeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

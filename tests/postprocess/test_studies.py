@@ -159,7 +159,7 @@ class StudyTest(FolderTest):
         table = pandas.read_csv(csv)
         self.assertEqual(list(table["status"]), ["done"] * 6)
         self.assertEqual(sorted(set(table["contact.pairs.0.friction"])), [0.1, 0.3, 0.5])
-        self.assertTrue({"left", "pull [N]", "work [J]"} <= set(table))
+        self.assertTrue({"escaped", "belt force [N]", "belt work [J]"} <= set(table))
 
 
 if __name__ == "__main__":
