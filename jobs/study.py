@@ -11,8 +11,8 @@ Without SLURM, two runs at a time (replaces the second line):
 
     .venv/bin/python jobs/study.py run study.txt results/study --at-once 2
 
-For another study, copy this file and edit DECK, KEYS and MEASURES. The copy may be anywhere in the repository, or anywhere
-at all if the package is installed (pip install ./postprocess).
+For another study, copy this file and edit DECK, KEYS and MEASURES. The copy may be anywhere in the repository, or
+anywhere at all if the package is installed (pip install ./postprocess).
 """
 
 import argparse
