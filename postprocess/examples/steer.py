@@ -1,30 +1,30 @@
 #!/usr/bin/env python3
-"""Steering a run from Python: an arm in a bed of grains is held at an angle by a controller that is not in the deck.
+"""Steering a run from Python: a controller outside the deck holds an arm in a bed of particles at an angle.
 
     .venv/bin/python postprocess/examples/steer.py results/steer
 
-The run goes in pieces of 20 ms. After each of them the controller reads where the arm is, adds the torque of the next
-piece to the motor's table, and the run goes on from its checkpoint. Up to there the table is the same, so that nothing
-of the state is lost or computed anew: springs of contacts and spins stay, and a run with the whole table from the start
-gives the same bits.
+The run consists of pieces of 20 ms. After each piece the controller reads the angle of the arm and appends the torque
+of the next piece to the table of the motor; then the run continues from its checkpoint. The table is unchanged up to
+the checkpoint, so that the complete state continues, contact springs and spins included: a run with the complete table
+from the start gives the same bits.
 """
 
 import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve()
-if (HERE.parents[1] / "scree/__init__.py").exists():  # in the repository; elsewhere the package is installed
+if (HERE.parents[1] / "scree/__init__.py").exists():  # in the repository; elsewhere the installed package is used
     sys.path.insert(0, str(HERE.parents[1]))
 
 import scree
 
 PIECE, PIECES = 0.02, 25  # [s]
-WANTED = 0.6  # angle of the arm [rad]
-STIFFNESS, DAMPING, INTEGRAL = 4.0, 0.5, 8.0  # of the controller [N m/rad], [N m s/rad], [N m/(rad s)]
+TARGET = 0.6  # angle of the arm [rad]
+STIFFNESS, DAMPING, INTEGRAL = 4.0, 0.5, 8.0  # gains of the controller [N m/rad], [N m s/rad], [N m/(rad s)]
 
 
 def machine():
-    """A deck: the arm turns on a pin at the edge of a box of grains."""
+    """The deck: an arm on a pin at the edge of a box of particles."""
     deck = scree.Deck(title="an arm that Python steers", gravity=[0.0, -9.81],
                       space={"dimension": 2, "min": [-0.3, -0.1], "max": [0.5, 0.6], "x_min": "wall", "x_max": "wall",
                              "y_min": "wall"})
@@ -43,18 +43,18 @@ def machine():
 
 def controller():
     """A function from the angle [rad] and its rate [rad/s] to the torque [N m]."""
-    missed = 0.0
+    integral = 0.0
 
     def torque(angle, rate):
-        nonlocal missed
-        missed += (WANTED - angle) * PIECE
-        return float(STIFFNESS * (WANTED - angle) - DAMPING * rate + INTEGRAL * missed)
+        nonlocal integral
+        integral += (TARGET - angle) * PIECE
+        return float(STIFFNESS * (TARGET - angle) - DAMPING * rate + INTEGRAL * integral)
 
     return torque
 
 
 def steer(folder, deck, torque, pieces=PIECES, **how):
-    """The run, and the deck with the whole table. how: further arguments of Deck.run."""
+    """Returns the run, and the deck with the complete table. how: further arguments of Deck.run."""
     run = deck.run(folder, "--overwrite", **how)
     for piece in range(1, pieces):
         angle, rate = (float(run.history[f"coordinates/pin/{name}"][-1]) for name in ("angle", "angle_rate"))
@@ -68,4 +68,4 @@ def steer(folder, deck, torque, pieces=PIECES, **how):
 if __name__ == "__main__":
     run, _ = steer(sys.argv[1], machine(), controller(), quiet=True)
     print(f"t = {run.history.time[-1]:.2f} s: the arm is at {run.history['coordinates/pin/angle'][-1]:.3f} rad, "
-          f"wanted: {WANTED} rad; the motor gives {run.history['efforts/motor/effort'][-1]:.3f} N m")
+          f"wanted: {TARGET} rad; the motor gives {run.history['efforts/motor/effort'][-1]:.3f} N m")

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""The pictures and films of runs in this folder, from their decks to the files.
+"""Makes the pictures and films of runs in this folder from their decks.
 
     postprocess/pictures/make.py RESULTS [--scree SCREE] [NAME ...]     (NAME: as excavator.png; default: all)
     postprocess/pictures/make.py --list
 
-Runs the decks into the folder RESULTS, where a run is not there yet, and writes the files here. One core takes a
-quarter of an hour for all. Needs postprocess/requirements.txt, and for paraview.png what jobs/setup.sh --paraview
-installs. The plots here are made by tests/performance/table4.py, tests/performance/scaling_model.py and
-tests/verification/bulk/plots.py.
+Runs the decks into the folder RESULTS unless the run exists already, and writes the files into this folder. All of them
+take one core a quarter of an hour. Needs postprocess/requirements.txt and, for paraview.png, the packages of
+jobs/setup.sh --paraview. The plots in this folder are made by tests/performance/table4.py,
+tests/performance/scaling_model.py and tests/verification/bulk/plots.py.
 """
 
 import argparse
@@ -23,12 +23,12 @@ FILM = ("--frames", "25", "--rate", "8", "--width", "1000")
 
 @dataclasses.dataclass(frozen=True)
 class Picture:
-    """deck: under input, without .toml; settings: of the run, as --set has them; command: of scree-post, or "paraview"
-    for the script that it makes; words: its options."""
+    """deck: under input, without .toml; settings: of the run, as for --set; command: of scree-post, or "paraview" for
+    its script; options: options of the command."""
 
     deck: str
     command: str
-    words: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
 
     @property
@@ -50,9 +50,9 @@ PICTURES = {
 }
 
 
-def called(*words: object) -> None:
-    print(" ".join(map(str, words)), flush=True)
-    subprocess.run([str(word) for word in words], check=True)
+def call(*command: object) -> None:
+    print(" ".join(map(str, command)), flush=True)
+    subprocess.run([str(word) for word in command], check=True)
 
 
 def make(name: str, results: pathlib.Path, program: pathlib.Path) -> None:
@@ -60,13 +60,13 @@ def make(name: str, results: pathlib.Path, program: pathlib.Path) -> None:
     folder = results / picture.results
     if not (folder / "run_record.json").exists():
         settings = [word for setting in picture.settings for word in ("--set", setting)]
-        called(program, "run", ROOT / f"input/{picture.deck}.toml", "--output", folder, "--overwrite", *settings)
+        call(program, "run", ROOT / f"input/{picture.deck}.toml", "--output", folder, "--overwrite", *settings)
     post = ROOT / "postprocess/scree-post"
     if picture.command != "paraview":
-        called(post, picture.command, folder, *picture.words, "-o", HERE / name)
+        call(post, picture.command, folder, *picture.options, "-o", HERE / name)
         return
-    called(post, "paraview", folder)
-    called("xvfb-run", "-a", "pvbatch", folder / "view.py", *picture.words, "-o", HERE / name)
+    call(post, "paraview", folder)
+    call("xvfb-run", "-a", "pvbatch", folder / "view.py", *picture.options, "-o", HERE / name)
 
 
 def main() -> int:
@@ -74,12 +74,12 @@ def main() -> int:
     parser.add_argument("results", nargs="?", type=pathlib.Path, metavar="RESULTS")
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--scree", type=pathlib.Path, default=ROOT / "build/release/scree", help="the program")
-    parser.add_argument("--list", action="store_true", help="say how each is made, and make none")
+    parser.add_argument("--list", action="store_true", help="print how each file is made, and make none")
     arguments = parser.parse_args()
     if arguments.list:
         for name, picture in PICTURES.items():
             settings = "".join(f' --set "{setting}"' for setting in picture.settings)
-            print(f"{name}: input/{picture.deck}.toml{settings}; {' '.join((picture.command, *picture.words))}")
+            print(f"{name}: input/{picture.deck}.toml{settings}; {' '.join((picture.command, *picture.options))}")
         return 0
     if arguments.results is None:
         parser.error("the folder for the results is missing")

@@ -1,35 +1,33 @@
-"""The commands of scree-post."""
+"""The program scree-post."""
 
 from __future__ import annotations
 
 import argparse
 import io
 import os
-import pathlib
 import sys
 from collections.abc import Sequence
 
+from scree.commands import COMMANDS
 from scree.errors import ScreeError
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Returns the exit code: 0 done, 1 for `compare` where runs differ, 2 for what cannot be done."""
-    from scree.commands import COMMANDS
-
-    parser = argparse.ArgumentParser(prog="scree-post", description="Looks at what a run of Scree left in its folder.")
+    """Returns the exit code: 0 done, 1 if `compare` finds differences, 2 if the command cannot be carried out."""
+    parser = argparse.ArgumentParser(prog="scree-post", description="Evaluates the results of a run of Scree.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, (describe, run) in COMMANDS.items():
         short, *more = (run.__doc__ or "").strip().splitlines()
         described = commands.add_parser(name, help=short, description="\n".join([f"{short}.", *more]))
         describe(described)
         described.set_defaults(run=run)
-    chosen = parser.parse_args(words)
+    arguments = parser.parse_args(words)
     refuse_empty(parser, list(sys.argv[1:] if words is None else words))
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # of names that the locale's letters cannot say
+        sys.stdout.reconfigure(errors="backslashreplace")  # for names with characters outside the locale's encoding
     try:
-        return int(chosen.run(chosen))
-    except BrokenPipeError:  # whoever reads the words has seen enough
+        return int(arguments.run(arguments))
+    except BrokenPipeError:  # the reader of the output has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except (ScreeError, OSError) as error:
@@ -38,13 +36,8 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def refuse_empty(parser: argparse.ArgumentParser, words: list[str]) -> None:
-    """Ends the program where a word names nothing: an empty path would be the current folder."""
+    """Ends the program if an argument is empty: an empty path would mean the current folder."""
     for before, word in zip(["", *words], words):
         if not word.strip():
             option = f"argument {before}: " if before.startswith("-") else ""
             parser.error(f"{option}a name or path is empty; is a variable of a script not set?")
-
-
-def add_folder(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=pathlib.Path, metavar="RESULT_DIR",
-                        help="results of a run; those before a restart from another folder are joined to them")

@@ -1,4 +1,4 @@
-"""Decks as dictionaries: read, made, changed, written, checked and run."""
+"""Decks as dictionaries: reading, making, changing, writing, checking and running them."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from scree.run import Run, open_run
 from scree.toml_items import block, inline, is_list_of_tables, of_deck, plain, unwrapped
 
 Path = str | os.PathLike[str]
-FILES = ("meshes", "particles")  # lists whose elements may have a `file`, relative to the deck's folder
+FILES = ("meshes", "particles")  # lists whose elements may have a `file` relative to the folder of the deck
 
 
-def place(elements: Any, part: str, path: str) -> int:
-    """Of the element of a list of tables that has this name or, where none has, this number."""
+def element_index(elements: Any, part: str, path: str) -> int:
+    """Index of the element of a list of tables with this name or, if none has it, with this number."""
     names = [table.get("name") for table in elements if isinstance(table, Mapping)]
     if part in names:
         return names.index(part)
@@ -37,17 +37,17 @@ def place(elements: Any, part: str, path: str) -> int:
 
 
 def key_of(message: str, deck: str) -> str:
-    """That a message is about, with the deck and a place in front or without: "fast.toml:3:8: time.end = -1: must be".
-    Of a number in brackets that is the whole list, of which the program speaks."""
+    """The key in a message, which may begin with the deck and a position: "fast.toml:3:8: time.end = -1: must be". For
+    an element of a list of numbers it is the key of the list, as in the messages of the program."""
     found = re.match(rf"(?:{re.escape(deck)}(?::\d+:\d+)?: )?([^\s:]+?)(?:\.\d+)?(?: = |: )", message)
     return found[1] if found else ""
 
 
 class Deck(MutableMapping[str, Any]):
     """Keys are the paths of `--set`: deck["contact.pairs.0.friction"], deck["walls.belt.surface_velocity"]. Numbers,
-    texts and truths come as Python's own; lists and tables are the deck's, so that changes in them change it. Comments
-    stay where they are; tables of one list that stand apart are written together. Iterating gives the names of the
-    tables at the top.
+    strings and booleans are returned as Python values; lists and tables are those of the deck, so that changes in them
+    change the deck. Comments are preserved; tables of one list are written together. Iteration yields the names of the
+    top-level tables.
 
         deck = scree.Deck(gravity=[0, 0, -9.81], space={"dimension": 3, "min": [0, 0, 0], "max": [1, 1, 1]})
         deck["time.end"] = 0.5
@@ -55,17 +55,17 @@ class Deck(MutableMapping[str, Any]):
     """
 
     def __init__(self, **tables: Any) -> None:
-        """Files that the deck refers to are looked for from `folder`: that of the deck's file, else the current one."""
+        """Files of the deck are relative to `folder`: the folder of the deck's file, else the current one."""
         self._document = tomlkit.document()
         self.name = "deck"  # in messages
         self.folder = pathlib.Path.cwd()
-        self._file: pathlib.Path | None = None  # that was read or written last
+        self._file: pathlib.Path | None = None  # last read or written
         for key, value in tables.items():
             self[key] = value
 
     @classmethod
     def read(cls, path: Path) -> Deck:
-        """Throws ScreeError where the file cannot be read or is no TOML."""
+        """Throws ScreeError if the file cannot be read or is not TOML."""
         try:
             text = pathlib.Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
@@ -76,7 +76,7 @@ class Deck(MutableMapping[str, Any]):
 
     @classmethod
     def parse(cls, text: str, name: str = "deck", folder: Path = ".") -> Deck:
-        """Of a text in TOML. name: for messages; folder: from which its files are looked for."""
+        """A deck from TOML text. name: in messages; folder: to which its files are relative."""
         deck = cls()
         deck.name, deck.folder = name, pathlib.Path(folder).resolve()
         try:
@@ -86,13 +86,13 @@ class Deck(MutableMapping[str, Any]):
         return deck
 
     def _parent(self, path: str, make: bool) -> tuple[Any, str | int]:
-        """The table or list of tables that holds what the path leads to, and its key there. make: tables on the way
-        that are not there."""
+        """The table or list of tables that contains the element of this path, and the key of the element. make: create
+        missing tables of the path."""
         parts = path.split(".")
         holder: Any = self._document
         for k, part in enumerate(parts):
             if is_list_of_tables(holder) or (isinstance(holder, tomlkit.items.AoT) and not holder):
-                key: str | int = place(holder, part, path)
+                key: str | int = element_index(holder, part, path)
             elif isinstance(holder, Mapping):
                 key = part
             else:
@@ -101,7 +101,7 @@ class Deck(MutableMapping[str, Any]):
                 return holder, key
             if isinstance(key, str) and key not in holder:
                 if not make:
-                    raise MissingError(f"{path}: {'.'.join(parts[: k + 1])} is not there")
+                    raise MissingError(f"{path}: {'.'.join(parts[: k + 1])} does not exist")
                 holder[key] = tomlkit.table() if k == 0 else tomlkit.inline_table()
             holder = holder[key]
         raise AssertionError("a path has a part at least")
@@ -109,7 +109,7 @@ class Deck(MutableMapping[str, Any]):
     def __getitem__(self, path: str) -> Any:
         holder, key = self._parent(path, make=False)
         if isinstance(key, str) and key not in holder:
-            raise MissingError(f"{path}: is not there; there are {', '.join(holder) or 'no keys'}")
+            raise MissingError(f"{path}: does not exist; there are {', '.join(holder) or 'no keys'}")
         return unwrapped(holder[key])
 
     def __setitem__(self, path: str, value: Any) -> None:
@@ -125,7 +125,7 @@ class Deck(MutableMapping[str, Any]):
             holder[key] = inline(value) if within else of_deck(value, path.count("."))
 
     def __delitem__(self, path: str) -> None:
-        self[path]  # throws where it is not there
+        self[path]  # throws if it does not exist
         holder, key = self._parent(path, make=False)
         del holder[key]
 
@@ -133,11 +133,11 @@ class Deck(MutableMapping[str, Any]):
         return iter(self._document)
 
     def __len__(self) -> int:
-        """Number of tables and keys at the top."""
+        """Number of top-level tables and keys."""
         return len(self._document)
 
     def add(self, path: str, **table: Any) -> Any:
-        """Appends a table to a list of tables, which is made where there is none, and returns it:
+        """Appends a table to a list of tables, which is created if necessary, and returns it:
         deck.add("bodies", name="lid", mass=2.0), deck.add("bodies.lid.shapes", radius=0.1)."""
         if path not in self:
             self[path] = [table]
@@ -158,20 +158,19 @@ class Deck(MutableMapping[str, Any]):
         return Deck.parse(str(self), self.name, self.folder)
 
     def __str__(self) -> str:
-        """In TOML."""
+        """The deck as TOML."""
         return tomlkit.dumps(self._document)
 
     def __repr__(self) -> str:
         return f"<{self.name}: {', '.join(self) or 'an empty deck'}>"
 
     def write(self, path: Path) -> None:
-        """Files that the deck refers to by relative paths are referred to from the new place. Messages about the deck
-        are of this file from then on."""
+        """Relative paths of files are adapted to the new folder. Later messages about the deck name this file."""
         pathlib.Path(path).write_text(self._text_in(pathlib.Path(path).resolve().parent), encoding="utf-8")
         self.name, self._file = os.fspath(path), pathlib.Path(path).resolve()
 
     def _text_in(self, folder: pathlib.Path) -> str:
-        """As a file in this folder has it."""
+        """The text of the deck for a file in this folder."""
         written = self.copy()
         lists = [written[key] for key in FILES if key in written and is_list_of_tables(written[key])]
         for table in itertools.chain(*lists):
@@ -180,7 +179,7 @@ class Deck(MutableMapping[str, Any]):
         return str(written)
 
     def _unchanged_file(self) -> pathlib.Path | None:
-        """The file that was read or written last, if it has the deck as it is now."""
+        """The last file read or written, if it has the current content of the deck."""
         try:
             same = self._file is not None and self._file.read_text(encoding="utf-8") == self._text_in(self._file.parent)
         except (OSError, UnicodeDecodeError):
@@ -188,29 +187,28 @@ class Deck(MutableMapping[str, Any]):
         return self._file if same else None
 
     def problems(self) -> list[str]:
-        """What the deck's keys and their values break of the JSON schema, a line each. What they mean together only
-        the program knows."""
+        """Violations of the JSON schema by keys and values, one line each. Only the program checks combinations."""
         return schema.problems(self.to_dict())
 
     def check(self, scree: Path | None = None) -> str:
-        """Returns what `scree check` says of the deck; nothing where the program is not there. scree: the program, by
-        default $SCREE, the one on the PATH or that of this repository. Throws ScreeError with the program's message,
-        which is about the first mistake that it meets, and all `problems` of other keys."""
+        """Returns the output of `scree check`, or an empty string if the program is not found. scree: the program, by
+        default $SCREE, scree on the PATH or that of this repository. Throws ScreeError with the message of the program,
+        which is about the first error that it finds, and all `problems` of other keys."""
         where = program.find(scree)
         try:
-            said, refusal = "" if where is None else self._said_by(where), ""
+            output, refusal = "" if where is None else self._checked_by(where), ""
         except program.RefusedError as error:
-            said, refusal = "", str(error)
-        told = key_of(refusal, self.name)
+            output, refusal = "", str(error)
+        refused_key = key_of(refusal, self.name)
         lines = [refusal] if refusal else []
         lines += [f"{self.name}: {problem}" for problem in self.problems()
-                  if not refusal or key_of(problem, self.name) != told]
+                  if not refusal or key_of(problem, self.name) != refused_key]
         if lines:
             raise ScreeError("\n".join(lines))
-        return said
+        return output
 
-    def _said_by(self, where: pathlib.Path) -> str:
-        """By `scree check`, of the deck's file or of one of that text."""
+    def _checked_by(self, where: pathlib.Path) -> str:
+        """Output of `scree check` for the deck's file, or for a temporary file if the deck has changed."""
         file = self._unchanged_file()
         if file is not None:
             return program.call([where, "check", file], {str(file): self.name})
@@ -221,10 +219,10 @@ class Deck(MutableMapping[str, Any]):
 
     def run(self, directory: Path, *options: str, ranks: int = 1, backend: str = "auto", quiet: bool = False,
             launcher: str = "mpirun", scree: Path | None = None) -> Run:
-        """Runs the deck and returns the results. It is written into their directory, as deck.toml.
+        """Runs the deck and returns the results. The deck is written into the directory of the results as deck.toml.
 
-        options: further words of `scree run`, as "--overwrite". quiet: the program's progress is not shown. launcher:
-        what starts several ranks. Throws ScreeError with the program's message where it does not end well.
+        options: further arguments of `scree run`, such as "--overwrite". quiet: do not show the progress. launcher:
+        starts several ranks. Throws ScreeError with the message of the program if the run fails.
         """
         where = program.required(scree)
         folder = pathlib.Path(directory)
@@ -236,7 +234,7 @@ class Deck(MutableMapping[str, Any]):
         words: list[Path] = [*several, where, "run", path, "--output", folder, "--backend", backend, *options]
         try:
             program.call(words, {str(path): self.name}, PIPE if quiet else None)
-        except program.RefusedError:  # the folder stays as it was
+        except program.RefusedError:  # leave the folder unchanged
             path.unlink() if earlier is None else path.write_bytes(earlier)
             raise
         return open_run(folder)

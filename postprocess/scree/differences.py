@@ -1,4 +1,4 @@
-"""Where two runs differ."""
+"""Differences between two runs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ import numpy as np
 from scree.run import Run
 from scree.snapshots import KINDS
 
-ROUND_OFF = 1e-9  # of the time that runs cover: up to so far apart times are the same
+ROUND_OFF = 1e-9  # fraction of the simulated time up to which two times are considered equal
+
 
 @dataclass(frozen=True)
 class Difference:
-    """Of two runs' values under one name."""
+    """Difference between the values of two runs under one name."""
 
-    name: str  # of a column of the history, or of a field as "particles/velocity"
-    text: str  # why it cannot be measured, empty where it can
+    name: str  # column of the history, or field such as "particles/velocity"
+    text: str  # why there is no numerical difference; empty if there is
     largest: float = 0.0  # absolute difference [unit]
-    relative: float = 0.0  # that over the largest absolute value in the first run
-    time: float = 0.0  # of the largest difference [s]
+    relative: float = 0.0  # largest / largest absolute value in the first run
+    time: float = 0.0  # time of the largest difference [s]
     unit: str = ""
 
     def __str__(self) -> str:
@@ -34,8 +35,8 @@ def same_bits(one: np.ndarray, other: np.ndarray) -> bool:
     return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
 
 
-def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Absolute differences; where one is NaN or infinite and the other is something else, infinite."""
+def absolute_differences(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Absolute differences; infinite where one value is NaN or infinite and the other is different."""
     with np.errstate(invalid="ignore"):
         found = np.abs(np.subtract(one, other, dtype=float))
     same = (one == other) | (np.isnan(one) & np.isnan(other)) if one.dtype.kind == "f" else one == other
@@ -54,7 +55,7 @@ def over(largest: float, scale: float) -> float:
 
 
 def matched(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the times [s] that both have but for round-off, in each. Times grow."""
+    """Indices, in each, of the times [s] that both have within round-off. Times increase."""
     if not len(one) or not len(other):
         return np.empty(0, int), np.empty(0, int)
 
@@ -72,7 +73,7 @@ def matched(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def missing(name: str, runs: tuple[Run, Run], times: tuple[np.ndarray, np.ndarray],
             common: tuple[np.ndarray, np.ndarray]) -> Iterator[Difference]:
-    """What one run alone has. name: of one of these, in the singular."""
+    """Items that only one run has. name: of an item, singular."""
     for run, all_times, shared in zip(runs, times, common):
         alone = np.delete(all_times, shared)
         if len(alone) == 1:
@@ -83,7 +84,7 @@ def missing(name: str, runs: tuple[Run, Run], times: tuple[np.ndarray, np.ndarra
 
 
 def common_rows(one: Run, other: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Of the history, by time."""
+    """Rows of the history at common times, in each."""
     if not (one.history.rows and other.history.rows):
         return np.empty(0, int), np.empty(0, int)
     return matched(one.history.time.values, other.history.time.values)
@@ -101,7 +102,7 @@ def history_differences(one: Run, other: Run) -> Iterator[Difference]:
     a, b = one.history, other.history
     a.read(), b.read()  # all at once
     for name in sorted(set(a) ^ set(b)):
-        yield Difference(name, f"in {one.folder if name in a else other.folder} alone")
+        yield Difference(name, f"in {one.folder if name in a else other.folder} only")
     rows = common_rows(one, other)
     yield from missing("row", (one, other), (times_of(one), times_of(other)), rows)
     for name in a:
@@ -110,7 +111,7 @@ def history_differences(one: Run, other: Run) -> Iterator[Difference]:
         first, second = a[name].values[rows[0]], b[name].values[rows[1]]
         if same_bits(first, second):
             continue
-        gaps = apart(first, second)
+        gaps = absolute_differences(first, second)
         row = int(gaps.argmax())
         yield Difference(name, "", float(gaps[row]), over(float(gaps[row]), scale_of(first)),
                          float(a.time[rows[0][row]]), a[name].unit)
@@ -118,7 +119,7 @@ def history_differences(one: Run, other: Run) -> Iterator[Difference]:
 
 def field_difference(one: Run, other: Run, kind: str, name: str,
                      shared: tuple[np.ndarray, np.ndarray]) -> Difference | None:
-    """Of the snapshots that both have; None where all bits are the same."""
+    """Difference over the common snapshots; None if all bits are equal."""
     a, b = one.series(kind), other.series(kind)
     assert a is not None and b is not None
     label, largest, time, scale, same = f"{kind}/{name}", -1.0, 0.0, 0.0, True
@@ -130,7 +131,7 @@ def field_difference(one: Run, other: Run, kind: str, name: str,
         if same_bits(first, second):
             continue
         same = False
-        gap = float(apart(first, second).max())
+        gap = float(absolute_differences(first, second).max())
         if gap > largest:
             largest, time = gap, float(a.times[snapshot])
     return None if same else Difference(label, "", largest, over(largest, scale), time, a.label(name)[0])
@@ -143,7 +144,7 @@ def snapshot_differences(one: Run, other: Run) -> Iterator[Difference]:
         return
     times = one.snapshots.times[shared[0]], other.snapshots.times[shared[1]]
     if not same_bits(*times):
-        gaps = apart(*times)
+        gaps = absolute_differences(*times)
         latest = int(gaps.argmax())
         yield Difference("times of snapshots", "", float(gaps[latest]), over(float(gaps[latest]), scale_of(times[0])),
                          float(times[0][latest]), "s")
@@ -151,11 +152,11 @@ def snapshot_differences(one: Run, other: Run) -> Iterator[Difference]:
         series = one.series(kind), other.series(kind)
         if series[0] is None or series[1] is None:
             if series != (None, None):
-                yield Difference(kind, f"in {one.folder if series[0] else other.folder} alone")
+                yield Difference(kind, f"in {one.folder if series[0] else other.folder} only")
             continue
         names = [set(found.fields(0)) for found in series if found]
         for name in sorted(names[0] ^ names[1]):
-            yield Difference(f"{kind}/{name}", f"in {(one if name in names[0] else other).folder} alone")
+            yield Difference(f"{kind}/{name}", f"in {(one if name in names[0] else other).folder} only")
         for name in sorted(names[0] & names[1]):
             found = field_difference(one, other, kind, name, shared)
             if found:
@@ -163,6 +164,6 @@ def snapshot_differences(one: Run, other: Run) -> Iterator[Difference]:
 
 
 def differences(one: Run, other: Run) -> list[Difference]:
-    """All columns of the history and all fields of the snapshots that have not the same bits at the times that both
-    runs have, and what one of them has alone; none where all is the same."""
+    """Columns of the history and fields of the snapshots with different bits at common times, and data of only one
+    run. Empty if the runs are identical."""
     return [*history_differences(one, other), *snapshot_differences(one, other)]

@@ -1,15 +1,15 @@
-"""What goes wrong for a reason that a user can see and mend."""
+"""Errors and warnings with a cause that a user can see and remove."""
 
 
 class ScreeError(Exception):
-    """Results, decks or words that cannot be used; the text names what, and says why."""
+    """Results, decks or arguments that cannot be used; the text names them and the reason."""
 
 
 class MissingError(ScreeError, KeyError):
-    """A column, a field or a key that is not there; a KeyError, too, as of any dictionary."""
+    """A missing column, field or key; also a KeyError, as of any dictionary."""
 
-    __str__ = Exception.__str__  # a KeyError's is quoted
+    __str__ = Exception.__str__  # that of KeyError adds quotes
 
 
 class ScreeWarning(UserWarning):
-    """What was done otherwise than one may think."""
+    """Something was done differently than may be expected."""

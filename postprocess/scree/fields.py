@@ -1,3 +1,3 @@
-"""Names of fields that everything reads."""
+"""Names of fields that all modules use."""
 
 POSITION = "position"

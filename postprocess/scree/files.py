@@ -1,10 +1,10 @@
 """Reading files that a run may be writing.
 
-While it goes on, each of its HDF5 files exists twice and the two copies take turns under the file's name
-(jobs/using.md, "What a run writes"): what is opened is complete, but may be changed once the other copy has the name.
-So a reader takes all it wants at once, closes the file, and takes it again where the name has passed on in between.
-Where that is faster, as with snapshots every fraction of a millisecond, all bytes are taken at once and read from
-memory. It takes no lock: the run would find it on its other copy.
+During a run its HDF5 files are double-buffered: two copies alternate under the name of the file (jobs/using.md,
+"Consistency and cost of the files"). An opened file is complete, but may change once the other copy has the name.
+A reader therefore reads everything at once, closes the file, and repeats if the name has passed to the other copy.
+If the copies alternate faster than that, as with a snapshot every fraction of a millisecond, all bytes are copied into
+memory first. The reader takes no lock, because the run would find the lock on its other copy.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from scree.errors import ScreeError
 Found = TypeVar("Found")
 ATTEMPTS = 12
 WAIT = 0.005  # before the second attempt, twice as long before each further one [s]
-MOST_BYTES = 2**28  # that are taken at once
-TRIES = 50  # of that in each attempt
+MOST_BYTES = 2**28  # largest file that is copied into memory
+TRIES = 50  # of a copy into memory, per attempt
 
 
 def identity(path: pathlib.Path) -> tuple[int, int, int] | None:
-    """Of what has the name now and of its last change; None where nothing has it."""
+    """Identity and last change of the file that has the name now; None if there is none."""
     try:
         status = os.stat(path)
     except FileNotFoundError:
@@ -37,8 +37,8 @@ def identity(path: pathlib.Path) -> tuple[int, int, int] | None:
 
 
 def image(path: pathlib.Path) -> bytes | None:
-    """All bytes of the file at an instant at which it had the name, and so was complete; None where it was changed
-    meanwhile. What is read twice with the same result was so between the two, when the name is looked at."""
+    """All bytes of the file at an instant at which it had the name, and was therefore complete; None if it changed
+    meanwhile. Two readings with equal results are valid between the two, when the name is checked."""
     try:
         with open(path, "rb") as file:
             own = os.fstat(file.fileno())
@@ -48,18 +48,18 @@ def image(path: pathlib.Path) -> bytes | None:
             named = os.stat(path).st_ino == own.st_ino
             file.seek(0)
             return first if named and file.read() == first else None
-    except FileNotFoundError:  # between two names
+    except FileNotFoundError:  # while the copies swap names
         return None
 
 
-def read(path: pathlib.Path, what: Callable[[h5py.File], Found]) -> Found:
-    """What `what` takes from the file, all of one instant. Throws ScreeError where there is no such file, or none that
-    can be read."""
+def read(path: pathlib.Path, extract: Callable[[h5py.File], Found]) -> Found:
+    """The result of `extract` for the file at a single instant. Throws ScreeError if the file does not exist or cannot
+    be read."""
 
     def attempt(source: pathlib.Path | io.BytesIO, is_stable: Callable[[], bool]) -> tuple[Found] | None:
         try:
             with h5py.File(source, "r", locking=False) as file:
-                found = what(file)
+                found = extract(file)
             return (found,) if is_stable() else None
         except (OSError, RuntimeError, KeyError, ValueError) as error:
             if is_stable():
@@ -77,11 +77,11 @@ def read(path: pathlib.Path, what: Callable[[h5py.File], Found]) -> Found:
         if found is not None:
             return found[0]
         time.sleep(WAIT * 2**number)
-    raise ScreeError(f"{path}: is written again faster than it can be read")
+    raise ScreeError(f"{path}: changes faster than it can be read")
 
 
 def text(value: object) -> str:
-    """Of an attribute or a dataset of text."""
+    """Text of an attribute or a dataset."""
     if isinstance(value, h5py.Empty):
         return ""
     return value.decode() if isinstance(value, bytes) else str(value)
@@ -93,7 +93,7 @@ def label(dataset: h5py.Dataset) -> tuple[str, str]:
 
 
 def datasets(file: h5py.File | h5py.Group) -> dict[str, h5py.Dataset]:
-    """All below by their paths, each once: one that has several names, under one of them."""
+    """All datasets below, by path. A dataset with several names appears once."""
     found: dict[str, h5py.Dataset] = {}
 
     def add(path: str, item: object) -> None:

@@ -1,4 +1,4 @@
-"""Frames in space: where they are and how they are turned."""
+"""Frames in space: position and rotation."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 
 Vector = Sequence[float] | np.ndarray
-ALIGNED = 1e-15  # of a quaternion's vector part: no rotation
+ALIGNED = 1e-15  # magnitude of a quaternion's vector part up to which there is no rotation
 
 
 def of_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> np.ndarray:
-    """A rotation [3][3] about the fixed axes x, then y, then z [rad]."""
+    """Rotation [3][3] about the fixed axes x, then y, then z [rad]."""
     return np.asarray(about([0, 0, 1], yaw) @ about([0, 1, 0], pitch) @ about([1, 0, 0], roll))
 
 
 def about(axis: Vector, angle: float) -> np.ndarray:
-    """A rotation [3][3] about a unit vector (Rodrigues) [rad]."""
+    """Rotation [3][3] about a unit vector (Rodrigues) [rad]."""
     x, y, z = axis
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across)
 
 
 def quaternion_of(rotation: np.ndarray) -> np.ndarray:
-    """Scalar first, of length 1, from the largest of its four numbers (Shepperd, 1978)."""
+    """Unit quaternion, scalar first, from its largest component (Shepperd, 1978)."""
     trace = np.trace(rotation)
-    squares = np.array([trace, *np.diag(rotation)]) * 2 - trace + 1  # four times each one's square
+    squares = np.array([trace, *np.diag(rotation)]) * 2 - trace + 1  # four times the square of each component
     k = int(squares.argmax())
     r = rotation
     products = {
@@ -40,7 +40,7 @@ def quaternion_of(rotation: np.ndarray) -> np.ndarray:
 
 
 def to_z(axis: Vector) -> np.ndarray:
-    """A rotation [3][3] that takes z into a unit vector, and x into the direction across it nearest to an axis."""
+    """Rotation [3][3] of z to a unit vector; x becomes the perpendicular direction nearest to a global axis."""
     z = np.asarray(axis, dtype=float)
     x = np.eye(3)[int(np.abs(z).argmin())]
     y = np.cross(z, x)
@@ -50,7 +50,7 @@ def to_z(axis: Vector) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Pose:
-    """Of a frame in another: its origin [m] and the rotation [3][3] from components along its axes to the other's."""
+    """Pose of a frame in another: origin [m], and rotation [3][3] from its components to those of the other."""
 
     origin: np.ndarray
     rotation: np.ndarray
@@ -60,15 +60,15 @@ class Pose:
         return Pose(np.asarray(origin, dtype=float), np.eye(3) if rotation is None else rotation)
 
     def __matmul__(self, inner: Pose) -> Pose:
-        """Of a frame that is given in this one."""
-        return Pose(self.place(inner.origin), self.rotation @ inner.rotation)
+        """Pose of a frame that is given in this frame."""
+        return Pose(self.transform(inner.origin), self.rotation @ inner.rotation)
 
-    def place(self, point: Vector) -> np.ndarray:
-        """Of a point in this frame."""
+    def transform(self, point: Vector) -> np.ndarray:
+        """A point of this frame in the other frame."""
         return np.asarray(self.origin + self.rotation @ np.asarray(point, dtype=float))
 
     def keys(self, origin: str) -> dict[str, list[float]]:
-        """As a deck has them: the origin under this name, and a quaternion; what is zero is left out."""
+        """Keys of a deck: the origin under this name, and a quaternion; zero values are omitted."""
         quaternion = quaternion_of(self.rotation)
         found = {origin: self.origin.tolist()} if self.origin.any() else {}
         if np.abs(quaternion[1:]).max() > ALIGNED:

@@ -43,14 +43,14 @@ class HistoryFile:
 
 
 class History(Mapping[str, Quantity]):
-    """Columns by their paths ("energy/kinetic"), each a Quantity [rows], read when they are asked for.
+    """Columns by their paths ("energy/kinetic"), each a Quantity [rows], read on demand.
 
-    Where a run has gone on from a checkpoint into another folder, the rows of both follow each other, and the columns
-    are those that both have.
+    If a run continued from a checkpoint into another folder, the rows of both folders are joined, and the columns are
+    those that both have.
     """
 
     def __init__(self, parts: Sequence[tuple[HistoryFile, int]]) -> None:
-        """parts: files in the order of time, with the number of rows to take of each."""
+        """parts: files in the order of time, with the number of rows to use."""
         self._parts = list(parts)
         self._read: dict[str, np.ndarray] = {}
         last = self._parts[-1][0].labels if self._parts else {}
@@ -63,7 +63,7 @@ class History(Mapping[str, Quantity]):
 
     @property
     def time(self) -> Quantity:
-        """Of the rows [s]."""
+        """Times of the rows [s]."""
         return self[TIME]
 
     def __iter__(self) -> Iterator[str]:
@@ -77,7 +77,8 @@ class History(Mapping[str, Quantity]):
         return self.read(name)[name]
 
     def read(self, *names: str) -> dict[str, Quantity]:
-        """Columns of these names, or all, from one look into the files. Throws MissingError where one is not there."""
+        """Columns of these names, or all columns, with one access to the files. Throws MissingError for a missing
+        one."""
         for name in names:
             if name not in self._labels:
                 near = [path for path in self if name.split("/")[-1] in path][:5]
@@ -102,20 +103,20 @@ class History(Mapping[str, Quantity]):
         self._read.update({name: np.concatenate(columns) for name, columns in values.items()})
 
     def names(self, *patterns: str) -> list[str]:
-        """Columns whose paths a pattern fits ("contacts/*/fx", or a name); throws ScreeError where none does."""
+        """Columns that match a pattern ("contacts/*/fx", or a name); throws ScreeError if there is none."""
         found: list[str] = []
         for pattern in patterns:
-            fitting = fnmatch.filter(self, pattern)
-            if not fitting:
+            matching = fnmatch.filter(self, pattern)
+            if not matching:
                 near = difflib.get_close_matches(pattern, self, cutoff=0.7)
                 raise ScreeError(f"no column {pattern}; " + (f"did you mean {' or '.join(near)}?" if near else
                                                              f"there are: {', '.join(self) or 'none'}"))
-            found += [name for name in fitting if name not in found]
+            found += [name for name in matching if name not in found]
         return found
 
     def to_dataframe(self, *patterns: str) -> pandas.DataFrame:
-        """A table of the columns that the patterns name (all without one), by time [s]. Its attrs["units"] and
-        attrs["descriptions"] have those of the columns, by name."""
+        """A table of the columns that match the patterns (all columns without a pattern), by time [s]. attrs["units"]
+        and attrs["descriptions"] have units and descriptions by column."""
         import pandas
 
         found = self.read(TIME, *(self.names(*patterns) if patterns else self))

@@ -1,4 +1,4 @@
-"""Particles for decks, made outside the program: graded by a sieve curve, in layers, or as another run has left them.
+"""Particles for decks, made outside the program: graded by a sieve curve, in layers, or from the state of another run.
 
     grains = scree.packing.graded([1e-3, 2e-3, 4e-3], [0.0, 0.4, 1.0], low=[0, 0, 0], high=[0.05] * 3, fraction=0.3)
     deck.add("particles", name="grains", density=2650.0, **grains.write("grains.csv"))
@@ -19,34 +19,19 @@ import numpy as np
 
 from scree import files
 from scree.errors import ScreeError, ScreeWarning
+from scree.particle_file import write_columns
 from scree.record import CHECKPOINTS
 from scree.run import Run
 
 Path = str | os.PathLike[str]
 Numbers = Sequence[float] | np.ndarray
 AXES = "xyz"
-SAME_TIME = 1e-12  # of a time: by which a snapshot's may differ from that of a checkpoint
-
-
-def write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    """A particle file of `kind = "file"`: HDF5 where the name ends in .h5 or .hdf5, else CSV, with all bits. Returns
-    what [[particles]] says of it, with the path as it is given here: relative to the current folder, as in a deck made
-    in Python, whose write() puts it right; a deck that was read takes paths relative to its own folder."""
-    target = pathlib.Path(path)
-    if target.suffix in (".h5", ".hdf5"):
-        with h5py.File(target, "w") as file:
-            for name, values in columns.items():
-                file[name] = np.asarray(values, dtype=float)
-    else:
-        rows = zip(*(np.asarray(values, dtype=float).tolist() for values in columns.values()))
-        target.write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n",
-                          encoding="utf-8")
-    return {"kind": "file", "file": os.fspath(target)}
+SAME_TIME = 1e-12  # relative difference up to which the times of a snapshot and a checkpoint are the same
 
 
 @dataclass(frozen=True)
-class Grains:
-    """Discs or spheres: places [n][2 or 3] [m] and radii [n] [m]."""
+class Packing:
+    """Discs or spheres: positions [n][2 or 3] [m] and radii [n] [m]."""
 
     positions: np.ndarray
     radii: np.ndarray
@@ -56,15 +41,15 @@ class Grains:
 
     @property
     def volume(self) -> float:
-        """Of all together [m^3], of discs the area [m^2]."""
+        """Total volume [m^3]; total area of discs [m^2]."""
         return float(volumes(self.radii, self.positions.shape[1]).sum())
 
-    def __add__(self, other: Grains) -> Grains:
-        return Grains(np.concatenate([self.positions, other.positions]), np.concatenate([self.radii, other.radii]))
+    def __add__(self, other: Packing) -> Packing:
+        return Packing(np.concatenate([self.positions, other.positions]), np.concatenate([self.radii, other.radii]))
 
     def write(self, path: Path) -> dict[str, Any]:
-        """As CSV, or HDF5 by a name that ends in .h5. Returns what [[particles]] says of the file, with the path as it
-        is given: see write_columns()."""
+        """Writes CSV, or HDF5 if the name ends in .h5. Returns the keys of [[particles]] that read the file; for the
+        path in them see write_columns()."""
         return write_columns(path, dict(zip(AXES, self.positions.T)) | {"radius": self.radii})
 
 
@@ -73,26 +58,27 @@ def volumes(radii: np.ndarray, dimension: int) -> np.ndarray:
 
 
 def curve(diameters: Numbers, passing: Numbers) -> tuple[np.ndarray, np.ndarray]:
-    """The sieves [m] and the share of the mass between each two of them. Throws ScreeError for what is no curve."""
+    """The sieve diameters [m] and the mass fractions between adjacent sieves. Throws ScreeError for an invalid
+    curve."""
     sieves, shares = np.asarray(diameters, dtype=float), np.diff(np.asarray(passing, dtype=float))
     if len(sieves) < 2 or len(shares) + 1 != len(sieves) or sieves[0] <= 0 or (np.diff(sieves) <= 0).any():
-        raise ScreeError("a sieve curve: diameters must be above 0 and grow, with a share that passes for each")
+        raise ScreeError("a sieve curve: diameters must be above 0 and increase, with a passing fraction for each")
     if passing[0] != 0 or passing[-1] != 1 or (shares < 0).any():
-        raise ScreeError("a sieve curve: what passes must grow from 0 for the first sieve to 1 for the last")
+        raise ScreeError("a sieve curve: the passing fraction must increase from 0 at the first sieve to 1 at the last")
     return sieves, shares
 
 
 def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: int = 3, seed: int = 1) -> np.ndarray:
-    """Radii [m] of as many grains as have this volume together [m^3] (discs: area [m^2]), by a sieve curve.
+    """Radii [m] of particles with this total volume [m^3] (discs: area [m^2]), distributed by a sieve curve.
 
-    diameters: of the sieves [m], growing. passing: the share of the mass that passes each, from 0 for the first to 1
-    for the last. Between two sieves mass is spread evenly over the logarithm of the diameter. Each share is met to
-    within half a grain.
+    diameters: of the sieves [m], increasing. passing: the mass fraction that passes each sieve, from 0 for the first to
+    1 for the last. Between two sieves the mass is uniform in the logarithm of the diameter. The mass of each fraction
+    is met within half a particle.
     """
     sieves, shares = curve(diameters, passing)
     random, found = np.random.default_rng(seed), []
     for low, high, share in zip(sieves, sieves[1:], shares):
-        ends = np.array([low, high]) ** -dimension  # numbers fall with this power of the diameter
+        ends = np.array([low, high]) ** -dimension  # the number density falls with this power of the diameter
         wanted, drawn = share * volume, np.empty(0)
         sums = np.zeros(1)
         while sums[-1] < wanted:
@@ -104,58 +90,62 @@ def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: 
     return np.concatenate(found)
 
 
-def place(radii: Numbers, low: Numbers, high: Numbers, gap: float = 0.0, seed: int = 1, tries: int = 10000) -> Grains:
-    """Random places in the box, wholly inside it and without overlap, the largest first; gap: least distance between
-    surfaces [m]. Throws ScreeError where none is found for a grain: with one size that is from 0.3 of the box on, in
-    the plane from 0.5, with several sizes later. Denser beds settle in the program (`settled`)."""
+def place(radii: Numbers, low: Numbers, high: Numbers, gap: float = 0.0, seed: int = 1, tries: int = 10000) -> Packing:
+    """Random positions completely inside the box and without overlap, the largest particles first.
+
+    gap: smallest distance between surfaces [m]. Throws ScreeError if no position is found for a particle. With a single
+    size this happens from a volume fraction of 0.3 on, in 2D from an area fraction of 0.5, with several sizes later.
+    Denser beds are made by settling in the program (`settled`).
+    """
     sizes = np.sort(np.asarray(radii, dtype=float))[::-1]
     lower, upper = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     if not len(sizes) or (upper - lower < 2 * sizes[0]).any():
-        raise ScreeError("no grains to place" if not len(sizes) else "the box is smaller than the largest grain")
-    random, places = np.random.default_rng(seed), np.empty((len(sizes), len(lower)))
+        raise ScreeError("no particles to place" if not len(sizes) else "the box is smaller than the largest particle")
+    random, positions = np.random.default_rng(seed), np.empty((len(sizes), len(lower)))
     width = 2 * sizes[0] + gap
     cells: dict[tuple[int, ...], list[int]] = {}
     around = list(itertools.product((-1, 0, 1), repeat=len(lower)))
     for k, radius in enumerate(sizes):
-        for place in lower + radius + random.random((tries, len(lower))) * (upper - lower - 2 * radius):
-            cell = tuple(int(c) for c in (place - lower) // width)
+        for position in lower + radius + random.random((tries, len(lower))) * (upper - lower - 2 * radius):
+            cell = tuple(int(c) for c in (position - lower) // width)
             near = [i for step in around for i in cells.get(tuple(map(sum, zip(cell, step))), ())]
-            apart = ((places[near] - place) ** 2).sum(axis=1)
-            if (apart >= (sizes[near] + radius + gap) ** 2).all():
-                places[k] = place
+            squares = ((positions[near] - position) ** 2).sum(axis=1)
+            if (squares >= (sizes[near] + radius + gap) ** 2).all():
+                positions[k] = position
                 cells.setdefault(cell, []).append(k)
                 break
         else:
-            share = volumes(sizes[:k], len(lower)).sum() / np.prod(upper - lower)
-            raise ScreeError(f"places for {k} of {len(sizes)} grains, {share:.3g} of the box; not one in {tries} tries")
-    return Grains(places, sizes)
+            fraction = volumes(sizes[:k], len(lower)).sum() / np.prod(upper - lower)
+            raise ScreeError(f"positions for {k} of {len(sizes)} particles, which fill {fraction:.3g} of the box; no "
+                             f"further one in {tries} tries")
+    return Packing(positions, sizes)
 
 
 def mean_volume(diameters: Numbers, passing: Numbers, dimension: int) -> float:
-    """Of the grains of a sieve curve [m^3], of discs the area [m^2]."""
+    """Mean volume of the particles of a sieve curve [m^3]; of discs the mean area [m^2]."""
     sieves, shares = curve(diameters, passing)
-    # Between two sieves, where volume is even over the logarithm of the diameter d, the mean of 1 / d^dimension.
+    # Mean of 1 / d^dimension between two sieves; the volume is uniform in the logarithm of the diameter d.
     each = -np.diff(sieves**-dimension) / (dimension * np.diff(np.log(sieves)))
     return float(1 / (shares @ each) * volumes(np.ones(1) / 2, dimension)[0])
 
 
 def graded(diameters: Numbers, passing: Numbers, low: Numbers, high: Numbers, fraction: float | None = None,
-           seed: int = 1, *, count: int | None = None) -> Grains:
-    """Grains by a sieve curve (sieve_radii) at random places in a box, of which they fill this fraction; or about so
-    many of them, as the curve has on average in that volume."""
+           seed: int = 1, *, count: int | None = None) -> Packing:
+    """Particles by a sieve curve (sieve_radii) at random positions in a box. fraction: of the box that they fill; or
+    count: their approximate number."""
     if (fraction is None) == (count is None):
-        raise ScreeError("graded grains: either fraction or count must be given")
+        raise ScreeError("graded particles: either fraction or count must be given")
     box = float(np.prod(np.asarray(high, dtype=float) - np.asarray(low, dtype=float)))
     volume = count * mean_volume(diameters, passing, len(low)) if count is not None else (fraction or 0.0) * box
     return place(sieve_radii(diameters, passing, volume, len(low), seed), low, high, seed=seed)
 
 
 def layers(low: Numbers, high: Numbers, heights: Numbers, curves: Sequence[tuple[Numbers, Numbers]], fraction: float,
-           seed: int = 1) -> list[Grains]:
-    """One sample per layer, from the bottom of the box up its last axis. heights: of the layers [m], together no more
-    than the box's; curves: (diameters, passing) of each."""
+           seed: int = 1) -> list[Packing]:
+    """One packing per layer, from the bottom of the box upwards along its last axis. heights: of the layers [m], with a
+    sum of at most the height of the box; curves: (diameters, passing) of each layer."""
     if sum(heights) > (high[-1] - low[-1]) * (1 + 1e-12) or len(heights) != len(curves):
-        raise ScreeError("layers: there must be a curve for each, and their heights must fit into the box")
+        raise ScreeError("layers: there must be a curve for each layer, and their heights must fit into the box")
     found, bottom = [], float(low[-1])
     for number, (height, (diameters, passing)) in enumerate(zip(heights, curves)):
         box = [*low[:-1], bottom], [*high[:-1], bottom + height]
@@ -165,15 +155,15 @@ def layers(low: Numbers, high: Numbers, heights: Numbers, curves: Sequence[tuple
 
 
 def shared(groups: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """The value that a run's groups of particles have in common, if it is one number; else None."""
+    """The common value of this key in all groups of particles, if it is a single number; else None."""
     values = {str(group.get(key)): group.get(key) for group in groups}
     value = next(iter(values.values())) if len(values) == 1 else None
     return value.get("value") if isinstance(value, Mapping) else value
 
 
-def of_checkpoint(run: Run, number: int) -> dict[str, np.ndarray]:
-    """Spins [rad/s] and masses [kg] of a snapshot's particles, of a checkpoint at its time; empty where there is none,
-    and without spins where particles do not rotate."""
+def from_checkpoint(run: Run, number: int) -> dict[str, np.ndarray]:
+    """Spins [rad/s] and masses [kg] of the particles of a snapshot, from a checkpoint at its time. Empty without such a
+    checkpoint; without spins if particles do not rotate."""
     names = ("angular_velocity", "mass")
 
     def take(file: h5py.File) -> tuple[float, np.ndarray, dict[str, np.ndarray]]:
@@ -194,20 +184,20 @@ def of_checkpoint(run: Run, number: int) -> dict[str, np.ndarray]:
 
 
 def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
-    """The particles of a snapshot, the last one if not said, for another deck: a file for each material and what
-    [[particles]] says of it. Positions, velocities, spins and radii go along, what contacts remember does not: springs
-    of friction begin anew.
+    """The particles of a snapshot, by default the last one, for another deck: writes one file per material and returns
+    the [[particles]] that read them. They have positions, velocities, spins and radii. The contact history is not
+    transferred: tangential springs start from zero.
 
-    Spins and masses are those of the snapshot (output.fields with "angular_velocity" and "mass"), else those of a
-    checkpoint of its time, as a run leaves at its end; masses, too, those of the run's deck, where that has one mass or
-    density for all particles of the material. Warns where particles rotate and no spins are known. Throws ScreeError
-    where there are no masses, or no radius.
+    Spins and masses are those of the snapshot (output.fields with "angular_velocity" and "mass"), otherwise those of a
+    checkpoint at its time, as a run writes at its end. If the deck has one mass or density for all particles of a
+    material, the table takes it. Warns if particles rotate and no spins are known. Throws ScreeError if masses or radii
+    are missing.
     """
     if not len(run.snapshots):
         raise ScreeError(f"{run.folder}: holds no snapshots")
     particles, deck = run.snapshots[number].particles, run.deck
     if particles.count == 0:
-        raise ScreeError(f"{run.folder}: the snapshot holds no particles")
+        raise ScreeError(f"{run.folder}: the snapshot has no particles")
     for name in ("radius", "velocity"):
         if name not in particles:
             raise ScreeError(f"{run.folder}: the snapshots have no {name}; output.fields must name it")
@@ -215,10 +205,10 @@ def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
     if len(names) > 1 and "material" not in particles:
         raise ScreeError(f"{run.folder}: the snapshots have no material; output.fields must name it")
     materials = particles["material"].values if "material" in particles else np.zeros(particles.count, dtype=int)
-    more = of_checkpoint(run, number)
-    turns = any(pair.get("friction", 0) for pair in deck.get("contact", {}).get("pairs", []))
-    if turns and "angular_velocity" not in {*particles, *more}:
-        warnings.warn(f"{run.folder}: spins stay behind, as neither the snapshot nor a checkpoint of its time has "
+    more = from_checkpoint(run, number)
+    rotates = any(pair.get("friction", 0) for pair in deck.get("contact", {}).get("pairs", []))
+    if rotates and "angular_velocity" not in {*particles, *more}:
+        warnings.warn(f"{run.folder}: spins are lost, because neither the snapshot nor a checkpoint of its time has "
                       'them; output.fields must name "angular_velocity"', ScreeWarning, stacklevel=2)
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
     tables = []

@@ -1,4 +1,4 @@
-"""A run's energies and their balance, and other columns of its history, over time or over another column."""
+"""Plots of energies, their balance and other columns of the history, over time or over another column."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ from scree.columns import panels, x_axis
 from scree.errors import ScreeError
 from scree.history import TIME, History
 
-# Okabe and Ito's palette, told apart by the colour-blind; lines beyond eight repeat it dashed.
+# Okabe and Ito's palette for colour-blind readers; further lines repeat it with dashes.
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"]
-PREFIXED = ("N", "N m", "J", "W", "m", "m/s", "s", "Pa")  # units that take prefixes
-WIDTH = 11  # of a figure [inch]
-LEGEND, LEGEND_LINE = 34, 0.235  # characters of a legend's line; its height [inch]
+PREFIXED = ("N", "N m", "J", "W", "m", "m/s", "s", "Pa")  # units with prefixes
+WIDTH = 11  # figure width [inch]
+LEGEND, LEGEND_LINE = 34, 0.235  # characters per line of a legend; height of a line [inch]
 
-# Columns of the group energy: legend and colour, the same in every plot.
+# Columns of the group energy: legend and colour, common to all plots.
 STORED = {
     "kinetic": ("kinetic", COLORS[0]),
-    "gravitational": ("gravitational, above its lowest", COLORS[2]),
+    "gravitational": ("gravitational, above its minimum", COLORS[2]),
     "elastic_force_elements": ("elastic, in springs and other force elements", COLORS[3]),
     "elastic_contacts": ("elastic, in contacts", COLORS[4]),
-    "total": ("all of these together", COLORS[6]),
+    "total": ("total", COLORS[6]),
 }
-PASSED = {
+TRANSFERRED = {
     "dissipated_contacts": ("dissipated in contacts", COLORS[4]),
     "dissipated_force_elements": ("dissipated in dampers and other force elements", COLORS[3]),
-    "dissipated_integrator": ("taken out by the time integration", COLORS[5]),
-    "driver_work": ("put in by drivers, motors and walls", COLORS[1]),
-    "carried_out": ("carried out by particles that left", COLORS[7]),
+    "dissipated_integrator": ("dissipated by the time integration", COLORS[5]),
+    "driver_work": ("work of drivers, motors and walls", COLORS[1]),
+    "carried_out": ("carried out by escaped particles", COLORS[7]),
 }
 
 
@@ -49,22 +49,22 @@ PASSED = {
 class Line:
     values: np.ndarray
     label: str
-    color: str | None = None  # the next one of the palette
+    color: str | None = None  # None: next colour of the palette
 
 
 @dataclass
 class Panel:
-    """One plot: what it says, its vertical axis, its lines, and its height [inch]."""
+    """One plot: title, vertical axis, lines and height [inch]."""
 
     title: str
     axis: str
     lines: list[Line]
     height: float = 3.0
-    unit: str = ""  # of ticks with a prefix; none: plain numbers
+    unit: str = ""  # of ticks with a prefix; empty: plain numbers
     notes: list[str] = field(default_factory=list)
 
     def draw(self, along: np.ndarray, axes: Axes) -> None:
-        """along: the horizontal axis. Lines that are zero throughout become a note."""
+        """along: values of the horizontal axis. Lines that are zero everywhere become a note."""
         zero = [line.label for line in self.lines if not np.any(line.values)]
         shown = [line for line in self.lines if line.label not in zero]
         notes = self.notes + [f"Zero throughout: {'; '.join(zero)}."] * bool(zero)
@@ -79,12 +79,12 @@ class Panel:
             axes.plot(along, line.values, dash, color=color, linewidth=1.6, label=label)
         if not shown:
             axes.set_yticks([])
-        if shown and len(self.lines) > 1:  # also where one alone is left: whose it is
+        if shown and len(self.lines) > 1:  # also for a single remaining line, to name it
             axes.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
         axes.set_ylabel(self.axis, fontsize=12)
         if self.unit:
             axes.yaxis.set_major_formatter(EngFormatter(self.unit))
-        axes.yaxis.get_offset_text().set_horizontalalignment("right")  # beside the notes
+        axes.yaxis.get_offset_text().set_horizontalalignment("right")  # next to the notes
         axes.tick_params(labelsize=11)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.spines[["top", "right"]].set_visible(False)
@@ -96,7 +96,7 @@ class Panel:
 
 
 def energy_lines(history: History, entries: Mapping[str, tuple[str, str]]) -> list[Line]:
-    """Gravitational energy, whose zero means nothing, is counted from its lowest value, and the total with it."""
+    """Gravitational energy, whose zero is arbitrary, is shown above its minimum, and so is the total."""
     found = []
     gravity = history.get("energy/gravitational")
     lowest = np.nanmin(gravity.values) if gravity is not None and len(gravity) else 0.0
@@ -108,39 +108,39 @@ def energy_lines(history: History, entries: Mapping[str, tuple[str, str]]) -> li
 
 
 def balance_panel(history: History) -> Panel:
-    """The balance error over the largest energy exchanged: what the ledger misses of what has moved."""
+    """The energy balance residual over the largest energy exchanged."""
     error = history["energy/balance_error"].values
     exchanged = np.nanmax(history["energy/exchanged"].values, initial=0.0)
     largest = np.nanmax(np.abs(error), initial=0.0)
-    title = f"Energy that is not accounted for: at most {EngFormatter('J', places=2)(largest)}"
+    title = f"Energy balance residual: at most {EngFormatter('J', places=2)(largest)}"
     if exchanged <= 0:
-        return Panel(title, "energy missing", [Line(error, "balance error")], 2.2, unit="J")
-    share = 100 * largest / exchanged
-    title += f", {share:.2g} % of the {EngFormatter('J', places=1)(exchanged)} exchanged"
-    return Panel(title, "share [%]", [Line(100 * error / exchanged, "balance error")], 2.2)
+        return Panel(title, "residual", [Line(error, "residual")], 2.2, unit="J")
+    percent = 100 * largest / exchanged
+    title += f", {percent:.2g} % of the {EngFormatter('J', places=1)(exchanged)} exchanged"
+    return Panel(title, "residual [%]", [Line(100 * error / exchanged, "residual")], 2.2)
 
 
 def energy_panels(history: History) -> list[Panel]:
-    """None where the history has no energies."""
+    """Empty if the history has no energies."""
     found = []
-    stored, passed = energy_lines(history, STORED), energy_lines(history, PASSED)
+    stored, transferred = energy_lines(history, STORED), energy_lines(history, TRANSFERRED)
     if stored:
-        found.append(Panel("Energy stored", "energy", stored, 4.0, unit="J"))
-    if passed:
-        found.append(Panel("Energy put in and taken out since the start", "energy", passed, 3.0, unit="J"))
+        found.append(Panel("Stored energy", "energy", stored, 4.0, unit="J"))
+    if transferred:
+        found.append(Panel("Energy added and removed since the start", "energy", transferred, 3.0, unit="J"))
     if "energy/balance_error" in history and "energy/exchanged" in history:
         found.append(balance_panel(history))
     return found
 
 
 def wants_prefix(lines: Sequence[Line], unit: str) -> bool:
-    """Whether ticks read better as kN or mm than with a power of ten."""
+    """Whether ticks are more readable with a prefix (kN, mm) than with a power of ten."""
     largest = max((np.nanmax(np.abs(line.values), initial=0.0) for line in lines), default=0.0)
     return unit in PREFIXED and largest > 0 and not 0.01 <= largest < 10000
 
 
 def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
-    """A panel for each group and unit."""
+    """One panel per group and unit."""
     found = []
     for title, axis, legends in panels(history, names):
         lines = [Line(history[name].values, label) for name, label in legends.items()]
@@ -153,8 +153,8 @@ def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
 
 def history_figure(history: History, title: str, columns: Sequence[str] = (), energies: bool = True,
                    x: str = TIME) -> Figure:
-    """columns: patterns of names, beside the energies or in their place; x: the column along the horizontal axis.
-    Throws ScreeError where there is nothing to plot."""
+    """columns: patterns of names, in addition to the energies or instead of them; x: the column on the horizontal axis.
+    Throws ScreeError if there is nothing to plot."""
     shown = energy_panels(history) if energies else []
     shown += column_panels(history, history.names(*columns))
     if not shown or history.rows == 0:

@@ -14,16 +14,16 @@ from scree.errors import ScreeError
 
 HERE = pathlib.Path(__file__).resolve()
 REFUSED = 2  # exit code of the program: usage or deck
-LINES = 20  # of what it says that are shown where none is an error's
+LINES = 20  # last lines of the output that are shown if none begins with "error: "
 
 
 class RefusedError(ScreeError):
-    """The program did not begin: bad usage or deck, or a folder with results of another run."""
+    """The program did not start the run: wrong usage or deck, or a folder with results of another run."""
 
 
 def find(scree: str | os.PathLike[str] | None = None) -> pathlib.Path | None:
-    """The one named, $SCREE, the one on the PATH, or build/release/scree of the repository that this package stands in;
-    None where there is none. Throws ScreeError where the one named, or by SCREE, is not there."""
+    """The given program, else $SCREE, else scree on the PATH, else build/release/scree of the repository that contains
+    this package; None if there is none. Throws ScreeError if the given program or $SCREE does not exist."""
     named = scree or os.environ.get("SCREE")
     if named:
         path = shutil.which(named)
@@ -38,30 +38,30 @@ def find(scree: str | os.PathLike[str] | None = None) -> pathlib.Path | None:
 def required(scree: str | os.PathLike[str] | None = None) -> pathlib.Path:
     found = find(scree)
     if found is None:
-        raise ScreeError("the program scree is not there: build it, put it on the PATH, or name it by SCREE")
+        raise ScreeError("the program scree is not found: build it, put it on the PATH, or name it by SCREE")
     return found
 
 
-def message(said: str) -> str:
-    """Of an error among the words of program and launcher."""
-    lines = said.strip().splitlines()
+def message(output: str) -> str:
+    """The error message in the output of program and launcher."""
+    lines = output.strip().splitlines()
     errors = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
-    return "\n".join(dict.fromkeys(errors)) or "\n".join(lines[-LINES:]) or "it says nothing"
+    return "\n".join(dict.fromkeys(errors)) or "\n".join(lines[-LINES:]) or "no message"
 
 
 def call(words: Sequence[str | bytes | os.PathLike[str]], names: Mapping[str, str],
          output: int | IO[str] | None = PIPE) -> str:
-    """Returns what the program prints, unless it goes elsewhere: to a file, or, None, to be seen. names: what to call
-    paths in messages. Throws ScreeError with the program's message, RefusedError where it did not begin."""
+    """Returns the standard output of the program, unless `output` is a file or None (the terminal). names: replacements
+    for paths in messages. Throws ScreeError with the program's message, RefusedError if no run was started."""
     with subprocess.Popen(words, stdout=output, stderr=PIPE, encoding="utf-8", errors="replace") as process:
         try:
-            printed, said = process.communicate()
-        except KeyboardInterrupt:  # the program has it, too, and ends with a checkpoint
+            printed, errors = process.communicate()
+        except KeyboardInterrupt:  # the program gets the signal, too, and ends with a checkpoint
             process.wait()
             raise
     if process.returncode == 0:
         return printed or ""
-    text = message(said)
+    text = message(errors)
     for path, name in names.items():
         text = text.replace(path, name)
     raise (RefusedError if process.returncode == REFUSED else ScreeError)(text)

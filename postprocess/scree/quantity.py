@@ -1,4 +1,4 @@
-"""Numbers of a run with their unit."""
+"""Arrays of a run with their unit."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 
 class Quantity(NDArrayOperatorsMixin):
-    """An array with the unit and the description that the run's file gives it.
+    """An array with the unit and the description from the file of the run.
 
-    It goes wherever an array goes: numpy, matplotlib and pandas take it as it is, and `q[...]`, arithmetic, numpy's
-    functions and the methods of an array give plain arrays and numbers. A unit is not carried through arithmetic, where
-    it would soon be wrong.
+    It can be used like an array: numpy, matplotlib and pandas accept it, and `q[...]`, arithmetic, numpy's functions
+    and the methods of an array return plain arrays and numbers. Arithmetic drops the unit, because the unit of the
+    result is not tracked.
     """
 
     def __init__(self, values: np.ndarray, unit: str, description: str = "") -> None:
@@ -40,26 +40,26 @@ class Quantity(NDArrayOperatorsMixin):
     def T(self) -> np.ndarray:
         return self.values.T
 
-    def max(self, *words: Any, **options: Any) -> Any:
-        return self.values.max(*words, **options)
+    def max(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.max(*arguments, **options)
 
-    def min(self, *words: Any, **options: Any) -> Any:
-        return self.values.min(*words, **options)
+    def min(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.min(*arguments, **options)
 
-    def mean(self, *words: Any, **options: Any) -> Any:
-        return self.values.mean(*words, **options)
+    def mean(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.mean(*arguments, **options)
 
-    def sum(self, *words: Any, **options: Any) -> Any:
-        return self.values.sum(*words, **options)
+    def sum(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.sum(*arguments, **options)
 
-    def std(self, *words: Any, **options: Any) -> Any:
-        return self.values.std(*words, **options)
+    def std(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.std(*arguments, **options)
 
-    def argmax(self, *words: Any, **options: Any) -> Any:
-        return self.values.argmax(*words, **options)
+    def argmax(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.argmax(*arguments, **options)
 
-    def argmin(self, *words: Any, **options: Any) -> Any:
-        return self.values.argmin(*words, **options)
+    def argmin(self, *arguments: Any, **options: Any) -> Any:
+        return self.values.argmin(*arguments, **options)
 
     def tolist(self) -> Any:
         return self.values.tolist()
@@ -68,7 +68,7 @@ class Quantity(NDArrayOperatorsMixin):
         return self.values.astype(dtype)
 
     def copy(self) -> np.ndarray:
-        """Of the values, to be changed."""
+        """A copy of the values that may be changed."""
         return self.values.copy()
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The JSON schema of decks (`scree keys --schema`), and what a deck breaks of it in the program's own words."""
+"""The JSON schema of decks (`scree keys --schema`), and its violations in the wording of the program."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST_VALUE = 60  # in a message
 
 @functools.cache
 def load() -> dict[str, Any]:
-    """That of the program of this package's version, draft 2020-12."""
+    """Schema of the program version of this package, draft 2020-12."""
     file = importlib.resources.files("scree") / "deck.schema.json"
     found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     return found
@@ -29,7 +29,7 @@ def shown(value: Any) -> str:
 
 
 def path_of(deck: Any, steps: Iterable[str | int], *further: str) -> str:
-    """As --set has it: elements of lists of tables by their names, where they have some."""
+    """Path as for --set, with elements of lists of tables by name if they have one."""
     parts = []
     for step in steps:
         deck = deck[step]
@@ -38,21 +38,21 @@ def path_of(deck: Any, steps: Iterable[str | int], *further: str) -> str:
     return ".".join([*parts, *further])
 
 
-def schemas_on_the_way(schema: Mapping[str, Any], steps: Iterable[str | int]) -> list[Any]:
-    """From the whole schema to the one that an error is of."""
+def schemas_along(schema: Mapping[str, Any], steps: Iterable[str | int]) -> list[Any]:
+    """The schemas from the root to the one that an error violates."""
     found: list[Any] = [schema]
     for step in steps:
         here = found[-1]
-        if isinstance(here, Mapping) and "$ref" in here:  # an error's path does not name it
+        if isinstance(here, Mapping) and "$ref" in here:  # the path of an error omits it
             here = schema["$defs"][here["$ref"].rsplit("/", 1)[1]]
             found.append(here)
         found.append(here[step])
     return found
 
 
-def allowed(way: Iterable[Any]) -> str:
-    """What the innermost key with a description takes: "a number above 0 [kg]"."""
-    for schema in reversed(list(way)):
+def allowed(along: Iterable[Any]) -> str:
+    """Allowed values of the innermost key with a description: "a number above 0 [kg]"."""
+    for schema in reversed(list(along)):
         text = schema.get("description", "") if isinstance(schema, Mapping) else ""
         if "\n\n" in text:
             takes = str(text).rsplit("\n\n", 1)[1].split(";")[0].rstrip(".")
@@ -63,13 +63,13 @@ def allowed(way: Iterable[Any]) -> str:
 
 
 def above_zero(takes: str) -> str:
-    """Of a number or a table, where a number has a lower limit of its own."""
+    """Wording for a number or a table if the number has a lower limit."""
     return takes.replace("a number [", "a number above 0 [").replace("] or a table", "], or a table")
 
 
-def condition(way: Iterable[Any]) -> str:
-    """Of a rule that holds for one word of a selector: ' with kind = "planar"'."""
-    for schema in reversed(list(way)):
+def condition(along: Iterable[Any]) -> str:
+    """Condition of a rule for one value of a selector: ' with kind = "planar"'."""
+    for schema in reversed(list(along)):
         if isinstance(schema, Mapping) and "if" in schema:
             (selector, word), = ((key, value["const"]) for key, value in schema["if"]["properties"].items())
             return f' with {selector} = "{word}"'
@@ -77,9 +77,9 @@ def condition(way: Iterable[Any]) -> str:
 
 
 def innermost(error: ValidationError) -> list[ValidationError]:
-    """Where a number or a table may stand, what is wrong with the one that was meant."""
-    fitting = [each for each in error.context or [] if each.validator != "type" or len(each.relative_path)]
-    return [inner for each in fitting for inner in innermost(each)] or [error]
+    """Errors of the intended alternative, where a key takes a number or a table."""
+    intended = [each for each in error.context or [] if each.validator != "type" or len(each.relative_path)]
+    return [inner for each in intended for inner in innermost(each)] or [error]
 
 
 def unknown_keys(error: ValidationError, path: str) -> list[str]:
@@ -93,37 +93,38 @@ def unknown_keys(error: ValidationError, path: str) -> list[str]:
     return found
 
 
-def missing_keys(error: ValidationError, path: str, way: list[Any]) -> list[str]:
+def missing_keys(error: ValidationError, path: str, along: list[Any]) -> list[str]:
     found = []
     for key in (key for key in error.validator_value if key not in error.instance):
-        declared: Any = next((each["properties"][key] for each in reversed(way)
+        declared: Any = next((each["properties"][key] for each in reversed(along)
                               if isinstance(each, Mapping) and each.get("properties", {}).get(key)), {})
         where = f"{path}.{key}" if path else key
-        found.append(f"{where}: missing;{condition(way)} it must be {allowed([declared])}")
+        found.append(f"{where}: missing;{condition(along)} it must be {allowed([declared])}")
     return found
 
 
-def keys_of_others(deck: Any, error: ValidationError, path: str, way: list[Any]) -> list[str]:
-    """Keys that tables of this kind have not. The error says in which table they are, but not which ones."""
+def keys_of_others(deck: Any, error: ValidationError, path: str, along: list[Any]) -> list[str]:
+    """Keys that tables of this kind do not have. The error names the table, but not the keys."""
     table = functools.reduce(lambda holder, step: holder[step], error.absolute_path, deck)
-    return [f"{path}.{key} = {shown(table[key])}: not used{condition(way)}"
-            for key, schema in way[-1].items() if schema is False and key in table]
+    return [f"{path}.{key} = {shown(table[key])}: not used{condition(along)}"
+            for key, schema in along[-1].items() if schema is False and key in table]
 
 
 def lines_of(error: ValidationError, deck: Any, schema: Mapping[str, Any]) -> list[str]:
-    way = schemas_on_the_way(schema, error.absolute_schema_path)
+    along = schemas_along(schema, error.absolute_schema_path)
     path = path_of(deck, error.absolute_path)
     if error.validator == "additionalProperties":
         return unknown_keys(error, path)
     if error.validator == "required":
-        return missing_keys(error, path, way)
+        return missing_keys(error, path, along)
     if error.schema is False:
-        return keys_of_others(deck, error, path, way)
-    return [f"{path} = {shown(error.instance)}: must be {allowed(way) or error.message}"]
+        return keys_of_others(deck, error, path, along)
+    return [f"{path} = {shown(error.instance)}: must be {allowed(along) or error.message}"]
 
 
 def problems(deck: dict[str, Any], schema: Mapping[str, Any] | None = None) -> list[str]:
-    """A line for each: "bodies.lid.mass = -1: must be a number above 0 [kg]". schema: that of the package."""
+    """One line per violation: "bodies.lid.mass = -1: must be a number above 0 [kg]". schema: default that of the
+    package."""
     chosen = load() if schema is None else schema
     errors = sorted(jsonschema.Draft202012Validator(chosen).iter_errors(deck), key=lambda e: [str(p) for p in e.path])
     inner = [each for error in errors for each in innermost(error)]

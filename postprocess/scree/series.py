@@ -1,5 +1,5 @@
-"""The snapshots of one kind: what particles.vtkhdf, bodies.vtkhdf, surfaces.vtkhdf, contacts.vtkhdf or links.vtkhdf
-holds."""
+"""The snapshots of one kind: the content of particles.vtkhdf, bodies.vtkhdf, surfaces.vtkhdf, contacts.vtkhdf or
+links.vtkhdf."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from scree.quantity import Quantity
 
 @dataclass(frozen=True)
 class SeriesFile:
-    """What one file says of its snapshots, without their rows."""
+    """Metadata of the snapshots in one file, without their rows."""
 
     path: pathlib.Path
     title: str
-    names: dict[str, list[str]]  # what fields count: bodies or links as "names", "materials", "groups"
+    names: dict[str, list[str]]  # names that fields count: of bodies or links ("names"), "materials", "groups"
     times: np.ndarray  # [snapshots] [s]
-    first: np.ndarray  # row in Points at which each snapshot begins
-    field_first: dict[str, np.ndarray]  # likewise per field of points
-    points: np.ndarray  # their numbers of points
-    triangles: np.ndarray  # [triangles][3], of surfaces: points at the corners, counted from the snapshot's first
-    lines: bool  # whether each two points are the ends of one
-    cell_first: dict[str, np.ndarray]  # per field of triangles or lines: row at which each snapshot begins
+    first: np.ndarray  # first row of each snapshot in Points
+    field_first: dict[str, np.ndarray]  # first row of each snapshot, per field of points
+    points: np.ndarray  # number of points per snapshot
+    triangles: np.ndarray  # surfaces: [triangles][3], corner points counted from the first point of the snapshot
+    lines: bool  # whether consecutive pairs of points are lines
+    cell_first: dict[str, np.ndarray]  # first row of each snapshot, per field of triangles or lines
     labels: dict[str, tuple[str, str]]  # unit and description of position and of every field
 
     @staticmethod
@@ -60,7 +60,7 @@ class SeriesFile:
         return files.read(path, take)
 
     def rows(self, snapshot: int, name: str) -> np.ndarray:
-        """One snapshot's rows of position or of a field."""
+        """Rows of position or of a field in one snapshot."""
         if name not in self.labels:
             setting = "surface_fields" if self.cell_first else "fields"
             hint = "" if self.lines else f"; the run's output.{setting} must name it"
@@ -79,28 +79,28 @@ class SeriesFile:
 
 
 class Series:
-    """Snapshots counted from 0, over all folders of a run."""
+    """Snapshots over all folders of a run, counted from 0."""
 
     def __init__(self, parts: Sequence[tuple[SeriesFile, int]]) -> None:
-        """parts: files in the order of time, with the number of snapshots to take of each."""
-        self._places = [(file, snapshot) for file, count in parts for snapshot in range(count)]
+        """parts: files in the order of time, with the number of snapshots to use."""
+        self._snapshots = [(file, snapshot) for file, count in parts for snapshot in range(count)]
         self._last = parts[-1][0]
         self.times = np.concatenate([file.times[:count] for file, count in parts])  # [s]
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._snapshots)
 
     @property
     def title(self) -> str:
         return self._last.title
 
     def names(self, what: str) -> list[str]:
-        """Of bodies or links ("names"), "materials" or "groups", in the order in which fields count them."""
+        """Names of bodies or links ("names"), "materials" or "groups", in the order in which fields count them."""
         return self._last.names.get(what, [])
 
     def fields(self, snapshot: int) -> list[str]:
-        """Position first."""
-        return list(self._places[snapshot][0].labels)
+        """Names of fields, position first."""
+        return list(self._snapshots[snapshot][0].labels)
 
     def has(self, name: str) -> bool:
         return name in self._last.labels
@@ -112,35 +112,35 @@ class Series:
         return self._last.labels[name]
 
     def count(self, snapshot: int) -> int:
-        """Of points."""
-        file, place = self._places[snapshot]
-        return int(file.points[place])
+        """Number of points."""
+        file, number = self._snapshots[snapshot]
+        return int(file.points[number])
 
     def rows(self, snapshot: int, name: str) -> np.ndarray:
-        """[points] or [points][k], of a field of triangles or lines one row for each of these."""
-        file, place = self._places[snapshot]
-        return file.rows(place, name)
+        """[points] or [points][k]; a field of triangles or lines has one row per triangle or line."""
+        file, number = self._snapshots[snapshot]
+        return file.rows(number, name)
 
     def speed(self, snapshot: int) -> np.ndarray:
         """[points] [m/s]"""
         return np.asarray(np.linalg.norm(self.rows(snapshot, "velocity"), axis=1))
 
     def quantity(self, snapshot: int, name: str) -> Quantity:
-        return Quantity(self.rows(snapshot, name), *self._places[snapshot][0].labels[name])
+        return Quantity(self.rows(snapshot, name), *self._snapshots[snapshot][0].labels[name])
 
     def triangles(self, snapshot: int) -> np.ndarray:
-        """[triangles][3], of surfaces: rows of position at their corners."""
-        return self._places[snapshot][0].triangles
+        """Surfaces: rows of position at the corners of triangles [triangles][3]."""
+        return self._snapshots[snapshot][0].triangles
 
     def lines(self, snapshot: int) -> np.ndarray:
-        """[lines][2], of contacts and links: rows of position at their ends."""
-        file, place = self._places[snapshot]
-        return np.arange(file.points[place] if file.lines else 0).reshape(-1, 2)
+        """Contacts and links: rows of position at the ends of lines [lines][2]."""
+        file, number = self._snapshots[snapshot]
+        return np.arange(file.points[number] if file.lines else 0).reshape(-1, 2)
 
     @property
     def has_lines(self) -> bool:
         return self._last.lines
 
     def is_of_cells(self, name: str) -> bool:
-        """Of triangles or lines, not of points."""
+        """Whether it is a field of triangles or lines instead of points."""
         return name in self._last.cell_first

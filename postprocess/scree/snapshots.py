@@ -1,4 +1,4 @@
-"""What a run looked like at its snapshots' times."""
+"""Snapshots of a run."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from scree.errors import MissingError, ScreeError
 from scree.fields import POSITION
+from scree.particle_file import write_columns
 from scree.quantity import Quantity
 from scree.series import Series
 
@@ -22,8 +23,8 @@ COMPONENTS = {3: "xyz", 4: "wxyz", 9: ("xx", "xy", "xz", "yx", "yy", "yz", "zx",
 
 
 class Points(Mapping[str, Quantity]):
-    """The particles, the bodies' shapes, the triangles or the lines of one snapshot: fields by name, each read when it
-    is asked for, with "position" [points][3] [m] among them. Rows of particles are in the order of global_id."""
+    """The particles, shapes of bodies, triangles or lines of one snapshot: fields by name, read on demand. "position"
+    [points][3] [m] is one of them. Rows of particles are in the order of global_id."""
 
     def __init__(self, series: Series, snapshot: int) -> None:
         self._series, self._snapshot = series, snapshot
@@ -48,36 +49,36 @@ class Points(Mapping[str, Quantity]):
 
     @property
     def count(self) -> int:
-        """Of particles or the bodies' points, of surfaces' corners, and of contacts and links that of the lines. len()
-        is the number of fields."""
+        """Number of particles, points of bodies, corners of surfaces, or lines of contacts and links. len() is the
+        number of fields."""
         return len(self.lines) if self._series.has_lines else self._series.count(self._snapshot)
 
     @property
     def triangles(self) -> np.ndarray:
-        """Of surfaces: rows of position at the triangles' corners [triangles][3]; of others none."""
+        """Surfaces: rows of position at the corners of triangles [triangles][3]. Empty for other kinds."""
         return self._series.triangles(self._snapshot)
 
     @property
     def lines(self) -> np.ndarray:
-        """Of contacts and links: rows of position at the lines' ends [lines][2]; of others none."""
+        """Contacts and links: rows of position at the ends of lines [lines][2]. Empty for other kinds."""
         return self._series.lines(self._snapshot)
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row per particle or shape, of surfaces per triangle, of contacts and links per line; a column per field, a
-        field of several numbers as "velocity_x", ... x, y and z are a point's place, or that of a triangle's centre;
-        lines have their ends, as "start_x", ..., "end_x", ... Units by column in attrs["units"]."""
+        """One row per particle, shape, triangle or line; one column per component of a field, as "velocity_x". x, y and
+        z are the position of a point or of the centre of a triangle; lines have the positions of their ends, "start_x",
+        ..., "end_x", ... attrs["units"] has the units by column."""
         import pandas
 
         of_cells = any(map(self._series.is_of_cells, self))
         columns, units = {}, {}
         fields = {name: field for name, field in self.items() if self._series.is_of_cells(name) == of_cells}
-        place = self[POSITION]
+        position = self[POSITION]
         if self._series.has_lines:
-            fields = {name: Quantity(place.values[k::2], place.unit, place.description)
+            fields = {name: Quantity(position.values[k::2], position.unit, position.description)
                       for k, name in enumerate(("start", "end"))} | fields
         elif of_cells:
-            centers = place.values[self.triangles].mean(axis=1)
-            fields = {POSITION: Quantity(centers, place.unit, place.description)} | fields
+            centers = position.values[self.triangles].mean(axis=1)
+            fields = {POSITION: Quantity(centers, position.unit, position.description)} | fields
         for name, field in fields.items():
             for column, values in components(name, field.values).items():
                 columns[column], units[column] = values, field.unit
@@ -88,11 +89,9 @@ class Points(Mapping[str, Quantity]):
     def to_particle_file(self, path: str | os.PathLike[str], dimension: int = 3,
                          rows: np.ndarray | slice = slice(None),
                          more: Mapping[str, np.ndarray] | None = None) -> dict[str, Any]:
-        """A file of particles for another deck, CSV or by a name in .h5 HDF5: positions and, where these are fields,
-        velocities, spins, radii and masses. rows: those to take. more: fields that the snapshot has not. Returns what
-        [[particles]] says of the file."""
-        from scree.packing import write_columns
-
+        """Writes a particle file for another deck, CSV, or HDF5 if the name ends in .h5: positions, and the velocities,
+        spins, radii and masses that are fields. rows: the particles to write. more: fields that the snapshot does not
+        have. Returns the keys of [[particles]] that read the file."""
         written = (POSITION, "velocity", "angular_velocity", "radius", "mass")
         known = {name: self[name].values[rows] for name in written if name in self}
         known |= {name: values[rows] for name, values in (more or {}).items() if name not in self}
@@ -106,9 +105,9 @@ class Points(Mapping[str, Quantity]):
         return write_columns(path, columns)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """Points as vertices or, of surfaces, triangles, of contacts and links lines, with all fields; the snapshot's
-        time as field data "time". Particles become spheres of true size by
-        `.glyph(scale="radius", geom=pyvista.Sphere(radius=1.0))`."""
+        """Vertices of points, triangles of surfaces, or lines of contacts and links, with all fields, and the time of
+        the snapshot as field data "time". Particles become spheres of true size by `.glyph(scale="radius",
+        geom=pyvista.Sphere(radius=1.0))`."""
         import pyvista
 
         mesh = pyvista.PolyData(self[POSITION].values)
@@ -117,7 +116,7 @@ class Points(Mapping[str, Quantity]):
         elif len(self.lines):
             mesh = pyvista.PolyData(self[POSITION].values, lines=np.insert(self.lines, 0, 2, axis=1).ravel())
         for name, field in self.items():
-            if name != POSITION and len(field):  # pyvista takes no empty ones
+            if name != POSITION and len(field):  # pyvista refuses empty arrays
                 data = mesh.cell_data if self._series.is_of_cells(name) else mesh.point_data
                 data[name] = field.values
         mesh.field_data["time"] = self._series.times[self._snapshot : self._snapshot + 1]
@@ -125,7 +124,7 @@ class Points(Mapping[str, Quantity]):
 
 
 def components(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    """A field's columns: of [n] itself, of [n][k] one per component; positions are x, y, z alone."""
+    """Columns of a field: [n] is one, [n][k] has one per component. Columns of positions are x, y and z."""
     if values.ndim == 1:
         return {name: values}
     prefix = "" if name == POSITION else f"{name}_"
@@ -150,40 +149,40 @@ class Snapshot:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """Those of "particles", "bodies", "surfaces", "contacts", "links" that the run has."""
+        """Those of "particles", "bodies", "surfaces", "contacts" and "links" that the run has."""
         return tuple(self._series)
 
     @property
     def particles(self) -> Points:
-        """Throws ScreeError where particles.vtkhdf is not there."""
+        """Throws ScreeError without particles.vtkhdf."""
         return self._points("particles")
 
     @property
     def bodies(self) -> Points:
-        """The bodies' discs or spheres ("kind" 0; 2 of those that touch nothing), then their centres of mass (1, of
-        radius 0). The field "body" counts the run's body_names. Throws ScreeError where there are no bodies."""
+        """Discs or spheres of bodies ("kind" 0; 2: visual-only), then centres of mass ("kind" 1, of radius 0). The
+        field "body" counts the body_names of the run. Throws ScreeError without bodies."""
         return self._points("bodies")
 
     @property
     def surfaces(self) -> Points:
-        """The triangles of meshes. Throws ScreeError where there are none."""
+        """The triangles of meshes. Throws ScreeError without meshes."""
         return self._points("surfaces")
 
     @property
     def contacts(self) -> Points:
-        """The contacts of particles and of bodies' discs and spheres as lines, where the deck's output.contacts asked
-        for them; `.count` of them. The fields "wall", "body" and "first_body" count the run's wall_names and
-        body_names. Throws ScreeError where it did not."""
+        """Contacts of particles and of discs and spheres of bodies as lines; `.count` is their number. The fields
+        "wall", "body" and "first_body" count the wall_names and body_names of the run. Throws ScreeError unless the
+        deck has output.contacts = true."""
         return self._points("contacts")
 
     @property
     def links(self) -> Points:
-        """Joints and force elements as lines, `.count` of them. The field "link" counts the run's link_names. Throws
-        ScreeError where there are none, or where output.links is false."""
+        """Joints and force elements as lines; `.count` is their number. The field "link" counts the link_names of the
+        run. Throws ScreeError if there are none, or if output.links is false."""
         return self._points("links")
 
     def to_pyvista(self) -> pyvista.MultiBlock:
-        """A block for each of `kinds`."""
+        """One block for each of `kinds`."""
         import pyvista
 
         return pyvista.MultiBlock({kind: self._points(kind).to_pyvista() for kind in self._series})
@@ -195,11 +194,11 @@ class Snapshot:
 
 
 class Snapshots(Sequence[Snapshot]):
-    """All of a run, in the order of time; negative numbers count from the last one."""
+    """The snapshots of a run in the order of time; negative numbers count from the last one."""
 
     def __init__(self, series: Mapping[str, Series]) -> None:
         self._series = series
-        self.times = next(iter(series.values())).times if series else np.empty(0)  # [s], of all alike
+        self.times = next(iter(series.values())).times if series else np.empty(0)  # [s], common to all kinds
 
     def __len__(self) -> int:
         return len(self.times)
@@ -209,11 +208,11 @@ class Snapshots(Sequence[Snapshot]):
     @overload
     def __getitem__(self, number: slice) -> list[Snapshot]: ...
     def __getitem__(self, number: int | slice) -> Snapshot | list[Snapshot]:
-        found = range(len(self))[number]  # with a list's rules
+        found = range(len(self))[number]  # index rules of a list
         return Snapshot(self._series, found) if isinstance(found, int) else [self[k] for k in found]
 
     def at(self, time: float) -> Snapshot:
-        """The one nearest to a time [s]."""
+        """The snapshot nearest to a time [s]."""
         if len(self) == 0:
             raise ScreeError("the run has no snapshots")
         return self[int(np.abs(self.times - time).argmin())]

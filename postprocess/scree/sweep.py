@@ -1,5 +1,5 @@
-"""Parameter studies: the list of runs for a SLURM array (jobs/array.sbatch) or for this machine, and one table of what
-they gave."""
+"""Parameter studies: the list of runs for a SLURM array (jobs/array.sbatch) or for this machine, and the table of their
+results."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ if TYPE_CHECKING:
     import pandas
 
 Path = str | os.PathLike[str]
-OWN_OPTIONS = ("--output", "--restart", "--backend")  # of the runner, each with a word
-OF_LATER = CHECKPOINTS[:2]  # checkpoints that a run goes on from
-LOG, ERROR = "log.txt", "error: "  # of a run on this machine; how its line of an error begins
+OWN_OPTIONS = ("--output", "--restart", "--backend")  # options set by the runner, each with a value
+TO_CONTINUE = CHECKPOINTS[:2]  # checkpoints from which a run continues
+LOG, ERROR = "log.txt", "error: "  # log of a run on this machine; start of an error line in it
 
 
 def listed(path: Path) -> str:
-    """A path as a list has it: by the bytes of its name, whatever the locale makes of them."""
+    """A path as written in a list: the bytes of its name, independent of the locale."""
     return os.fsencode(path).decode("utf-8", "surrogateescape")
 
 
 def given(text: str) -> bytes:
-    """Words of a list, for the program, which takes UTF-8 in every locale."""
+    """Text of a list as bytes for the program, which expects UTF-8 in every locale."""
     return text.encode("utf-8", "surrogateescape")
 
 
 def path_of(line: str) -> pathlib.Path:
-    """Of the deck of a line."""
+    """Path of the deck of a line."""
     return pathlib.Path(os.fsdecode(given(line.split()[0])))
 
 
 def write_lines(path: Path, lines: Sequence[str]) -> int:
-    """Returns their number."""
+    """Returns the number of lines."""
     pathlib.Path(path).write_bytes(given("".join(f"{line}\n" for line in lines)))
     return len(lines)
 
 
 def word(value: Any) -> str:
-    """As `--set` takes it, without blanks, at which a line of the list is cut into words."""
+    """A value as for `--set`, without blanks, which separate the words of a line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
@@ -61,9 +61,9 @@ def word(value: Any) -> str:
 
 
 def write_list(path: Path, deck: Path | Deck, keys: Mapping[str, Sequence[Any]]) -> int:
-    """Writes a line "DECK --set KEY=VALUE ..." for each combination of the keys' values, the last key's changing
-    fastest; returns their number. keys: as --set names them, "contact.pairs.0.friction", with the values to try. A deck
-    made in Python is written beside the list, under its name with .toml."""
+    """Writes one line "DECK --set KEY=VALUE ..." per combination of values, the last key varying fastest, and returns
+    the number of lines. keys: as for --set, "contact.pairs.0.friction", with their values. A deck made in Python is
+    written beside the list, under the name of the list with .toml."""
     if isinstance(deck, Deck):
         file: Path = pathlib.Path(path).with_suffix(".toml")
         deck.write(file)
@@ -76,8 +76,8 @@ def write_list(path: Path, deck: Path | Deck, keys: Mapping[str, Sequence[Any]])
 
 
 def write_decks(path: Path, decks: Mapping[str, Deck]) -> int:
-    """Writes each deck as NAME.toml into a folder beside the list, which has the list's name without its suffix, and a
-    line for each; returns their number. For studies that no keys can say."""
+    """Writes each deck as NAME.toml into a folder beside the list, named as the list without its suffix, and one line
+    per deck; returns the number of lines. For studies that differ by more than keys."""
     folder = pathlib.Path(path).with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     lines = [word(listed(folder / f"{name}.toml")) for name in decks]
@@ -87,7 +87,7 @@ def write_decks(path: Path, decks: Mapping[str, Deck]) -> int:
 
 
 def elements(path: Path) -> Iterator[tuple[int, str]]:
-    """Numbers, from 1, and lines of the list that name a deck."""
+    """The lines of the list that name a deck, with their numbers, counted from 1."""
     text = pathlib.Path(path).read_text(encoding="utf-8", errors="surrogateescape")
     for number_of_line, line in enumerate(text.splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
@@ -95,22 +95,21 @@ def elements(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def is_done(line: str, folder: pathlib.Path) -> bool:
-    """Whether the folder has the results of this line, of the deck as it is."""
+    """Whether the folder has the results of this line for the current deck."""
     record = read_record(folder)
     if record is None or record["run"]["status"] != "done":
         return False
     words = str(record["run"]["command_line"]).split()[2:]
     own = {k for k, each in enumerate(words) for k in (k, k + 1) if each in OWN_OPTIONS}
-    kept = [each for k, each in enumerate(words) if k not in own and each != "--overwrite"]
-    return kept == line.split() and (folder / "run_record.json").stat().st_mtime > path_of(line).stat().st_mtime
+    compared = [each for k, each in enumerate(words) if k not in own and each != "--overwrite"]
+    return compared == line.split() and (folder / "run_record.json").stat().st_mtime > path_of(line).stat().st_mtime
 
 
 def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path) -> str:
-    """Returns what became of it: "done", or that it was. Throws ScreeError with the program's message, which the log
-    has, too."""
+    """Returns "done", or "done before". Throws ScreeError with the message of the program, which the log has, too."""
     if is_done(line, folder):
         return "done before"
-    checkpoints = sorted((folder / name for name in OF_LATER if (folder / name).exists()),
+    checkpoints = sorted((folder / name for name in TO_CONTINUE if (folder / name).exists()),
                          key=lambda file: file.stat().st_mtime)
     begun = ["--restart", checkpoints[-1]] if checkpoints else ["--overwrite"]
     folder.mkdir(parents=True, exist_ok=True)
@@ -126,10 +125,10 @@ def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path)
 
 def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto", scree: Path | None = None,
               quiet: bool = False) -> dict[int, str]:
-    """Runs the lines of the list on this machine, so many at a time, each on one rank, to RESULTS/N, with its log in
-    RESULTS/N/log.txt. As in an array what is done is left as it is, and what has a checkpoint goes on from it. Returns
-    the messages of the runs that failed, by element; the others go on. quiet: without a line for each as it ends, on
-    the standard error."""
+    """Runs the lines of the list on this machine, `at_once` at a time, each on one rank, into RESULTS/N with the log
+    RESULTS/N/log.txt. As in an array, finished runs are skipped, and runs with a checkpoint continue. Returns the
+    messages of failed runs by element; a failure does not stop the others. quiet: print no line on standard error when
+    a run ends."""
     where, lines = program.required(scree), dict(elements(path))
     ended = itertools.count(1)
 
@@ -159,7 +158,7 @@ def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto"
 
 
 def settings(line: str) -> dict[str, str]:
-    """What a line of the list sets."""
+    """The settings of a line of the list."""
     words = line.split()
     return dict(following.split("=", 1) for option, following in zip(words, words[1:]) if option == "--set")
 
@@ -172,7 +171,7 @@ def number(text: str) -> float | str:
 
 
 def measured(name: str, measure: Callable[[Run], Any], run: Run) -> Any:
-    """None where the run has not got so far that there is anything to measure."""
+    """Value of a function of the run; None if an unfinished run does not have the data yet."""
     try:
         return measure(run)
     except (ScreeError, KeyError, IndexError) as error:
@@ -182,7 +181,7 @@ def measured(name: str, measure: Callable[[Run], Any], run: Run) -> Any:
 
 
 def status_without_results(folder: pathlib.Path) -> str:
-    """By the log of run_local, where there is one."""
+    """Status from the log of run_local, if there is one."""
     try:
         lines = (folder / LOG).read_text(encoding="utf-8").splitlines()
     except FileNotFoundError:
@@ -192,10 +191,10 @@ def status_without_results(folder: pathlib.Path) -> str:
 
 
 def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]]) -> pandas.DataFrame:
-    """A row for each line of the list that names a deck, by its number from 1: the deck, where it is not the same in
-    all, what the line sets, the run's status, and what each measure says of it. A run without results has the status
-    "not begun", or "failed" with the message where run_local was refused, and no measures; one that is not done and has
-    not got far enough for a measure has none of it. Throws ScreeError where a measure fails on a run that is done.
+    """One row per line of the list that names a deck, by its number from 1: the deck, if they differ, the settings of
+    the line, the status of the run, and the value of each measure, a function of the run. A run without results has no
+    values and the status "not begun", or "failed" with the message of a refused run_local. An unfinished run has no
+    value for which it lacks data. Throws ScreeError if a measure fails on a finished run.
 
         scree.sweep.table("LIST", "results/study", {"force": lambda run: run.history["contacts/floor/fy"][-1]})
     """

@@ -1,4 +1,4 @@
-"""pyvista's reader of a .vtkhdf, with the times that it has."""
+"""pyvista's reader of a .vtkhdf with support for times."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from scree.series import SeriesFile
 
 
 class Reader(HDFReader, TimeReader):
-    """Reads one snapshot at a time: that of active_time_value. Times [s], and the numbers of snapshots, are those that
-    the file had when this was made."""
+    """Reads one snapshot at a time: that of active_time_value. The times [s] and the number of snapshots are those of
+    the file when the reader was made."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._times = [float(time) for time in SeriesFile.open(pathlib.Path(path)).times]
@@ -36,7 +36,7 @@ class Reader(HDFReader, TimeReader):
         self._active = range(self.number_time_points)[time_point]
 
     def set_active_time_value(self, time_value: float) -> None:
-        """Throws ScreeError for what is not among time_values."""
+        """Throws ScreeError if the time is not one of time_values."""
         if time_value not in self._times:
             nearest = min(self._times, key=lambda time: abs(time - time_value))
             raise ScreeError(f"{self.path}: no snapshot at {time_value!r} s; the nearest is at {nearest!r} s")

@@ -1,4 +1,4 @@
-"""Python's values as tomlkit writes them into a deck, and back."""
+"""Conversion between Python values and tomlkit items of a deck."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import tomlkit.items
 
 from scree.errors import ScreeError
 
-LONGEST_LINE = 100  # of a list of tables on one line
+LONGEST_LINE = 100  # columns of a list of tables on one line
 
 
 def is_list_of_tables(value: Any) -> bool:
@@ -20,8 +20,8 @@ def is_list_of_tables(value: Any) -> bool:
 
 
 def plain(value: Any) -> Any:
-    """Numpy's numbers and arrays, tuples, paths and what is of another deck as TOML has them, without comments. Throws
-    ScreeError for what it has not."""
+    """Numpy values, tuples, paths and items of another deck as plain TOML values, without comments. Throws ScreeError
+    for other types."""
     if isinstance(value, tomlkit.items.Item):
         return value.unwrap()
     if isinstance(value, (bool, int, float, str)):
@@ -34,11 +34,11 @@ def plain(value: Any) -> Any:
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, Sequence):
         return [plain(each) for each in value]
-    raise ScreeError(f"{value!r}: a deck holds numbers, texts, true and false, lists and tables")
+    raise ScreeError(f"{value!r}: a deck has numbers, strings, true and false, lists and tables")
 
 
 def inline(value: Any) -> tomlkit.items.Item:
-    """On one line, but for long lists of tables, which have a line for each."""
+    """On one line, except long lists of tables, which have one line per table."""
     if isinstance(value, Mapping):
         table = tomlkit.inline_table()
         for key, each in value.items():
@@ -54,7 +54,7 @@ def inline(value: Any) -> tomlkit.items.Item:
 
 
 def block(table: Mapping[str, Any]) -> tomlkit.items.Table:
-    """What stands below [name] or [[name]]: all in it is inline."""
+    """The content of [name] or [[name]], with inline values."""
     found = tomlkit.table()
     for key, each in table.items():
         found.append(key, inline(each))
@@ -69,8 +69,8 @@ def blocks(tables: Sequence[Mapping[str, Any]]) -> tomlkit.items.AoT:
 
 
 def of_deck(value: Any, depth: int) -> tomlkit.items.Item:
-    """A plain value as a deck has it at that depth: [name] and [[name]] at the top, [[name.name]] one below, inline
-    from there on."""
+    """A plain value in the form for this depth of a deck: [name] and [[name]] at the top level, [[name.name]] one level
+    below, inline further down."""
     if depth <= 1 and is_list_of_tables(value):
         return blocks(value)
     if depth == 0 and isinstance(value, Mapping):
@@ -82,7 +82,7 @@ def of_deck(value: Any, depth: int) -> tomlkit.items.Item:
 
 
 def unwrapped(item: Any) -> Any:
-    """Numbers, texts and truths as Python's own; lists and tables stay the deck's."""
+    """Numbers, strings and booleans as Python values; lists and tables remain those of the deck."""
     if isinstance(item, tomlkit.items.Item) and not isinstance(item, (list, dict)):
         return item.unwrap()
     return item

@@ -29,8 +29,8 @@ import pandas
 import pyvista
 import scree
 from scree.cli import main
-from scree.columns import axis, panels, words, x_axis
-from scree.differences import apart, differences, matched, over
+from scree.columns import axis, column_label, panels, x_axis
+from scree.differences import absolute_differences, differences, matched, over
 from scree.plots import balance_panel, energy_panels, history_figure
 
 NET, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
@@ -136,9 +136,9 @@ class WordsTest(unittest.TestCase):
                 ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
                 ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
                 ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
-                ("coordinates/axle/angle_rate", "rad/s", "rate of the coordinate", "rate of axle angle"),
-                ("step/contacts", "1", "contacts, including those with walls", "contacts")):
-            self.assertEqual(words(name, unit, description).legend(True), legend)
+                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
+                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
+            self.assertEqual(column_label(name, unit, description).legend(True), legend)
         self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
 
     def test_a_panel_says_what_its_lines_share(self):
@@ -213,8 +213,8 @@ class CompareTest(CommandTest):
 
     def test_numbers_that_are_none(self):
         nan, inf = np.nan, np.inf
-        np.testing.assert_array_equal(apart(np.array([1, nan, nan, inf, inf]), np.array([3, nan, 1, inf, -inf])),
-                                      [2, 0, inf, 0, inf])
+        found = absolute_differences(np.array([1, nan, nan, inf, inf]), np.array([3, nan, 1, inf, -inf]))
+        np.testing.assert_array_equal(found, [2, 0, inf, 0, inf])
         self.assertEqual((over(0, 0), over(1, 0), over(1, 4)), (0, inf, 0.25))
 
 
@@ -316,7 +316,7 @@ class ReportTest(CommandTest):
         record["total"] |= {"starts": 2, "wall_seconds": 110.0, "loop_seconds": 100.0}
         (other / "run_record.json").write_text(json.dumps(record))
         self.command(DONE, "report", other)
-        for part in (f"110 s on the wall in 2 starts, {4 * steps:.3g} particle-steps per second", "Of the last start.",
+        for part in (f"110 s in 2 starts, {4 * steps:.3g} particle-steps per second", "Times of the last start.",
                      f"{steps - 10:,} steps in 99 s; 1 rank, &lt;old&gt;, "):
             self.assertIn(part, (other / "report.html").read_text())
 

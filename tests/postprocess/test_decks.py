@@ -54,7 +54,7 @@ class DictionaryTest(FolderTest):
         self.assertEqual(deck["bodies.net.shapes.0.radius"], 0.05)
         self.assertTrue("space.leaving" in deck and "space.z_min" not in deck and "bodies.none" not in deck)
         self.assertIn("particles", list(deck))
-        for path, said in (("time.ends", "there are end, step, control"), ("nothing.at.all", "nothing is not there"),
+        for path, said in (("time.ends", "there are end, step, control"), ("nothing.at.all", "nothing does not exist"),
                            ("joints.pin.type", "no element is named pin; there are left_pin, right_pin"),
                            ("joints.2", "there are 2 elements, counted from 0"),
                            ("space.min.0", "space.min has no keys of its own")):

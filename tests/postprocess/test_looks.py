@@ -15,7 +15,7 @@ import PIL.Image
 from test_commands import DONE, DRUM, NET, WRONG, CommandTest
 
 import scree
-from scree.pictures.render import DrawnRun, Look, make_picture
+from scree.pictures.render import DrawnRun, PictureOptions, make_picture
 
 
 class FilmTest(CommandTest):
@@ -40,9 +40,9 @@ class FilmTest(CommandTest):
         for words, text in ((("--from", "7"), "no snapshot from 7 to inf s; they go from 0 to 1 s"),
                             (("-o", "film.avi"), "must end in .mp4, .webp or .gif"), (("--frames", "0"), "not above 0"),
                             (("--rate", "-1"), "not above 0"), (("--quality", "101"), "not from 1 to 100"),
-                            (("--surfaces", "pressure"), "surfaces are coloured in")):
+                            (("--surfaces", "pressure"), "--surfaces is for 3D runs")):
             self.assertIn(text, self.command(WRONG, "animate", NET, *words))
-        self.assertIn("a view and axes are for runs in the plane",
+        self.assertIn("--view and --axes are for planar runs",
                       self.command(WRONG, "animate", DRUM, "--view", 0, 1, 0, 1))
 
 
@@ -72,9 +72,9 @@ class PictureTest(CommandTest):
 class ColorTest(CommandTest):
     def test_of_a_field(self):
         drawn = DrawnRun(scree.open(NET))
-        scene = make_picture(drawn, [0], Look(color="radius")).scene
+        scene = make_picture(drawn, [0], PictureOptions(color="radius")).scene
         np.testing.assert_array_equal(scene.coloring.values(drawn.particles, 0), drawn.particles.rows(0, "radius"))
-        picture = make_picture(drawn, [0], Look(color="group"))
+        picture = make_picture(drawn, [0], PictureOptions(color="group"))
         self.assertEqual([text.get_text() for text in picture.bar.ax.get_yticklabels()], ["block"])
         said = self.command(WRONG, "picture", NET, "--color", "nothing")
         self.assertIn("particles have no field nothing; there are ", said)
@@ -84,7 +84,7 @@ class ColorTest(CommandTest):
         rows = drawn.particles.rows
         drawn.particles.rows = lambda snapshot, name: rows(snapshot, name) * (name != "velocity")
         least = 0.1 * np.sqrt(np.linalg.norm(drawn.model.gravity) * 2 * np.median(rows(0, "radius")))
-        top = make_picture(drawn, [0], Look()).scene.colors.norm.vmax
+        top = make_picture(drawn, [0], PictureOptions()).scene.colors.norm.vmax
         self.assertTrue(least <= top <= 1.5 * least, (least, top))
 
 

@@ -135,7 +135,7 @@ class MissingTest(unittest.TestCase):
     def test_a_report_says_why_it_has_no_picture(self):
         for name, files, said in (("radii", [], "particles have no field velocity"),
                                   ("flat", FILES["particles"], "holds no particles.vtkhdf, which pictures need"),
-                                  ("flat", FILES["deck"], "neither is there yet")):
+                                  ("flat", FILES["deck"], "there is no deck yet")):
             copy = self.without(name, files)
             self.assertEqual(self.command(copy, COMMANDS["report"])[0], 0)
             page = (copy / "report.html").read_text(encoding="utf-8")
@@ -151,13 +151,13 @@ class MissingTest(unittest.TestCase):
         self.assertEqual({path.name.split("_")[0] for path in (out / "stl").iterdir()}, {"surfaces"})
         code, lines = self.command(self.folder / "no_shapes", COMMANDS["ply"])
         self.assertEqual(code, 2)
-        self.assertRegex(lines[-1], "nothing of its snapshots can be written as ply: there are no meshes and no balls")
+        self.assertRegex(lines[-1], "no snapshot can be written as ply: there are neither meshes nor spheres")
 
     def test_a_file_is_no_run(self):
         for name in ("particles.vtkhdf", "run_record.json"):
             code, lines = self.command(self.folder / "flat" / name, COMMANDS["plot"])
             self.assertEqual((code, len(lines)), (2, 1))
-            self.assertIn(f"{name}: is a file; a run is opened by its folder, which here is {self.folder}", lines[0])
+            self.assertIn(f"{name}: is a file; a run is opened by its folder, here {self.folder}", lines[0])
 
 
 if __name__ == "__main__":

@@ -86,7 +86,7 @@ class PackingTest(FolderTest):
         for count, dimension, share in ((200, 3, 0.28), (200, 2, 0.48)):
             radius = (share / count / packing.volumes(np.ones(1), dimension)[0]) ** (1 / dimension)
             self.assertEqual(len(packing.place([radius] * count, [0] * dimension, [1] * dimension)), count)
-        with self.assertRaisesRegex(scree.ScreeError, r"places for \d+ of \d+ grains, 0\.\d+ of the box"):
+        with self.assertRaisesRegex(scree.ScreeError, r"positions for \d+ of \d+ particles, which fill 0\.\d+ of"):
             packing.place([0.1] * 100, [0, 0, 0], [1, 1, 1], tries=200)
         with self.assertRaisesRegex(scree.ScreeError, "smaller than the largest"):
             packing.place([0.1], [0, 0], [0.1, 1])
@@ -151,7 +151,7 @@ class PackingTest(FolderTest):
             np.testing.assert_array_equal(found, [[0.0, 0.0, 7.0] if dimension == 2 else spin] * 3)
             np.testing.assert_array_equal(again.history["rotation/kinetic"][0], run.history["rotation/kinetic"][-1])
             if "mass" not in fields:
-                with self.assertWarnsRegex(scree.ScreeWarning, "spins stay behind"):
+                with self.assertWarnsRegex(scree.ScreeWarning, "spins are lost"):
                     packing.settled(run, self.folder / "settled", 1)
 
 

@@ -210,7 +210,7 @@ class ReadingTest(FolderTest):
                          (0, None, "ended without a record: killed?"))
         with self.assertRaisesRegex(scree.ScreeError, "no snapshots"):
             found.snapshots.at(0)
-        with self.assertRaisesRegex(scree.ScreeError, "neither is there yet"):
+        with self.assertRaisesRegex(scree.ScreeError, "there is no deck yet"):
             found.deck
         shutil.copy(self.results / "checkpoint_end.h5", self.folder)
         self.assertEqual(scree.open(self.folder).deck["title"], scree.open(self.results).deck["title"])
@@ -254,7 +254,7 @@ class RestartTest(FolderTest):
         self.assertIn("begins at t = 0.021 s", within.warnings[0])
         run("third", words=("--restart", "second/checkpoint_end.h5", "--overwrite"), cwd=self.folder)
         shutil.rmtree(self.folder / "second")
-        with self.assertRaisesRegex(scree.ScreeError, "went on from second/checkpoint_end.h5, which is not found"):
+        with self.assertRaisesRegex(scree.ScreeError, "continued from second/checkpoint_end.h5, which is not found"):
             scree.open(self.folder / "third")
 
     def test_a_later_folder_takes_the_place_of_what_overlaps(self):

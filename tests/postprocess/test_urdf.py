@@ -130,7 +130,7 @@ class MotionTest(UrdfTest):
                 ("lower", lower, 0.8, [0.15, 0, 0.02], np.eye(3))):
             axes = pose.rotation @ turn  # the body's frame: its centre of mass and the axes of its inertia
             hand.add("bodies", name=name, kind="spatial", mass=mass, inertia_tensor=[*np.diag(tensor), 0, 0, 0],
-                     position=pose.place(center), quaternion=quaternion_of(axes))
+                     position=pose.transform(center), quaternion=quaternion_of(axes))
         hand.add("joints", name="shoulder", type="revolute", bodies=["ground", "upper"], point=upper.origin,
                  axis=upper.rotation @ [0, 1, 0.2])
         hand.add("joints", name="elbow", type="revolute", bodies=["upper", "lower"], point=hinge.origin,
@@ -253,13 +253,13 @@ class CommandTest(UrdfTest):
         path = self.file(BASE + link("arm", more=mesh) + joint("j", "revolute", "world", "arm", more=limit)
                          + "<transmission/>")
         said = self.command(0, path, "--position", "j=0.2", "-o", self.folder / "other.toml")
-        for text in ("not read: <transmission>", "no STL, OBJ or PLY, left out", "x.dae (line 4)",
+        for text in ("not read: <transmission>", "not STL, OBJ or PLY, left out", "x.dae (line 4)",
                      "starts outside its limits", "joint j (line 5) at 0.2, with limits from 0.5 to 1",
                      "no effort from which the stiffness",
-                     "limits of velocity are left out, as a deck has none: joint j (line 5)"):
+                     "limits of velocity are left out, because a deck has none: joint j (line 5)"):
             self.assertIn(text, said)
         subprocess.run([PROGRAM, "check", self.folder / "other.toml"], check=True, stdout=subprocess.DEVNULL)
-        self.assertIn("is there already", self.command(2, path, "-o", self.folder / "other.toml"))
+        self.assertIn("exists already", self.command(2, path, "-o", self.folder / "other.toml"))
         self.command(0, path, "-o", self.folder / "other.toml", "--overwrite")
         self.assertIn("error: j: must have the form NAME=VALUE", self.command(2, path, "--position", "j"))
 
@@ -271,7 +271,7 @@ class CommandTest(UrdfTest):
                 (BASE + link("a", moments=(0.01, 0.02, 0.09)) + moving, r'urdf:4: link "a": inertia: principal moment'),
                 (BASE + link("a", mass=-1) + moving, "mass = -1: must not be below 0"),
                 (BASE + '<link name="a"/>' + moving, 'link "a": moves, but neither'),
-                (BASE + link("a"), 'several links hang on no joint: "world", "a"'),
+                (BASE + link("a"), 'several links have no parent: "world", "a"'),
                 (BASE + link("a") + moving + joint("k", "fixed", "world", "a"), 'joint "k": closes a loop: link "a"'),
                 (BASE + link("a") + link("b") + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a"),
                  "in a circle: a <- b <- a"),

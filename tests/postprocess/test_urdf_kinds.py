@@ -138,7 +138,7 @@ class JointTest(KindsTest):
         deck, lines = self.convert(text)
         self.assertEqual([(stop["joint"], stop.get("lower"), stop.get("upper")) for stop in deck["joint_limits"]],
                          [("half", -1.0, None), ("upper", 0.0, 1.0)])
-        self.one_line(lines, "limits without lower and upper, and so a joint without stops (3 times)",
+        self.one_line(lines, "limits without lower and upper: no stops (3 times)",
                       "joint none (line ")
         self.one_line(lines, "the lower limit is above the upper one", "joint turned")
 
@@ -160,8 +160,8 @@ class JointTest(KindsTest):
         np.testing.assert_allclose(deck["bodies.wrist.quaternion"], [np.cos(0.8), 0, np.sin(0.8), 0], atol=1e-15)
         ends = [np.array(deck[f"bodies.{name}.position"]) for name in ("wrist", "finger")]
         np.testing.assert_allclose(np.linalg.norm(ends[1] - ends[0]), np.hypot(0.5, 1.1))  # slid by 1.1 along y
-        self.one_line(lines, "held, as by a fixed joint: lower = upper", "joint hinge (line ", "at 0.5")
-        self.one_line(lines, "follows a joint that does not move (2 times)", "joint again (line ")
+        self.one_line(lines, "made a fixed joint: lower = upper", "joint hinge (line ", "at 0.5")
+        self.one_line(lines, "mimics a joint that does not move (2 times)", "joint again (line ")
         moving = link("base") + link("a") + link("b") + joint("j", "base", "a") \
             + joint("k", "a", "b", more='<limit lower="0" upper="0"/><mimic joint="j"/>')
         deck, _ = self.convert(moving)
@@ -206,7 +206,7 @@ class InertiaTest(KindsTest):
             text = link("base", moments=moments) + link("plate", moments=moments) + link("arm") \
                 + joint("screws", "base", "plate", "fixed") + joint("j", "plate", "arm")
             _, lines = self.convert(text)
-            self.one_line(lines, "inertia of no body was made the nearest that can be, of what stands on the ground",
+            self.one_line(lines, "impossible inertia was replaced by the nearest possible one: it is fixed to the ground",
                           "(2 times)", "link base (line 3)", "link plate (line 4)")
             _, lines = self.convert(text, "--free", code=2)
             self.one_line(lines, "error: ", 'robot.urdf:3: link "base": inertia: principal moments', "--mend-inertia")
@@ -216,7 +216,7 @@ class InertiaTest(KindsTest):
             text = link("base") + link("arm", moments=moments) + joint("j", "base", "arm")
             self.one_line(self.convert(text, code=2)[1], 'link "arm": inertia', "--mend-inertia takes the nearest")
             _, lines = self.convert(text, "--mend-inertia")
-            self.one_line(lines, "as --mend-inertia asks for", "link arm (line 4)", "now ")
+            self.one_line(lines, "as requested by --mend-inertia", "link arm (line 4)", "now ")
         text = '<link name="arm"><inertial><mass value="1"/></inertial></link>' + link("base") \
             + joint("j", "base", "arm")
         self.convert(text, code=2)
@@ -250,7 +250,7 @@ class GeometryTest(KindsTest):
         self.assertEqual([each.unwrap() for each in deck["meshes"]],
                          [{"name": "arm_0", "kind": "capsule", "radius": 0.05, "length": 0.9}])
         self.assertEqual([deck[f"bodies.arm_{k}.shapes"][0]["radius"] for k in (1, 6)], [0.05, 0.1])
-        self.one_line(lines, "a measure is not above 0, left out (3 times)", "cylinder (line ", "box (line ",
+        self.one_line(lines, "a dimension is not above 0, left out (3 times)", "cylinder (line ", "box (line ",
                       "sphere (line ")
         self.one_line(lines, "neither box, cylinder, capsule, sphere nor mesh", "plane (line ")
         self.convert(link("base").replace("</link>", "<collision/></link>"))
@@ -281,8 +281,8 @@ class GeometryTest(KindsTest):
         deck, lines = self.convert(self.robot(*shapes))
         self.assertEqual([each["sheet"] for each in deck["meshes"]], [True] * len(SHEETS))
         self.assertEqual(len(lines), 1)
-        self.one_line(lines, "made a sheet, which particles touch from both sides, as it is no solid's surface as it "
-                             f"stands ({len(SHEETS)} times)", "rib.stl (line 4) has parts inside others",
+        self.one_line(lines, "imported as an open surface (sheet) with contact on both sides, because it does not bound "
+                             f"a solid ({len(SHEETS)} times)", "rib.stl (line 4) has parts inside others",
                       "turned.stl (line 8) is inside out")
         deck, lines = self.convert(self.robot(self.stl("open", CUBE[:7])))
         self.assertEqual((lines, deck["meshes.arm_0.sheet"]), ([], True))
@@ -291,7 +291,7 @@ class GeometryTest(KindsTest):
         for name, triangles in FAULTY.items():
             fault = {"corner": "without area", "sliver": "without area", "anyhow": "that are wound both ways"}
             deck, lines = self.convert(self.robot(self.stl(name, triangles)))
-            self.one_line(lines, "made a sheet", f"{name}.stl (line 4) has triangles {fault.get(name, 'twice')}")
+            self.one_line(lines, "imported as an open surface", f"{name}.stl (line 4) has triangles {fault.get(name, 'twice')}")
             self.assertEqual((len(lines), deck["meshes.arm_0.sheet"]), (1, True))
 
     def test_files_that_are_no_meshes(self):
@@ -302,8 +302,8 @@ class GeometryTest(KindsTest):
         names = ("lfs.stl", "empty.stl", "text.ply", "bytes.stl", "gone.dae")
         deck, lines = self.convert(self.robot(*(f'<mesh filename="{name}"/>' for name in names)))
         self.assertNotIn("meshes", deck)
-        self.one_line(lines, "no mesh, left out", "(4 times)", "lfs.stl (line 4) is a Git LFS pointer: git lfs pull")
-        self.one_line(lines, "no STL, OBJ or PLY", "gone.dae (line 12)")
+        self.one_line(lines, "unreadable mesh, left out", "(4 times)", "lfs.stl (line 4) is a Git LFS pointer: git lfs pull")
+        self.one_line(lines, "not STL, OBJ or PLY", "gone.dae (line 12)")
         self.convert(self.robot('<mesh filename="gone.stl"/>'), code=2)
         (self.folder / "sub").mkdir()
         self.stl("sub/cube", CUBE)
@@ -312,19 +312,19 @@ class GeometryTest(KindsTest):
     def test_what_only_the_program_finds(self):
         line = np.array([[[0, 0, 0], [k, 0, 0], [k + 1, 0, 0]] for k in range(1, 4)])
         shapes = [self.stl("cube", CUBE), self.stl("rib", SHEETS["rib"]), self.stl("line", line)]
-        with mock.patch.object(surface, "judged", return_value=(False, "")):
+        with mock.patch.object(surface, "find_defect", return_value=(False, "")):
             surface.read.cache_clear()
             deck, lines = self.convert(self.robot(*shapes))
         surface.read.cache_clear()
         wanted = [("arm_0", False), ("arm_1", True)]
         self.assertEqual([(each["name"], "sheet" in each) for each in deck["meshes"]], wanted)
         self.assertNotIn("meshes", deck["bodies.arm_2"])
-        self.one_line(lines, "made a sheet", "rib.stl, as scree check says: the mesh is no surface: a shell lies")
+        self.one_line(lines, "imported as an open surface", "rib.stl, by scree check: the mesh is no surface: a shell lies")
         self.one_line(lines, "refused by scree check, left out", "line.stl: the mesh is no surface")
         deck, lines = self.convert(self.robot(*shapes))
         self.assertEqual([(each["name"], "sheet" in each) for each in deck["meshes"]], wanted)
         with mock.patch("scree.program.find", return_value=None):
-            self.one_line(self.convert(self.robot(shapes[0]))[1], "not checked, as the program scree is not there")
+            self.one_line(self.convert(self.robot(shapes[0]))[1], "not checked, because the program scree is not found")
 
 
 class MixtureTest(KindsTest):

@@ -26,7 +26,7 @@ from scree.errors import ScreeError
 from scree.pictures.discs import DiscScene
 from scree.pictures.mechanism import Mechanism
 from scree.pictures.palette import BODY_COLOR
-from scree.pictures.render import DrawnRun, Look, make_picture, save_picture, vtk_renders
+from scree.pictures.render import DrawnRun, PictureOptions, make_picture, save_picture, vtk_renders
 from scree.pictures.space import SphereScene
 
 NET, BOX, CRANK, DRUM, EXCAVATOR, SCREW, WHEEL = (pathlib.Path(path).resolve() for path in sys.argv[1:8])
@@ -45,7 +45,7 @@ def drawn(folder):
 
 def look(run, **chosen):
     """Fitted to all of the run's snapshots."""
-    found = Look(**chosen)
+    found = PictureOptions(**chosen)
     found.fit(run, range(len(run.particles)))
     return found
 
@@ -276,7 +276,7 @@ class MechanismTest(unittest.TestCase):
         for snapshot in range(len(run.particles)):
             motion = run.motion(snapshot)
             pairs, local, _ = run.model.connections["revolute"]
-            ends = motion.places(pairs, local)
+            ends = motion.positions(pairs, local)
             np.testing.assert_allclose(ends[:, 0], ends[:, 1], atol=1e-8)
             lines, points = mechanism.draw(snapshot)
             np.testing.assert_allclose(points["revolute"], ends[:, 0], atol=1e-8)
@@ -303,7 +303,7 @@ class ExampleTest(unittest.TestCase):
         pairs, local, _ = run.model.connections["revolute"]
         self.assertEqual(len(pairs), 6)
         for snapshot in range(last + 1):
-            ends = run.motion(snapshot).places(pairs, local)
+            ends = run.motion(snapshot).positions(pairs, local)
             np.testing.assert_allclose(ends[:, 0], ends[:, 1], atol=1e-9)  # the loop of four of them is closed
 
         def lengths(snapshot):

@@ -132,7 +132,7 @@ class ModelTest(unittest.TestCase):
             (pairs, local, _) = model.connections["spherical"]
             np.testing.assert_allclose(local[0], [[0, 0, 1], [0, -1, 0]], atol=1e-15)
             motion = model.motion(Centers(position=[[0, 0, 2]], orientation=[[1, 0, 0, 0]]), 0)
-            np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 1], [0, -1, 2]], atol=1e-15)
+            np.testing.assert_allclose(motion.positions(pairs, local)[0], [[0, 0, 1], [0, -1, 2]], atol=1e-15)
 
     def test_frames_beside_centres_of_mass_and_markers(self):
         """A rod of two balls of 1 and 3 parts at 0 and 1 along its x axis, which starts along the global z."""
@@ -146,12 +146,12 @@ class ModelTest(unittest.TestCase):
                   {"name": "free", "type": "point-on-line", "bodies": ["ground", "rod"], "axis": [1.0, 0.0, 0.0]}]
         model = Model(deck(bodies=[rod], markers=markers, joints=joints))
         (pairs, local, _) = model.connections["spherical"]
-        np.testing.assert_allclose(model.start.places(pairs, local)[0], [[0, 0, 3]] * 2, atol=1e-15)
+        np.testing.assert_allclose(model.start.positions(pairs, local)[0], [[0, 0, 3]] * 2, atol=1e-15)
         np.testing.assert_allclose(model.connections["point-on-line"][1][0], [[0, 0, 2.75], [0.75, 0, 0]], atol=1e-15)
         half = np.sqrt(0.5)  # a quarter turn about z
         bodies = Centers(position=[[0, 0.75, 2]], origin=[[0, 0, 2]], orientation=[[half, 0, 0, half]])
         motion = model.motion(bodies, 0)
-        np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 3], [0, 1, 2]], atol=1e-15)
+        np.testing.assert_allclose(motion.positions(pairs, local)[0], [[0, 0, 3], [0, 1, 2]], atol=1e-15)
 
 
 class WallTest(unittest.TestCase):

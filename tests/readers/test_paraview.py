@@ -168,7 +168,7 @@ def check_drum(folder):
     try:
         shown_view.show(str(folder), field="colour")
         require(False, f"{folder}: takes a field that is not there")
-    except shown_view.Trouble as trouble:
+    except shown_view.NothingToShow as trouble:
         require("no field colour; there are " in str(trouble), trouble)
 
 

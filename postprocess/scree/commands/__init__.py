@@ -1,5 +1,5 @@
-"""A module for each command: `describe` adds its arguments to a parser, `run` does it and returns the exit code. What
-takes long to import is imported when it runs."""
+"""One module per command: `describe` adds its arguments to a parser, `run` carries it out and returns the exit code.
+Modules that take long to import are imported in `run`."""
 
 from scree.commands import animate, compare, draw, export, paraview, picture, plot, report, settle, urdf
 

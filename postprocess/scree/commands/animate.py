@@ -3,8 +3,8 @@ from __future__ import annotations
 import argparse
 import pathlib
 
-from scree.cli import add_folder
-from scree.commands.look import add_frames, add_look, chosen_look, count
+from scree.commands.arguments import add_folder, add_frames, count
+from scree.commands.picture_options import add_picture_options, picture_options
 from scree.errors import ScreeError
 from scree.run import open_run
 
@@ -12,17 +12,17 @@ from scree.run import open_run
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
-                        help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/film.mp4, .gif without "
-                             "ffmpeg")
+                        help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/film.mp4, without ffmpeg "
+                             "film.gif")
     parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
                         help="first snapshot [s]")
     parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
     parser.add_argument("--rate", type=count, default=25, metavar="FRAMES", help="frames per second (default 25)")
-    parser.add_argument("--width", type=count, metavar="PIXELS", help="of the film; default: that of the pictures")
+    parser.add_argument("--width", type=count, metavar="PIXELS", help="width of the film; default: as pictures")
     parser.add_argument("--quality", type=quality, default=80, metavar="NUMBER",
-                        help="of a .webp, from 1, the smallest file, to 100 (default 80)")
+                        help="quality of a .webp, from 1 (smallest file) to 100 (default 80)")
     add_frames(parser)
-    add_look(parser)
+    add_picture_options(parser)
 
 
 def quality(text: str) -> int:
@@ -32,25 +32,26 @@ def quality(text: str) -> int:
     return value
 
 
-def run(words: argparse.Namespace) -> int:
-    """A film of the run's snapshots
+def run(arguments: argparse.Namespace) -> int:
+    """A film of the snapshots of the run
 
     The pictures are those of `scree-post draw`.
     """
     from scree.pictures.render import (FILM_FORMATS, DrawnRun, chosen_frames, has_ffmpeg, make_picture,
-                                               save_animation)
+                                       save_animation)
 
-    path = words.output or words.folder / ("film.mp4" if has_ffmpeg() else "film.gif")
+    path = arguments.output or arguments.folder / ("film.mp4" if has_ffmpeg() else "film.gif")
     if path.suffix[1:] not in FILM_FORMATS:
         raise ScreeError(f"{path}: must end in .{', .'.join(FILM_FORMATS[:-1])} or .{FILM_FORMATS[-1]}")
-    drawn, look = DrawnRun(open_run(words.folder)), chosen_look(words)
-    within = [k for k, time in enumerate(drawn.particles.times) if words.begin <= time <= words.end]
+    drawn, options = DrawnRun(open_run(arguments.folder)), picture_options(arguments)
+    begin, end, times = arguments.begin, arguments.end, drawn.particles.times
+    within = [k for k, time in enumerate(times) if begin <= time <= end]
     if not within:
-        raise ScreeError(f"{words.folder}: no snapshot from {words.begin:g} to {words.end:g} s; they go from "
-                         f"{drawn.particles.times[0]:g} to {drawn.particles.times[-1]:g} s")
-    frames = [within[k] for k in chosen_frames(len(within), words.frames)]
-    look.fit(drawn, frames)
-    save_animation(make_picture(drawn, frames, look), frames, path, words.rate, words.width,
-                   words.quality)
+        raise ScreeError(f"{arguments.folder}: no snapshot from {begin:g} to {end:g} s; they go from "
+                         f"{times[0]:g} to {times[-1]:g} s")
+    frames = [within[k] for k in chosen_frames(len(within), arguments.frames)]
+    options.fit(drawn, frames)
+    save_animation(make_picture(drawn, frames, options), frames, path, arguments.rate, arguments.width,
+                   arguments.quality)
     print(path)
     return 0

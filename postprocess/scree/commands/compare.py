@@ -3,7 +3,7 @@ from __future__ import annotations
 import argparse
 import pathlib
 
-from scree.cli import add_folder
+from scree.commands.arguments import add_folder
 from scree.differences import common_rows, common_snapshots, differences
 from scree.run import Run, open_run
 
@@ -18,29 +18,28 @@ def tolerance(text: str) -> float:
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("other", type=pathlib.Path, metavar="OTHER_DIR")
-    parser.add_argument("--tolerance", type=tolerance, metavar="SHARE",
-                        help="let differences pass up to this share of a column's or a field's largest value")
+    parser.add_argument("--tolerance", type=tolerance, metavar="FRACTION",
+                        help="accept differences up to this fraction of the largest value of a column or field")
 
 
 def state_hash(opened: Run) -> str:
     return str(opened.record["run"]["state_hash"]) if opened.record else ""
 
 
-def run(words: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """Whether two runs have the same results, bit for bit
 
-    Compares all columns of the history and all fields of the snapshots at the times that both runs have, and prints a
-    line for each that differs: the largest difference, its share of the largest value in the first run, and when that
-    is; and a line for what one run has alone. The exit code is 1 where there is a line, or, with --tolerance, one past
-    it.
+    Compares all columns of the history and all fields of the snapshots at the times that both runs have. Prints one
+    line per difference: the largest difference, its ratio to the largest value in the first run, and its time. Data of
+    only one run have a line, too. The exit code is 1 if there are lines, with --tolerance lines beyond the tolerance.
     """
-    one, other = open_run(words.folder), open_run(words.other)
+    one, other = open_run(arguments.folder), open_run(arguments.other)
     found = differences(one, other)
-    if words.tolerance is not None:
-        passed = [each for each in found if not each.text and each.relative <= words.tolerance]
-        found = [each for each in found if each not in passed]
-        if passed:
-            print(f"within the tolerance: {len(passed)} columns and fields")
+    if arguments.tolerance is not None:
+        accepted = [each for each in found if not each.text and each.relative <= arguments.tolerance]
+        found = [each for each in found if each not in accepted]
+        if accepted:
+            print(f"within the tolerance: {len(accepted)} columns and fields")
     for each in found:
         print(each)
     compared = f"{len(common_rows(one, other)[0])} rows of the history, " \
@@ -51,5 +50,5 @@ def run(words: argparse.Namespace) -> int:
     if found:
         print(f"{len(found)} {'difference' if len(found) == 1 else 'differences'} ({compared})")
         return 1
-    print(f"{'the same' if words.tolerance is not None else 'the same bits'} ({compared})")
+    print(f"{'the same' if arguments.tolerance is not None else 'the same bits'} ({compared})")
     return 0

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from scree.cli import add_folder
+from scree.commands.arguments import add_folder
 from scree.errors import MissingError, ScreeError
 from scree.run import Run, open_run
 from scree.snapshots import KINDS, Points
@@ -22,8 +22,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("csv", *MESHES), default="csv")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FOLDER", help="default RESULT_DIR/export")
     parser.add_argument("--times", type=float, nargs="+", metavar="TIME",
-                        help="the snapshots nearest to these times [s]; default: all")
-    parser.add_argument("--kinds", choices=KINDS, nargs="+", default=KINDS, help="default: all that there are")
+                        help="export the snapshots nearest to these times [s]; default: all")
+    parser.add_argument("--kinds", choices=KINDS, nargs="+", default=KINDS, help="kinds to export; default: all")
 
 
 def chosen_snapshots(opened: Run, times: Sequence[float] | None) -> list[int]:
@@ -48,8 +48,8 @@ def save_history(opened: Run, path: pathlib.Path) -> None:
 
 
 def balls_of(points: Points) -> pyvista.PolyData | None:
-    """Spheres in place of points; None where no point has a size, as centres of mass. Throws MissingError where the
-    radius is no field."""
+    """Spheres instead of points; None if all radii are 0, as those of centres of mass. Throws MissingError if the
+    snapshot has no radius."""
     import pyvista
 
     if not (points["radius"].values > 0).any():
@@ -61,12 +61,12 @@ def balls_of(points: Points) -> pyvista.PolyData | None:
 
 
 def save_mesh(points: Points, path: pathlib.Path) -> bool:
-    """Particles and shapes are points in VTK's files, which can have fields, and balls in PLY and STL, which cannot,
-    and have no lines. Returns whether there was something to write."""
-    alone = path.suffix in (".ply", ".stl")
-    if alone and len(points.lines):
+    """Particles and shapes are points with fields in VTK files, and spheres in PLY and STL files, which have neither
+    fields nor lines. Returns whether a file was written."""
+    geometry_only = path.suffix in (".ply", ".stl")
+    if geometry_only and len(points.lines):
         return False
-    mesh = balls_of(points) if alone and not len(points.triangles) else points.to_pyvista()
+    mesh = balls_of(points) if geometry_only and not len(points.triangles) else points.to_pyvista()
     if mesh is None:
         return False
     (mesh.cast_to_unstructured_grid() if path.suffix == ".vtu" else mesh).save(path)
@@ -74,14 +74,14 @@ def save_mesh(points: Points, path: pathlib.Path) -> bool:
 
 
 def save_collection(names: list[tuple[float, str]], path: pathlib.Path) -> None:
-    """A .pvd: the files of a series with their times [s]."""
+    """Writes a .pvd, which lists the files of a series with their times [s]."""
     rows = "".join(f'    <DataSet timestep="{time!r}" file="{name}"/>\n' for time, name in names)
     path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
                     f"{rows}  </Collection>\n</VTKFile>\n", encoding="utf-8")
 
 
 def save_kind(opened: Run, kind: str, snapshots: Sequence[int], folder: pathlib.Path, format: str) -> bool:
-    """A file for each snapshot. Returns whether there is one. Throws MissingError for a field that it needs."""
+    """Writes one file per snapshot. Returns whether a file was written. Throws MissingError for a missing field."""
     save = save_csv if format == "csv" else save_mesh
     names = []
     for number in snapshots:
@@ -94,32 +94,32 @@ def save_kind(opened: Run, kind: str, snapshots: Sequence[int], folder: pathlib.
     return bool(names)
 
 
-def run(words: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """History and snapshots as CSV, snapshots for VTK, Blender and CAD programs
 
-    csv: history.csv and a table per snapshot, with units in the headers. vtp, vtu: a file of VTK per snapshot, and a
-    .pvd with their times. ply, stl: meshes alone, particles as balls of their size, no lines. Files are named after
-    kind and number of the snapshot: particles_0012.csv.
+    csv: history.csv and a table per snapshot, with units in the headers. vtp, vtu: a VTK file per snapshot, and a .pvd
+    with their times. ply, stl: geometry only, particles as spheres of true size, no lines. File names have the kind and
+    the number of the snapshot: particles_0012.csv.
     """
-    opened = open_run(words.folder)
-    folder = words.output or words.folder / "export"
+    opened = open_run(arguments.folder)
+    folder = arguments.output or arguments.folder / "export"
     folder.mkdir(parents=True, exist_ok=True)
-    snapshots = chosen_snapshots(opened, words.times)
-    has_history = words.format == "csv" and opened.history.rows > 0
+    snapshots = chosen_snapshots(opened, arguments.times)
+    has_history = arguments.format == "csv" and opened.history.rows > 0
     if has_history:
         save_history(opened, folder / "history.csv")
     elif not snapshots:
-        raise ScreeError(f"{words.folder}: holds no snapshots")
+        raise ScreeError(f"{arguments.folder}: holds no snapshots")
     left_out, written = [], False
-    for kind in (kind for kind in words.kinds if opened.series(kind)):
+    for kind in (kind for kind in arguments.kinds if opened.series(kind)):
         try:
-            written = save_kind(opened, kind, snapshots, folder, words.format) or written
+            written = save_kind(opened, kind, snapshots, folder, arguments.format) or written
         except MissingError as error:
-            left_out.append(f"{kind}.{words.format}: left out: {error}")
+            left_out.append(f"{kind}.{arguments.format}: left out: {error}")
     for line in left_out:
         print(f"warning: {line}", file=sys.stderr)
     if not written and not has_history:
-        raise ScreeError(f"{words.folder}: nothing of its snapshots can be written as {words.format}: "
-                         f"{'fields are missing' if left_out else 'there are no meshes and no balls'}")
+        raise ScreeError(f"{arguments.folder}: no snapshot can be written as {arguments.format}: "
+                         f"{'fields are missing' if left_out else 'there are neither meshes nor spheres'}")
     print(folder)
     return 0

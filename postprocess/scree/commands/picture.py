@@ -5,8 +5,8 @@ import pathlib
 
 import numpy as np
 
-from scree.cli import add_folder
-from scree.commands.look import add_look, chosen_look
+from scree.commands.arguments import add_folder
+from scree.commands.picture_options import add_picture_options, picture_options
 from scree.errors import ScreeError
 from scree.run import open_run
 
@@ -14,27 +14,27 @@ from scree.run import open_run
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("--time", type=float, metavar="TIME",
-                        help="of the snapshot [s], the nearest; default: the last")
+                        help="time of the snapshot [s], the nearest is taken; default: the last")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .jpg, .pdf or .svg; default RESULT_DIR/picture.png")
-    add_look(parser)
+    add_picture_options(parser)
 
 
-def run(words: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """One state of the run
 
     The pictures are those of `scree-post draw`.
     """
     from scree.pictures.render import DrawnRun, make_picture, save_picture
 
-    drawn, look = DrawnRun(open_run(words.folder)), chosen_look(words)
+    drawn, options = DrawnRun(open_run(arguments.folder)), picture_options(arguments)
     times = drawn.particles.times
-    snapshot = len(times) - 1 if words.time is None else int(np.abs(times - words.time).argmin())
-    path = words.output or words.folder / "picture.png"
-    look.fit(drawn, [snapshot])
+    snapshot = len(times) - 1 if arguments.time is None else int(np.abs(times - arguments.time).argmin())
+    path = arguments.output or arguments.folder / "picture.png"
+    options.fit(drawn, [snapshot])
     try:
-        save_picture(make_picture(drawn, [snapshot], look, fine=True), snapshot, path)
-    except ValueError as error:  # of a suffix that it does not know
+        save_picture(make_picture(drawn, [snapshot], options, fine=True), snapshot, path)
+    except ValueError as error:  # unknown suffix
         raise ScreeError(f"{path}: {error}") from error
     print(path)
     return 0

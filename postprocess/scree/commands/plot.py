@@ -4,7 +4,7 @@ import argparse
 import pathlib
 from collections.abc import Sequence
 
-from scree.cli import add_folder
+from scree.commands.arguments import add_folder
 from scree.errors import ScreeError
 from scree.history import TIME
 from scree.run import Run, open_run
@@ -12,18 +12,18 @@ from scree.run import Run, open_run
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--columns", nargs="+", default=[], metavar="GROUP/NAME",
-                        help="columns of the history to plot below the energies, a panel per group and unit; * stands "
-                             "for any text, as in 'reactions/*/fx'")
+                        help="columns of the history to plot below the energies, one panel per group and unit; * "
+                             "matches any text, as in 'reactions/*/fx'")
     parser.add_argument("--list", action="store_true",
-                        help="print the history's columns with unit and description, draw nothing")
+                        help="print the columns of the history with unit and description; draw nothing")
 
 
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     add_columns(parser)
-    parser.add_argument("--no-energies", action="store_true", help="plot the columns alone")
+    parser.add_argument("--no-energies", action="store_true", help="plot only the columns")
     parser.add_argument("--x", default=TIME, metavar="GROUP/NAME",
-                        help="the column along the horizontal axis, as in --x bodies/piston/x; default time")
+                        help="column on the horizontal axis, as in --x bodies/piston/x; default: time")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .pdf or .svg; default RESULT_DIR/history.png")
 
@@ -42,16 +42,17 @@ def save(opened: Run, columns: Sequence[str], energies: bool, path: pathlib.Path
     figure = history_figure(opened.history, opened.title, columns, energies, x)
     try:
         figure.savefig(path)
-    except ValueError as error:  # of a suffix that it does not know
+    except ValueError as error:  # unknown suffix
         raise ScreeError(f"{path}: {error}") from error
     plt.close(figure)
     return path
 
 
-def run(words: argparse.Namespace) -> int:
-    """Energies, their balance and other columns of the history, over time or over one of its columns"""
-    opened = open_run(words.folder)
-    if words.list:
+def run(arguments: argparse.Namespace) -> int:
+    """Energies, their balance and other columns of the history, over time or over another column"""
+    opened = open_run(arguments.folder)
+    if arguments.list:
         return print_columns(opened)
-    print(save(opened, words.columns, not words.no_energies, words.output or words.folder / "history.png", words.x))
+    path = arguments.output or arguments.folder / "history.png"
+    print(save(opened, arguments.columns, not arguments.no_energies, path, arguments.x))
     return 0

@@ -13,24 +13,24 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("robot", type=pathlib.Path, metavar="URDF")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DECK",
                         help="default: the name of URDF, with .toml")
-    parser.add_argument("--overwrite", action="store_true", help="a deck of this name may be there")
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing deck of this name")
     parser.add_argument("--free", action="store_true",
-                        help="nothing holds the root, which is otherwise fixed to the ground")
+                        help="release the root, which is otherwise fixed to the ground")
     parser.add_argument("--xyz", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "Z"),
-                        help="where the root's frame is [m]")
+                        help="position of the root's frame [m]")
     parser.add_argument("--rpy", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("R", "P", "Y"),
-                        help="how it is turned, about x, y and z [rad]")
+                        help="rotation of the root's frame about x, y and z [rad]")
     parser.add_argument("--position", nargs="+", default=[], action="extend", metavar="JOINT=VALUE",
-                        help="coordinates at t = 0 [rad or m]; default: 0")
+                        help="initial joint coordinates [rad or m]; default: 0")
     parser.add_argument("--geometry", choices=("collision", "visual", "none"), default="collision",
-                        help="which of the links' geometries particles touch (default collision)")
+                        help="geometry of the links that gets contacts (default collision)")
     parser.add_argument("--package", nargs="+", default=[], action="extend", metavar="NAME=FOLDER",
-                        help="what package://NAME stands for")
+                        help="folder for package://NAME")
     parser.add_argument("--stop-stiffness", type=float, metavar="K",
-                        help="of the stops at the joints' limits [N m/rad or N/m]; default: each gives way by 0.02 rad "
-                             "or m under the effort of its limit")
+                        help="stiffness of the stops at joint limits [N m/rad or N/m]; default: each yields by 0.02 "
+                             "rad or m under the effort of its limit")
     parser.add_argument("--mend-inertia", action="store_true",
-                        help="makes an inertia that no body can have the nearest that one can, and says to what")
+                        help="replace a physically impossible inertia by the nearest possible one, and print it")
 
 
 def pairs(words: Sequence[str]) -> dict[str, str]:
@@ -47,24 +47,24 @@ def number(text: str) -> float:
         raise ScreeError(f"{text}: must be a number") from None
 
 
-def run(words: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """A robot's URDF as a deck, to which loop joints and particles can be added
 
-    Links become bodies, joints joints, limits stops, with damping, friction, couplers for joints that mimic others, and
-    meshes that particles touch. What is left out or made otherwise is said, once of each kind.
+    Links become bodies, joints become joints with stops at their limits, damping and friction, joints that mimic others
+    become couplers, and geometry becomes meshes with contact. Omissions and changes are listed, one line per kind.
     """
     from scree import urdf
 
-    path = words.output or words.robot.with_suffix(".toml")
-    if path.exists() and not words.overwrite:
-        raise ScreeError(f"{path}: is there already; --overwrite replaces it")
-    options = urdf.Options(words.free, tuple(words.xyz), tuple(words.rpy),
-                           {name: number(text) for name, text in pairs(words.position).items()}, words.geometry,
-                           pairs(words.package), words.stop_stiffness, words.mend_inertia)
-    with warnings.catch_warnings(record=True) as said:
+    path = arguments.output or arguments.robot.with_suffix(".toml")
+    if path.exists() and not arguments.overwrite:
+        raise ScreeError(f"{path}: exists already; --overwrite replaces it")
+    options = urdf.Options(arguments.free, tuple(arguments.xyz), tuple(arguments.rpy),
+                           {name: number(text) for name, text in pairs(arguments.position).items()}, arguments.geometry,
+                           pairs(arguments.package), arguments.stop_stiffness, arguments.mend_inertia)
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always", ScreeWarning)
-        deck = urdf.to_deck(words.robot, options)
-    for each in said:
+        deck = urdf.to_deck(arguments.robot, options)
+    for each in warned:
         print(f"warning: {each.message}", file=sys.stderr)
     deck.write(path)
     print(path)

@@ -1,16 +1,16 @@
-"""What scree-post paraview puts together: one file for ParaView, which has nothing of this package."""
+"""Joins the modules for ParaView to one file, which does not need this package."""
 
 import ast
 import pathlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = HERE.parent
-# What draws a mechanism, each after what it imports.
+# Modules that draw a mechanism, each after its imports.
 DRAWING_FILES = [PACKAGE / "fields.py",
                  *(PACKAGE / "pictures" / f"{name}.py" for name in ("styles", "model", "mechanism")), HERE / "rods.py"]
-MODULES = ("results", "colors", "view")  # of this folder, each after what it imports
+MODULES = ("results", "colors", "view")  # of this folder, each after its imports
 
-# Modules, as programmable filters put numpy's max, all and others in place of those of the file itself.
+# Modules, because programmable filters replace max, all and others in the main file by those of numpy.
 START = """
 for NAME, TEXT in MODULES.items():
     module = sys.modules[NAME] = types.ModuleType(NAME)
@@ -24,7 +24,7 @@ if __name__ == "__main__":
 
 
 def joined(paths):
-    """The sources of modules of the package one after the other, without what they import of each other."""
+    """The concatenated sources of modules of the package, without imports of each other."""
     found = []
     for path in paths:
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -36,15 +36,14 @@ def joined(paths):
 
 
 def literal(text):
-    """In Python, in lines where that is possible."""
+    """A Python literal, in readable lines if possible."""
     return repr(text) if "'''" in text or text.endswith(("'", "\\")) else f"r'''{text}'''"
 
 
 def bundle(folder, deck):
-    """The text of one file that shows a folder. deck: of its run, with every default, as JSON;
-    None where nothing tells it yet."""
+    """The text of the file that shows a folder. deck: of its run, with all defaults, as JSON; None if unknown."""
     sources = {name: (HERE / f"{name}.py").read_text(encoding="utf-8") for name in MODULES}
-    told = ast.get_docstring(ast.parse(sources["view"]), clean=False)
+    docstring = ast.get_docstring(ast.parse(sources["view"]), clean=False)
     modules = "".join(f"    {name!r}: {literal(text)},\n" for name, text in sources.items())
-    return f'"""{told}"""\n\nimport sys\nimport types\n\nFOLDER = {folder!r}\nDECK = {deck!r}\n' \
+    return f'"""{docstring}"""\n\nimport sys\nimport types\n\nFOLDER = {folder!r}\nDECK = {deck!r}\n' \
            f"DRAWING = {literal(joined(DRAWING_FILES))}\nMODULES = {{\n{modules}}}\n{START}"

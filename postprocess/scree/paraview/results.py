@@ -1,4 +1,4 @@
-"""What view.py reads of a run: its deck and its snapshots."""
+"""Reads the deck and the snapshots of a run for view.py."""
 
 import json
 import math
@@ -10,38 +10,37 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 
 try:
     import tomllib
-except ImportError:  # of Python before 3.11, which some ParaViews have
+except ImportError:  # Python before 3.11, in some versions of ParaView
     tomllib = None
 
-FOLDER = None  # the results to show where none are named; scree-post paraview sets this and what follows
-DECK = None  # of these results, with every default, as JSON
-DRAWING = None  # what draws a mechanism: the text of a module
+FOLDER = None  # default folder of results; scree-post paraview sets this and the following constants
+DECK = None  # deck of these results, with all defaults, as JSON
+DRAWING = None  # source of the module that draws a mechanism
 
-SAMPLES = 5  # times that are looked at for the colour scale and for how far bodies swing
+SAMPLES = 5  # number of times that determine the colour scale and the region of moving bodies
 
 
-class Trouble(Exception):
-    """Says why there is nothing to show."""
+class NothingToShow(Exception):
+    """The text has the reason."""
 
 
 def resolved_deck(folder):
-    """With every default; empty where nothing tells it: the run has written no record yet, or this Python reads no
-    TOML."""
+    """The deck with all defaults; empty if the run has not written a record yet, or if this Python cannot read TOML."""
     if DECK and FOLDER and os.path.realpath(folder) == os.path.realpath(FOLDER):
         return json.loads(DECK)
     path = os.path.join(folder, "run_record.json")
     if not os.path.exists(path):
         return {}
     if tomllib is None:
-        print(f"{path}: Python 3.11 or newer reads the deck in it, for walls, joints and names; a view.py that "
-              "scree-post paraview makes holds it")
+        print(f"{path}: needs Python 3.11 or newer for the deck with walls, joints and names; a view.py made by "
+              "scree-post paraview contains the deck")
         return {}
     with open(path, encoding="utf-8") as file:
         return tomllib.loads(json.load(file)["run"]["resolved_deck"])
 
 
 def drawing():
-    """The text of what draws a mechanism."""
+    """Source of the module that draws a mechanism."""
     if DRAWING:
         return DRAWING
     from parts import DRAWING_FILES, joined
@@ -50,13 +49,14 @@ def drawing():
 
 
 def open_series(folder, name):
-    """The source of one kind of snapshots; None where the run has none."""
+    """The ParaView source of one kind of snapshots; None if the run has none."""
     data, text = (os.path.join(folder, name + suffix) for suffix in (".vtkhdf", ".xdmf"))
     program = servermanager.vtkSMProxyManager
-    reads = (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)  # points, lines and triangles over time
-    if reads and os.path.exists(data):
+    # From 5.13 on ParaView reads points, lines and triangles over time.
+    reads_vtkhdf = (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)
+    if reads_vtkhdf and os.path.exists(data):
         source = simple.OpenDataFile(data)
-    elif os.path.exists(text) and b"<Time" in open(text, "rb").read(4096):  # one without snapshots cannot be read
+    elif os.path.exists(text) and b"<Time" in open(text, "rb").read(4096):  # ParaView cannot read one without
         source = simple.Xdmf3ReaderS(FileName=[text])
     else:
         return None
@@ -70,14 +70,14 @@ def times_of(source):
 
 
 def information(source, association, field):
-    """What is known of a field, without its values; None where there is none."""
+    """Metadata of a field, without its values; None if there is no such field."""
     data = source.PointData if association == "POINTS" else source.CellData
     return data.GetArray(field) if field in data.keys() else None
 
 
 def box_around(source, strays=0):
-    """Its low and its high corner [m], with the points' field radius; the low one is above the other where there are no
-    points. strays: percentage of the points, at each end of each axis, that may lie outside."""
+    """Low and high corner [m] of the box around the points with their radii; low > high without points. strays:
+    percentage of the points that may be outside, at each end of each axis."""
     known = source.GetDataInformation()
     if not known.GetNumberOfPoints():
         return np.full(3, np.inf), np.full(3, -np.inf)
@@ -93,19 +93,19 @@ def box_around(source, strays=0):
 
 
 def sampled(times):
-    """Some of the times, the first and the last among them."""
+    """Some of the times, including the first and the last."""
     return sorted({times[round(k * (len(times) - 1) / (SAMPLES - 1))] for k in range(SAMPLES)})
 
 
 def rounded_up(value):
-    """To a number that reads well."""
+    """The value rounded up to a number with few digits."""
     unit = 10.0 ** math.floor(math.log10(value))
     return next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= 0.999 * value)
 
 
 def largest(source, association, field, times, box):
-    """The field's largest value, of a vector its length, but for the last percent, at some of the times; 0 where there
-    is none. Of points those in the box: its low and its high corner."""
+    """Largest 99th percentile of a field (a vector by magnitude) over some of the times; 0 without values. Points count
+    inside the box (low corner, high corner)."""
     found = 0.0
     for time in sampled(times):
         source.UpdatePipeline(time)

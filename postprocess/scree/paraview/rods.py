@@ -1,5 +1,5 @@
-"""A mechanism as tubes and balls: what the pictures of scree-post draw of bodies, joints, springs and cylinders. It
-runs in a programmable filter of ParaView, over the points of a run's bodies."""
+"""Bodies, joints, springs and cylinders as tubes and balls, as in the pictures of scree-post. Runs in a programmable
+filter of ParaView on the points of bodies."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -14,11 +14,11 @@ from scree.pictures.model import Model
 from scree.pictures.styles import BALL, EDGE_COLOR, JOINTS, LINES, SMALL, TUBE
 
 
-BETWEEN_POINTS = (1, 2)  # kinds of links: spring-dampers, without an actuator and with one
+BETWEEN_POINTS = (1, 2)  # kinds of links: spring-dampers without and with an actuator
 
 
 class Bodies:
-    """One snapshot as VTK has it, read as scree.series reads many."""
+    """One snapshot in VTK data, with the interface of scree.series.Series."""
 
     def __init__(self, data):
         self._data = data
@@ -31,9 +31,9 @@ class Bodies:
         return vtk_to_numpy(array)
 
 
-def points_of(places):
+def points_of(positions):
     points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=float).reshape(-1, 3), deep=True))
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions, dtype=float).reshape(-1, 3), deep=True))
     return points
 
 
@@ -54,10 +54,10 @@ def tubes(lines, radius):
     return tube
 
 
-def balls(places, radius):
+def balls(positions, radius):
     """Points [n][3] as a VTK algorithm."""
     data, ball, glyphs = vtkPolyData(), vtkSphereSource(), vtkGlyph3D()
-    data.SetPoints(points_of(places))
+    data.SetPoints(points_of(positions))
     ball.SetRadius(radius)
     ball.SetThetaResolution(20)
     ball.SetPhiResolution(14)
@@ -68,7 +68,7 @@ def balls(places, radius):
 
 
 def colored(algorithm, color):
-    """What the algorithm gives, each cell with the colour, which is written as #rrggbb."""
+    """Output of the algorithm with a colour (#rrggbb) on each cell."""
     algorithm.Update()
     data = algorithm.GetOutput()
     red_green_blue = np.array([int(color[k : k + 2], 16) for k in (1, 3, 5)], dtype=np.uint8)
@@ -79,8 +79,8 @@ def colored(algorithm, color):
 
 
 def drawn(bodies, deck, extent, lift, output):
-    """bodies, output: VTK data, of an instant; deck: resolved; extent: longest side of what is shown [m]; lift: of what
-    lies above the shapes, along z [m]."""
+    """bodies, output: VTK data of an instant; deck: resolved; extent: longest side of the scene [m]; lift: offset along
+    z of objects above the shapes [m]."""
     model = Model(deck)
     series = Bodies(bodies) if bodies.GetNumberOfPoints() else None
     lines, joints = Mechanism(model, lambda snapshot: model.motion(series, snapshot), SMALL * extent).draw(0)
@@ -98,15 +98,15 @@ def drawn(bodies, deck, extent, lift, output):
 
 
 def forces(links, radius, lift, output):
-    """Balls where links are, with their force: at pins and bushings, and in the middle of what is between two points.
-    links, output: VTK data, of an instant; radius [m]; lift: as above."""
+    """Balls with the force of links, at pins and bushings, and in the middle of elements between two points. links,
+    output: VTK data of an instant; radius [m]; lift: as above."""
     if not links.GetNumberOfCells():
         return
     ends = vtk_to_numpy(links.GetPoints().GetData()).reshape(-1, 2, 3)
     kinds = vtk_to_numpy(links.GetCellData().GetArray("kind"))
-    places = np.where(np.isin(kinds, BETWEEN_POINTS)[:, None], ends.mean(axis=1), ends[:, 0])
-    places = places + np.array([0.0, 0.0, lift])
-    ball = balls(places, radius)
+    positions = np.where(np.isin(kinds, BETWEEN_POINTS)[:, None], ends.mean(axis=1), ends[:, 0])
+    positions = positions + np.array([0.0, 0.0, lift])
+    ball = balls(positions, radius)
     sizes = np.linalg.norm(vtk_to_numpy(links.GetCellData().GetArray("reaction")), axis=1)
     array = numpy_to_vtk(np.ascontiguousarray(sizes), deep=True)
     array.SetName("reaction")

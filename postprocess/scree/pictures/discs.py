@@ -1,4 +1,4 @@
-"""A run in the plane."""
+"""Pictures of a planar run."""
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from scree.pictures.palette import BODY_COLOR, EDGE_COLOR, PALE_INK
 from scree.pictures.styles import SMALL
 from scree.pictures.walls import solids
 
-SHINE = 0.14  # opacity of the brighter discs on a particle, which together make it look round
-SHINES = ((0.65, 0.15), (0.35, 0.25))  # their radius and distance from its middle, over its radius
+SHINE = 0.14  # opacity of the highlights, brighter discs that make a particle look round
+SHINES = ((0.65, 0.15), (0.35, 0.25))  # radius of each highlight and distance from the centre, over the radius
 SHINE_AT = np.array([-0.65, 0.76])
-MOST_SHINY = 5000  # particles, up to which each has an edge and shines
+MOST_SHINY = 5000  # number of particles up to which they have edges and highlights
 
 
 class DiscScene:
     def __init__(self, run, snapshots, view, with_numbers=False):
-        """view: part of the plane, or None; with_numbers: axes with coordinates, in place of a scale bar."""
+        """view: part of the plane, or None; with_numbers: axes with coordinates instead of a scale bar."""
         self.run, self.with_numbers = run, with_numbers
         low, high = plane_bounds(run, snapshots)
         self.view = view or (low[0], high[0], low[1], high[1])
@@ -28,10 +28,10 @@ class DiscScene:
         return figure_size(self.view[1] - self.view[0], self.view[3] - self.view[2])
 
     def shows(self, points, radii):
-        """Of discs, whether any of each is in the picture."""
+        """For each disc, whether a part of it is in the picture."""
         low, high = np.array(self.view[::2]), np.array(self.view[1::2])
-        reach = radii[:, None]
-        return ((points[:, :2] + reach > low) & (points[:, :2] - reach < high)).all(axis=1)
+        margin = radii[:, None]
+        return ((points[:, :2] + margin > low) & (points[:, :2] - margin < high)).all(axis=1)
 
     def set_up(self, axes, coloring):
         self.coloring = coloring
@@ -60,7 +60,7 @@ class DiscScene:
         self.surfaces = FlatSurfaces(self.run.surfaces, axes, lambda points: points[..., :2])
 
     def draw_walls(self, axes):
-        """What is solid, and the sides of the space: dashed where they are periodic, dotted where open."""
+        """Solid regions behind walls, and the sides of the domain: dashed if periodic, dotted if open."""
         low, high = np.array(self.view[::2]), np.array(self.view[1::2])
         for polygon, _ in solids(self.run.model, low, high):
             axes.fill(*polygon.T, facecolor="#e9e9e9", linewidth=0, zorder=0.5)
@@ -74,7 +74,8 @@ class DiscScene:
             axes.plot(*ends.T, styles[kind], color=PALE_INK, linewidth=1.0, zorder=0.7)
         for polygon, (point, normal) in solids(self.run.model, low, high):
             on_wall = polygon[np.abs((polygon - point) @ normal) <= 1e-9 * np.linalg.norm(normal) * max(high - low)]
-            axes.plot(*on_wall.T, "-", color=EDGE_COLOR, linewidth=3.0, zorder=0.4)  # half of it under what is solid
+            # The solid region covers half of the width.
+            axes.plot(*on_wall.T, "-", color=EDGE_COLOR, linewidth=3.0, zorder=0.4)
 
     def draw(self, snapshot):
         particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)

@@ -1,13 +1,13 @@
-"""A picture's scale bar and directions, in place of axes."""
+"""Scale bar and directions of a picture, instead of axes."""
 
 from scree.pictures.framing import scale_bar_length
 from scree.pictures.palette import PALE_INK
 
-LETTERS = 11  # [pt]
+LETTERS = 11  # font size [pt]
 
 
 def draw_scale_bar(axes):
-    """Below the picture."""
+    """A scale bar below the picture."""
     left, right = axes.get_xlim()
     length = scale_bar_length(right - left)
     ends, below = [left, left + length], axes.get_xaxis_transform()
@@ -18,7 +18,7 @@ def draw_scale_bar(axes):
 
 
 def draw_directions(axes, origin, length, directions):
-    """directions: of the global axes in the picture, {name: [2]}."""
+    """Arrows of the global axes. directions: of these in the picture, {name: [2]}."""
     for name, direction in directions.items():
         style = {"arrowstyle": "-|>", "color": PALE_INK, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
         axes.annotate("", origin + length * direction, origin, arrowprops=style)

@@ -1,32 +1,32 @@
-"""What a run's resolved deck says of the space, the walls and the bodies, and where those are in a snapshot."""
+"""Domain, walls and bodies of a resolved deck, and the poses of the bodies in a snapshot."""
 
 import numpy as np
 
 from scree.fields import POSITION
 
-CENTER = 1  # kind of the points of bodies that are their centres of mass
-GROUND = -1  # indexes the last row of a motion, which is the ground's
+CENTER = 1  # kind of the points of bodies that are centres of mass
+GROUND = -1  # index of the ground: the last row of a motion
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "universal", "constant-velocity",
                "cylindrical", "screw", "planar", "point-on-line", "point-on-plane")
 SLIDES = ("translational", "cylindrical", "screw", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
 HOLLOW = ("drum", "pipe", "funnel", "hopper", "file")  # meshes that may hold particles
-UNDRIVEN = (None, 0, {"kind": "constant", "value": 0})  # actuators of springs that are no more than springs
+UNDRIVEN = (None, 0, {"kind": "constant", "value": 0})  # actuators of plain springs
 
 
 def in_space(vector):
-    """A vector of the deck, which has two components in 2D."""
+    """A vector of the deck, which has two components in 2D, with three components."""
     return np.array([*vector, 0.0][:3], dtype=float)
 
 
 def about_z(angles):
-    """Rotations by these angles [rad], from the frames of planar bodies to the global one: [..., 3, 3]."""
+    """Rotations [..., 3, 3] by these angles [rad], from the frames of planar bodies to the global frame."""
     return of_quaternions(np.stack([np.cos(angles / 2), 0 * angles, 0 * angles, np.sin(angles / 2)], axis=-1))
 
 
 def of_quaternions(quaternions):
-    """Rotations of these, scalar first, of any length."""
+    """Rotations of quaternions, scalar first, of any length."""
     w, x, y, z = np.moveaxis(quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True), -1, 0)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -41,11 +41,11 @@ def unit(vector):
 
 
 def orientation(table):
-    """What the deck's keys of an orientation say, as a rotation."""
+    """Rotation from the orientation keys of a table."""
     if "quaternion" in table:
         return of_quaternions(np.array(table["quaternion"], dtype=float))
     if "z_axis" in table:
-        z = unit(table["z_axis"])  # without x_axis: the outer axis most nearly across
+        z = unit(table["z_axis"])  # without x_axis: the global axis most nearly perpendicular to z
         y = unit(np.cross(z, table.get("x_axis", np.eye(3)[np.argmin(np.abs(z))])))
         return np.stack([np.cross(y, z), y, z], axis=-1)
     half = table.get("rotation_angle", 0.0) / 2
@@ -54,7 +54,7 @@ def orientation(table):
 
 
 def start_rotation(body):
-    """Of a body's table in the deck."""
+    """Initial rotation of a body from its table in the deck."""
     return about_z(np.array(float(body["angle"]))) if body["kind"] == "planar" else orientation(body)
 
 
@@ -67,8 +67,8 @@ def volume(solid):
 
 
 def center_of_mass(body, densities):
-    """In the body's frame. densities: of the materials, by name. The deck does not tell the volume of a mesh: with
-    one among them it is the middle of the solids' origins."""
+    """Centre of mass in the frame of the body. densities: of the materials, by name. The deck does not have the volume
+    of a mesh: with a mesh among the solids it is approximated by the mean of their origins."""
     if not body.get("solids"):
         return in_space(body.get("center_of_mass", [0.0, 0.0]))
     if any(s["kind"] == "mesh" for s in body["solids"]):
@@ -81,28 +81,28 @@ def center_of_mass(body, densities):
     return np.average([in_space(s["offset"]) for s in body["solids"]], axis=0, weights=masses)
 
 
-def turned(vectors, rotations):
-    """Vectors in the frames of bodies, in the global one."""
+def rotated(vectors, rotations):
+    """Vectors in the frames of bodies, transformed to the global frame."""
     return np.einsum("...ij,...j->...i", rotations, np.asarray(vectors, dtype=float))
 
 
-def turned_back(vectors, rotations):
-    return turned(vectors, np.swapaxes(rotations, -2, -1))
+def rotated_back(vectors, rotations):
+    return rotated(vectors, np.swapaxes(rotations, -2, -1))
 
 
 class Motion:
-    """Of the frames of all bodies and, last, the ground."""
+    """Poses of the frames of all bodies and, last, of the ground."""
 
     def __init__(self, origins, rotations):
         self.origins, self.rotations = origins, rotations
 
-    def places(self, bodies, local):
+    def positions(self, bodies, local):
         """Points fixed to bodies, in the global frame [m]."""
-        return self.origins[bodies] + turned(local, self.rotations[bodies])
+        return self.origins[bodies] + rotated(local, self.rotations[bodies])
 
 
 class Connections:
-    """Joints, springs and dampers of one kind: their two bodies and the points on them, in the bodies' frames."""
+    """Joints, springs and dampers of one kind: their bodies, and the points on these in their frames."""
 
     def __init__(self):
         self.bodies, self.points, self.axes = [], [], []
@@ -123,11 +123,11 @@ class Connections:
 
 class Model:
     def __init__(self, deck):
-        self.title, space = deck["title"], deck["space"]
-        self.planar = space["dimension"] == 2
-        self.low, self.high = in_space(space["min"]), in_space(space["max"])
+        self.title, domain = deck["title"], deck["space"]
+        self.planar = domain["dimension"] == 2
+        self.low, self.high = in_space(domain["min"]), in_space(domain["max"])
         self.gravity = in_space(deck["gravity"])
-        self.boundaries = {side: space[side] for side in SIDES[: 4 if self.planar else 6]}
+        self.boundaries = {side: domain[side] for side in SIDES[: 4 if self.planar else 6]}
         planes = [wall for wall in deck.get("walls", []) if "mesh" not in wall]
         self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in planes]
         self.holding = self._holding(deck)
@@ -138,10 +138,10 @@ class Model:
 
     @staticmethod
     def _holding(deck):
-        """Of each mesh on bodies and walls, as results count them, whether it may hold particles: those that touch
-        something, then those that do not."""
+        """For each mesh on bodies and walls, in the order of the results, whether it may hold particles: first meshes
+        with contact, then visual-only meshes."""
         kinds = {mesh["name"]: mesh["kind"] for mesh in deck.get("meshes", [])}
-        names = {True: [], False: []}  # by whether they touch something
+        names = {True: [], False: []}  # by whether they have contact
         for body in deck.get("bodies", []):
             for _ in range(body.get("count", 1)):
                 for use in body.get("meshes", []):
@@ -176,10 +176,10 @@ class Model:
         return [tuple(self._index[name] for name in table["bodies"])]
 
     def _local(self, body, point):
-        return turned_back(point - self.start.origins[body], self.start.rotations[body])
+        return rotated_back(point - self.start.origins[body], self.start.rotations[body])
 
     def _points(self, table, pair, common):
-        """The deck's points of a connection, in the bodies' frames. common: one point for both sides."""
+        """Points of a connection in the frames of its bodies. common: one point for both sides."""
         if "markers" in table:
             return [in_space(self._markers[name]["local_point"]) for name in table["markers"]]
         if "local_points" in table:
@@ -188,7 +188,7 @@ class Model:
             return [self._local(body, in_space(p)) for body, p in zip(pair, table["points"])]
         if not common:
             return [self.centers_of_mass[body] for body in pair]
-        moving = [self.start.places(body, self.centers_of_mass[body]) for body in pair if body != GROUND]
+        moving = [self.start.positions(body, self.centers_of_mass[body]) for body in pair if body != GROUND]
         point = in_space(table["point"]) if "point" in table else np.mean(moving, axis=0)
         return [self._local(body, point) for body in pair]
 
@@ -198,7 +198,7 @@ class Model:
         def add(kind, table, common):
             axis = unit(in_space(table.get("axis", [1.0, 0.0])))
             for pair in self._pairs(table):
-                local_axis = turned_back(axis, self.start.rotations[pair[0]])
+                local_axis = rotated_back(axis, self.start.rotations[pair[0]])
                 if "markers" in table:
                     local_axis = orientation(self._markers[table["markers"][0]])[:, 2]
                 self.connections.setdefault(kind, Connections()).add(
@@ -216,7 +216,7 @@ class Model:
 
     @property
     def up(self):
-        """Unit vector against gravity; z, or y in the plane, without it."""
+        """Unit vector opposite to gravity; without gravity z, in planar runs y."""
         strength = np.linalg.norm(self.gravity)
         if strength > 0:
             return -self.gravity / strength
@@ -224,12 +224,12 @@ class Model:
 
     @property
     def period(self):
-        """[m]; 0 along axes that are not periodic."""
+        """Periods [m]; 0 along axes that are not periodic."""
         periodic = [self.boundaries.get(side) == "periodic" for side in SIDES[::2]]
         return np.where(periodic, self.high - self.low, 0.0)
 
     def side_walls(self):
-        """The sides that are walls, as (point, normal into the space)."""
+        """The sides that are walls, as (point, normal into the domain)."""
         found = []
         for i, side in enumerate(SIDES):
             if self.boundaries.get(side) == "wall":
@@ -239,7 +239,7 @@ class Model:
         return found
 
     def motion(self, bodies, snapshot):
-        """Where the bodies are in a snapshot. bodies: their Series; None where there are none."""
+        """Poses of the bodies in a snapshot. bodies: their Series, or None without bodies."""
         motion = Motion(self.start.origins.copy(), self.start.rotations.copy())
         if bodies is None:
             return motion
@@ -247,10 +247,10 @@ class Model:
         index = bodies.rows(snapshot, "body")[centers]
         motion.rotations[index] = (
             of_quaternions(bodies.rows(snapshot, "orientation")[centers])
-            if bodies.has("orientation")  # where some are spatial
+            if bodies.has("orientation")  # if some bodies are spatial
             else about_z(bodies.rows(snapshot, "angle")[centers])
         )
-        # Points are in the periodic box, origins wherever the body has come to.
+        # Points are in the periodic box; origins are not wrapped.
         origins, period = bodies.rows(snapshot, "origin")[centers], self.period
         apart = bodies.rows(snapshot, POSITION)[centers] - origins
         motion.origins[index] = origins + period * np.round(apart / np.where(period > 0, period, np.inf))

@@ -8,14 +8,14 @@ from scree.pictures.styles import BODY_COLOR, CATEGORIES, EDGE_COLOR, JOINTS, LI
 __all__ = ["BODY_COLOR", "CATEGORIES", "COLORED_OPACITY", "EDGE_COLOR", "GLASS", "INK", "JOINTS", "LINES", "PALE_INK",
            "SPEED_MAP", "SURFACE_COLORS", "SURFACE_MAP", "rgb"]
 
-# From sand at rest to dark blue: each step is darker, so that it reads in print and for the colour-blind.
+# From sand colour at rest to dark blue. Luminance decreases, for print and colour-blind readers.
 SPEED_MAP = LinearSegmentedColormap.from_list("speed", SPEEDS)
-SURFACE_MAP = "YlOrRd"  # of meshes that are coloured by a field
-INK = "#262626"  # of words
+SURFACE_MAP = "YlOrRd"  # of meshes coloured by a field
+INK = "#262626"  # text
 PALE_INK = "#6a6a6a"
 SURFACE_COLORS = {"walls": "#8d939b", "bodies": BODY_COLOR}
-GLASS = 0.1  # opacity of meshes that hold particles: what is behind them shows
-COLORED_OPACITY = 0.95  # of meshes that are coloured by a field, at the end of its scale
+GLASS = 0.1  # opacity of meshes that hold particles
+COLORED_OPACITY = 0.95  # opacity of meshes coloured by a field, at the upper end of the scale
 
 
 def rgb(color):

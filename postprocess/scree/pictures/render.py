@@ -1,4 +1,4 @@
-"""Pictures of a run at its snapshots, and animations of them, without a display."""
+"""Pictures and animations of the snapshots of a run, without a display."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ from scree.pictures.surfaces import Surfaces
 from scree.run import Run
 
 FRAMES_PER_SECOND = 25
-TITLE, SUBTITLE, LABEL = 16, 12, 12  # sizes of letters [pt]
-MARGIN = 0.08  # around words [inch]
-WIDE = 0.58  # mean width of a letter, over its size
+TITLE, SUBTITLE, LABEL = 16, 12, 12  # font sizes [pt]
+MARGIN = 0.08  # around text [inch]
+WIDE = 0.58  # mean width of a character over the font size
 FILM_FORMATS = ("mp4", "webp", "gif")
 WEBP_QUALITY = 80
 
 
 def vtk_renders() -> bool:
-    """Whether VTK can draw here; tried in another process: it crashes where it finds no OpenGL library."""
+    """Whether VTK can render here; tested in another process, because VTK crashes without an OpenGL library."""
     probe = pathlib.Path(__file__).with_name("spheres.py")
     if subprocess.run([sys.executable, probe], capture_output=True).returncode == 0:
         return True
@@ -56,12 +56,12 @@ def vtk_renders() -> bool:
 
 
 def chosen_frames(count: int, limit: int) -> list[int]:
-    """At most `limit` snapshots, evenly spread, the first and the last among them."""
+    """At most `limit` evenly spaced snapshots, including the first and the last."""
     return [int(k) for k in np.unique(np.linspace(0, count - 1, min(count, limit)).round())]
 
 
 class DrawnRun:
-    """What pictures show of a run."""
+    """The data of a run that pictures show."""
 
     def __init__(self, run: Run) -> None:
         self.title, self.model, self.record = run.title, Model(run.deck), run.record
@@ -79,7 +79,7 @@ class DrawnRun:
         return found
 
     def shapes(self, snapshot: int) -> tuple[np.ndarray, np.ndarray]:
-        """Centres and radii of the bodies' discs or spheres [m]; their centres of mass have no size."""
+        """Centres and radii of the discs or spheres of bodies [m], without centres of mass."""
         if self.bodies is None:
             return np.empty((0, 3)), np.empty(0)
         radii = self.bodies.rows(snapshot, "radius")
@@ -87,12 +87,12 @@ class DrawnRun:
 
 
 def wrapped(text: str, size: float, width: float) -> str:
-    """In lines no longer than a width [inch]. size: of the letters [pt]."""
+    """The text in lines of at most a width [inch]. size: font size [pt]."""
     return textwrap.fill(text, max(int(72 * width / (WIDE * size)), 8))
 
 
 class Picture:
-    """One figure whose scene changes from snapshot to snapshot."""
+    """A figure whose scene is updated for each snapshot."""
 
     def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int],
                  colors: Coloring) -> None:
@@ -115,8 +115,8 @@ class Picture:
 
     def add_bar(self, axes: Axes, colors: ScalarMappable, label: str, names: Sequence[str] = (),
                 below: bool = False) -> Colorbar:
-        """names: of what the colours stand for, from 0 on, in place of numbers; below: values may lie below the
-        scale, as they may above it."""
+        """names: of categories, counted from 0, instead of numbers; below: values may be below the scale, not only
+        above."""
         extend = "neither" if names else "both" if below else "max"
         bar = self.figure.colorbar(colors, ax=axes, extend=extend, shrink=0.5, aspect=25, pad=0.02)
         bar.set_label(label, fontsize=LABEL, color=INK)
@@ -140,36 +140,36 @@ class Picture:
         return ", ".join(parts)
 
     def imprint(self, snapshot: int) -> dict[str, str]:
-        """What a file of the picture at a snapshot says of it, in words."""
-        said = {"Title": self.run.title, "Description": self.caption(snapshot)}
+        """Text fields of the picture file at a snapshot."""
+        entries = {"Title": self.run.title, "Description": self.caption(snapshot)}
         if self.bar:
-            said["Color bar"] = self.colors.words()
+            entries["Color bar"] = self.colors.summary()
         if self.run.record:
             build = self.run.record["build"]
-            said["Software"] = f"Scree {build['version']}, commit {build['commit']}"
-        return said
+            entries["Software"] = f"Scree {build['version']}, commit {build['commit']}"
+        return entries
 
     def draw(self, snapshot: int) -> None:
         self.scene.draw(snapshot)
         self.subtitle.set_text(self.caption(snapshot))
         if self.figure.get_layout_engine() is not None:
             self.figure.canvas.draw()
-            self.figure.set_layout_engine("none")  # laid out once, so that frames are quick and nothing jumps
+            self.figure.set_layout_engine("none")  # laid out once: faster, and without jumps between frames
             self._make_room()
 
     def _make_room(self) -> None:
-        """The figure becomes so large that all words are in it."""
+        """Enlarges the figure so that it contains all text."""
         figure, margin = self.figure, MARGIN * self.figure.dpi
         size = np.array(figure.canvas.get_width_height(), dtype=float)
         texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
-        words = [text.get_window_extent() for text in texts]
-        low = np.min([[box.x0, box.y0] for box in words], axis=0)
-        high = np.max([[box.x1, box.y1] for box in words], axis=0)
+        boxes = [text.get_window_extent() for text in texts]
+        low = np.min([[box.x0, box.y0] for box in boxes], axis=0)
+        high = np.max([[box.x1, box.y1] for box in boxes], axis=0)
         before, after = np.maximum(margin - low, 0).round(), np.maximum(high + margin - size, 0).round()
         larger = size + before + after
         for axes in figure.axes:
-            place = axes.get_position()
-            corner, extent = (place.p0 * size + before) / larger, place.size * size / larger
+            box = axes.get_position()
+            corner, extent = (box.p0 * size + before) / larger, box.size * size / larger
             axes.set_position((*corner, *extent))
         figure.set_size_inches(larger / figure.dpi)
 
@@ -179,59 +179,61 @@ def counted(count: int, one: str, many: str) -> str:
 
 
 @dataclass
-class Look:
-    """What a user may choose of pictures."""
+class PictureOptions:
+    """Options of a user for pictures."""
 
-    view: Sequence[float] | None = None  # part of the plane, of runs in it [m]
-    axes: bool = False  # with coordinates, of runs in the plane, in place of a scale bar
-    opacity: float | None = None  # of meshes on bodies; None: solid ones are opaque, those that hold particles are not
+    view: Sequence[float] | None = None  # part of the plane, planar runs only [m]
+    axes: bool = False  # coordinates instead of a scale bar, planar runs only
+    opacity: float | None = None  # of meshes on bodies; None: opaque, except meshes that hold particles
     color: str = SPEED  # field by which particles are coloured
-    fastest: float | None = None  # upper end of the scale of speeds [m/s]
+    fastest: float | None = None  # upper end of the speed scale [m/s]
     surfaces: str | None = None  # field by which meshes are coloured
-    with_vtk: bool = True  # spheres are drawn by VTK, where it can
+    with_vtk: bool = True  # draw spheres by VTK if it can render
 
     def fit(self, drawn: DrawnRun, snapshots: Iterable[int]) -> None:
-        """Makes ready for pictures of this run at these snapshots. Throws ScreeError where it cannot look like this."""
+        """Prepares pictures of this run at these snapshots. Throws ScreeError if the options do not fit the run."""
         if self.fastest and self.color != SPEED:
-            raise ScreeError(f"the fastest speed ends a scale of speeds; particles are coloured by {self.color}")
+            raise ScreeError(f"--fastest is for the speed scale; particles are coloured by {self.color}")
         if (self.view or self.axes) and not drawn.model.planar:
-            raise ScreeError("a view and axes are for runs in the plane")
+            raise ScreeError("--view and --axes are for planar runs")
         self.with_vtk = self.with_vtk and not drawn.model.planar and vtk_renders()
         if self.surfaces:
             if not self.with_vtk or not drawn.surfaces:
-                raise ScreeError("surfaces are coloured in runs in space with meshes, drawn by VTK")
+                raise ScreeError("--surfaces is for 3D runs with meshes, drawn by VTK")
             drawn.surfaces.color_by(self.surfaces, snapshots)
 
 
-def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bool = False) -> Picture:
-    """A picture that fits all of these snapshots. look: fitted; fine: smoother than a frame of a film need be."""
-    scene = (DiscScene(drawn, snapshots, look.view, look.axes) if drawn.model.planar else
-             SphereScene(drawn, snapshots, look.with_vtk, look.opacity, fine))
+def make_picture(drawn: DrawnRun, snapshots: Sequence[int], options: PictureOptions,
+                 fine: bool = False) -> Picture:
+    """A picture for all of these snapshots. options: after fit(); fine: at a higher resolution than frames of a
+    film."""
+    scene = (DiscScene(drawn, snapshots, options.view, options.axes) if drawn.model.planar else
+             SphereScene(drawn, snapshots, options.with_vtk, options.opacity, fine))
     gravity, particles = float(np.linalg.norm(drawn.model.gravity)), drawn.particles
 
-    def seen(snapshot: int) -> np.ndarray:
+    def visible(snapshot: int) -> np.ndarray:
         return np.asarray(scene.shows(particles.rows(snapshot, POSITION), particles.rows(snapshot, "radius")))
 
     return Picture(scene, drawn, snapshots,
-                   coloring(particles, look.color, snapshots, gravity, seen, look.fastest))
+                   coloring(particles, options.color, snapshots, gravity, visible, options.fastest))
 
 
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
     picture.draw(snapshot)
-    if path.suffix == ".png":  # smaller than with the transparency that matplotlib gives it
+    if path.suffix == ".png":  # without the transparency of matplotlib the file is smaller
         drawn = io.BytesIO()
         picture.figure.savefig(drawn, format="png")
-        said = PngInfo()
+        entries = PngInfo()
         for name, text in picture.imprint(snapshot).items():
-            said.add_text(name, text)
-        Image.open(drawn).convert("RGB").save(path, optimize=True, pnginfo=said)
+            entries.add_text(name, text)
+        Image.open(drawn).convert("RGB").save(path, optimize=True, pnginfo=entries)
     else:
         picture.figure.savefig(path)
     plt.close(picture.figure)
 
 
 class WebpWriter(matplotlib.animation.AbstractMovieWriter):
-    """Frames that are compressed at a quality of one's choice, as pages load no large files."""
+    """Writes frames as webp with a selectable quality, for small files on web pages."""
 
     def __init__(self, frames_per_second: int, quality: int) -> None:
         super().__init__(fps=frames_per_second)
@@ -263,7 +265,7 @@ def animation_writer(format: str, frames_per_second: int, quality: int) -> matpl
         return matplotlib.animation.PillowWriter(fps=frames_per_second)
     if not has_ffmpeg():
         raise ScreeError("an mp4 needs the program ffmpeg; make a webp or gif instead")
-    # Players want even numbers of pixels and this pixel format.
+    # Players require even numbers of pixels and this pixel format.
     options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags",
                "+faststart"]
     return matplotlib.animation.FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=options)
@@ -280,7 +282,7 @@ def save_animation(picture: Picture, snapshots: Sequence[int], path: pathlib.Pat
     webp, up to 100."""
     writer = animation_writer(path.suffix[1:], frames_per_second, quality)
     figure = picture.figure
-    picture.draw(snapshots[0])  # which makes room for its words
+    picture.draw(snapshots[0])  # also enlarges the figure for its text
     with writer.saving(figure, path, dpi=width / figure.get_figwidth() if width else figure.dpi):
         for snapshot in snapshots:
             picture.draw(snapshot)

@@ -1,4 +1,4 @@
-"""A run in space: spheres and meshes, seen from the front and above."""
+"""Pictures of a 3D run: spheres and meshes, seen from the front and above."""
 
 import matplotlib
 import numpy as np
@@ -13,26 +13,26 @@ from scree.pictures.palette import (BODY_COLOR, COLORED_OPACITY, EDGE_COLOR, GLA
 from scree.pictures.styles import BALL, SMALL, TUBE
 from scree.pictures.walls import section
 
-LIGHT = np.array([-0.4, 0.75, 0.53])  # where walls are lighter: right, up, towards the eye
-DOTS = 160  # per inch of the axes, of what VTK draws
-MARGIN, FADED = 1.1, 0.05  # room around what is shown; at the sides, of the picture's width, the ground fades
-FINE = 1.5  # times as many in pictures that are no frames of a film
+LIGHT = np.array([-0.4, 0.75, 0.53])  # direction of the light on walls: right, up, towards the viewer
+DOTS = 160  # pixels per inch of the axes rendered by VTK
+MARGIN, FADED = 1.1, 0.05  # margin factor; fraction of the picture's width over which the ground fades out
+FINE = 1.5  # factor of the resolution for single pictures
 
 
 def faded(pixels):
-    """White towards the sides, so that no shadow ends at an edge. pixels: [height][width][3] of 0 to 255."""
+    """Fades to white at the sides, to hide the ends of shadows. pixels: [height][width][3] of 0 to 255."""
     height, width = pixels.shape[:2]
     ramps = [np.clip(np.minimum(np.arange(n) + 0.5, n - 0.5 - np.arange(n)) / (FADED * width), 0, 1)
              for n in (height, width)]
-    share = np.minimum(ramps[0][:, None], ramps[1][None])[..., None]
-    return (255 - share * (255.0 - pixels)).round().astype(np.uint8)
+    weight = np.minimum(ramps[0][:, None], ramps[1][None])[..., None]
+    return (255 - weight * (255.0 - pixels)).round().astype(np.uint8)
 
 
 class SphereScene:
-    """Parallel projection, so that one scale bar holds everywhere; gravity points down."""
+    """Parallel projection with a uniform scale; gravity points down."""
 
     def __init__(self, run, snapshots, use_vtk, opacity=None, fine=False):
-        """opacity: of meshes on bodies; None: solid ones hide what is behind them, those that hold particles do not."""
+        """opacity: of meshes on bodies; None: opaque, except meshes that hold particles."""
         self.run, self.use_vtk, self.opacity, self.fine = run, use_vtk, opacity, fine
         self.axes_of_picture = picture_axes(run.model.up)
         self.box = (run.model.low, run.model.high)
@@ -46,21 +46,21 @@ class SphereScene:
         )
         flat = self.project(corners)
         self.half = MARGIN * np.abs(flat[:, :2]).max(axis=0)  # half width and height of the picture [m]
-        self.ground = (corners @ run.model.up).min()  # height along gravity of what the scene stands on [m]
+        self.ground = (corners @ run.model.up).min()  # coordinate of the ground along the upward direction [m]
 
     def project(self, points):
-        """Right, up and nearness of each point, from the picture's centre [m]."""
+        """Coordinates of points to the right, upwards and towards the viewer, from the centre of the picture [m]."""
         return (points - self.center) @ self.axes_of_picture.T
 
     def shows(self, points, radii):
-        """Of spheres, whether any of each is within the picture's edges; others may hide it."""
+        """For each sphere, whether a part of it is inside the picture; it may be hidden by others."""
         return (np.abs(self.project(points)[:, :2]) - radii[:, None] < self.half).all(axis=1)
 
     def size(self):
         return figure_size(*self.half)
 
     def faces(self):
-        """Walls as (polygon, colour, opacity). Of the space's sides those behind the particles only."""
+        """Walls as (polygon, colour, opacity). Of the sides of the domain only those behind the particles."""
         found = []
         inner, sides = self.run.model.walls, self.run.model.side_walls()
         for opacity, walls in ((1.0, sides), (0.5, inner)):
@@ -101,7 +101,7 @@ class SphereScene:
         pixels = np.round(np.array(self.size()) * DOTS * (FINE if self.fine else 1)).astype(int)
         pixels[1] = round(pixels[0] * self.half[1] / self.half[0])
         self.renderer = SphereRenderer(pixels, self.center, self.axes_of_picture, self.half[1], self.extent)
-        if any(kind != "open" for kind in self.run.model.boundaries.values()):  # no higher than what is shown
+        if any(kind != "open" for kind in self.run.model.boundaries.values()):  # clipped to the bounds of the picture
             self.renderer.add_box(np.maximum(self.box[0], self.shown[0]), np.minimum(self.box[1], self.shown[1]))
         self.renderer.add_ground(self.run.model.up, self.ground)
         inner = [face for face in self.faces() if face[2] < 1]
@@ -161,14 +161,14 @@ class SphereScene:
             self.renderer.set_lines(f"edges of {whose}", lines[whose], 0.55 * np.array(color), 0.5 * TUBE * self.extent)
 
     def field_colors(self, values, opacity):
-        """Of triangles, the more opaque the larger their values [n][4] of 0 to 255."""
+        """Colours [n][4] of 0 to 255 of triangles, with an opacity that grows with the value."""
         colors = self.surface_colors.to_rgba(values)
-        share = np.clip(values / self.run.surfaces.limit, 0, 1)
-        colors[:, 3] = opacity + (max(COLORED_OPACITY, opacity) - opacity) * share
+        fraction = np.clip(values / self.run.surfaces.limit, 0, 1)
+        colors[:, 3] = opacity + (max(COLORED_OPACITY, opacity) - opacity) * fraction
         return (255 * colors).round().astype(np.uint8)
 
     def draw_discs(self, flat, radii, colors):
-        """Far ones first and darker."""
+        """Discs in the order of depth, distant ones first and darker."""
         order = np.argsort(flat[:, 2])
         depth = flat[order, 2]
         light = 0.45 + 0.55 * (depth - depth.min()) / max(np.ptp(depth), 1e-300) if len(order) else depth

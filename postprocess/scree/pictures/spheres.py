@@ -1,6 +1,6 @@
-"""Lit spheres and meshes on a ground, through VTK, rendered off screen.
+"""Lit spheres and meshes on a ground plane, rendered off screen by VTK.
 
-Run as a program, it tells by its exit code whether VTK can do so here.
+Run as a program, it returns 0 if VTK can render here.
 """
 
 import os
@@ -14,17 +14,18 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):
     os.environ.setdefault(
         "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
-    )  # else it looks for a display and warns
+    )  # otherwise VTK searches a display and warns
 
-LIGHTS = ((-0.6, 0.9, 1.0, 0.8), (0.9, 0.2, 0.8, 0.25), (0.0, 0.2, 1.0, 0.22))  # right, up, to the eye; how strong
-SUN = np.array([-0.35, 1.0, 0.25])  # where what throws a shadow on the ground is: right, up, to the eye
-SHADOW, SOFTNESS = 0.42, 0.02  # how dark shadows are; how wide their edge, over the shadows' picture
-OCCLUSION, SAMPLES = 0.035, 48  # reach of the darkness between close things, over the scene; where it is looked for
-SHARP = 30  # edges at which faces turn by more are no round ones [degrees]
+# Directions of the lights to the right, upwards and towards the viewer, and their intensities.
+LIGHTS = ((-0.6, 0.9, 1.0, 0.8), (0.9, 0.2, 0.8, 0.25), (0.0, 0.2, 1.0, 0.22))
+SUN = np.array([-0.35, 1.0, 0.25])  # direction of the light that casts shadows: right, up, towards the viewer
+SHADOW, SOFTNESS = 0.42, 0.02  # opacity of shadows; width of their edge over that of the shadow map
+OCCLUSION, SAMPLES = 0.035, 48  # ambient occlusion: radius over the extent of the scene; number of samples
+SHARP = 30  # angle between faces above which an edge is not smoothed [degrees]
 
 
 def polylines(lines):
-    """VTK's form of lines [n][points][3]."""
+    """Lines [n][points][3] as vtkPolyData."""
     count, length = lines.shape[:2]
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(lines.reshape(-1, 3)), deep=True))
@@ -35,7 +36,7 @@ def polylines(lines):
 
 
 def cells(corners):
-    """VTK's form of the cells [n][k] of points."""
+    """Cells [n][k] of points as vtkCellArray."""
     found = vtk.vtkCellArray()
     offsets = np.arange(0, corners.size + 1, max(corners.shape[1], 1), dtype=np.int64)
     found.SetData(*(numpy_to_vtk(values, deep=True) for values in (offsets, corners.reshape(-1).astype(np.int64))))
@@ -44,7 +45,7 @@ def cells(corners):
 
 class SphereRenderer:
     def __init__(self, pixels, center, axes_of_picture, half_height, extent):
-        """pixels: width, height; axes_of_picture: right, up, towards the eye; extent: of the scene [m]."""
+        """pixels: width, height; axes_of_picture: right, up, towards the viewer; extent: of the scene [m]."""
         self._center, self._axes, self._extent = center, axes_of_picture, extent
         self._renderer = renderer = vtk.vtkRenderer()
         renderer.SetBackground(1, 1, 1)
@@ -60,7 +61,7 @@ class SphereRenderer:
         self._window.AddRenderer(renderer)
 
     def _add_spheres(self):
-        """Each is a point, which the graphics card makes a sphere."""
+        """Spheres are points that the graphics card shades as spheres."""
         self._data = vtk.vtkPolyData()
         mapper = vtk.vtkOpenGLSphereMapper()
         mapper.SetInputData(self._data)
@@ -88,11 +89,11 @@ class SphereRenderer:
     def _light(self):
         renderer = self._renderer
         renderer.AutomaticLightCreationOff()
-        for *place, strength in LIGHTS:
+        for *position, intensity in LIGHTS:
             light = vtk.vtkLight()
             light.SetLightTypeToCameraLight()
-            light.SetPosition(*place)
-            light.SetIntensity(strength)
+            light.SetPosition(*position)
+            light.SetIntensity(intensity)
             renderer.AddLight(light)
         renderer.SetUseSSAO(True)
         renderer.SetSSAORadius(OCCLUSION * self._extent)
@@ -101,7 +102,7 @@ class SphereRenderer:
         renderer.SetSSAOBlur(True)
 
     def _add(self, source, color):
-        """An actor without light, of what a VTK algorithm or data set gives."""
+        """An unlit actor for a VTK algorithm or data set."""
         mapper = vtk.vtkPolyDataMapper()
         if isinstance(source, vtk.vtkPolyData):
             mapper.SetInputData(source)
@@ -130,19 +131,19 @@ class SphereRenderer:
         self._add(data, color).GetProperty().SetOpacity(opacity)
 
     def add_ground(self, up, height):
-        """A plane on which nothing is seen but shadows. height: along the unit vector up [m]."""
+        """A ground plane that shows only shadows. height: along the unit vector up [m]."""
         right, top, _ = self._sun_axes(up)
-        self._reach = 1.5 * self._extent  # half width of the shadows' picture [m]
+        self._half_width = 1.5 * self._extent  # half width of the shadow map [m]
         middle = self._center + (height - self._center @ up) * up
         sides = np.array([right - (right @ up) * up, top - (top @ up) * up])
         sides /= np.linalg.norm(sides, axis=1)[:, None]
         signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        corners = middle + self._reach * signs @ sides
+        corners = middle + self._half_width * signs @ sides
         data = polylines(corners[None])
         data.SetPolys(data.GetLines())
         data.SetLines(None)
-        places = 0.5 + (corners - middle) @ np.array([right, top]).T / (2 * self._reach)
-        data.GetPointData().SetTCoords(numpy_to_vtk(np.ascontiguousarray(places), deep=True))
+        texture = 0.5 + (corners - middle) @ np.array([right, top]).T / (2 * self._half_width)
+        data.GetPointData().SetTCoords(numpy_to_vtk(np.ascontiguousarray(texture), deep=True))
         self._ground = self._add(data, (1, 1, 1))
         self._ground.ForceTranslucentOn()
         self._texture = vtk.vtkTexture()
@@ -153,7 +154,7 @@ class SphereRenderer:
         self._without_shadow.append(self._ground)
 
     def _sun_axes(self, up):
-        """Right and top of the shadows' picture, and where it is seen from."""
+        """Unit vectors of the shadow map: right, up, and towards the light."""
         sun = SUN[0] * self._axes[0] + SUN[1] * up + SUN[2] * np.cross(self._axes[0], up)
         sun /= np.linalg.norm(sun)
         right = np.cross(self._axes[1], sun)
@@ -161,7 +162,7 @@ class SphereRenderer:
         return np.array([right, np.cross(sun, right), sun])
 
     def set_lines(self, style, lines, color, radius):
-        """Lines [n][points][3] as tubes, in place of those of the same style."""
+        """Lines [n][points][3] as tubes; they replace lines of the same style."""
         if style in self._lines:
             self._renderer.RemoveActor(self._lines.pop(style))
         if len(lines) == 0:
@@ -177,7 +178,7 @@ class SphereRenderer:
         self._lines[style].GetProperty().SetDiffuse(0.85)
 
     def set_triangles(self, style, points, triangles, color, opacity, colors=None):
-        """In place of those of the same style. colors: [triangles][4] of 0 to 255, in place of the one."""
+        """Replaces triangles of the same style. colors: [triangles][4] of 0 to 255, instead of `color`."""
         if style in self._triangles:
             self._renderer.RemoveActor(self._triangles.pop(style))
         if len(triangles) == 0:
@@ -200,16 +201,16 @@ class SphereRenderer:
                 actor.ForceTranslucentOn()
             opacity = 1
         actor.GetProperty().LightingOn()
-        actor.GetProperty().SetAmbient(0.35)  # what is turned from the light is not black
+        actor.GetProperty().SetAmbient(0.35)  # faces away from the light are not black
         actor.GetProperty().SetDiffuse(0.8)
         actor.GetProperty().SetOpacity(opacity)
 
     def _cast_shadows(self):
-        """Onto the ground, of all that is opaque: where the sun sees something, and a little beside it."""
+        """Shadows of opaque objects on the ground: the area visible from the light, with soft edges."""
         sun, renderer = self._sun_axes(self._up), self._renderer
         camera = vtk.vtkCamera()
         camera.ParallelProjectionOn()
-        camera.SetParallelScale(self._reach)
+        camera.SetParallelScale(self._half_width)
         camera.SetFocalPoint(*self._middle)
         camera.SetPosition(*(self._middle + 5 * self._extent * sun[2]))
         camera.SetViewUp(*sun[1])
@@ -222,18 +223,18 @@ class SphereRenderer:
         width, height = self._window.GetSize()
         depths = vtk.vtkFloatArray()
         self._window.GetZbufferData(0, 0, width - 1, height - 1, depths)
-        seen = vtk_to_numpy(depths).reshape(height, width) < 1
+        covered = vtk_to_numpy(depths).reshape(height, width) < 1
         for actor in self._without_shadow:
             actor.VisibilityOn()
         renderer.SetUseSSAO(True)
         renderer.SetActiveCamera(self._camera)
-        self._set_shadows(seen)
+        self._set_shadows(covered)
 
-    def _set_shadows(self, seen):
-        """seen: [height][width]; the texture shows the square in its middle, whose sides are those of its height."""
-        height, width = seen.shape
+    def _set_shadows(self, covered):
+        """covered: [height][width]; the texture shows the central square, whose side is the height."""
+        height, width = covered.shape
         size = min(height, 512)
-        image = Image.fromarray((255 * seen).astype(np.uint8))
+        image = Image.fromarray((255 * covered).astype(np.uint8))
         image = image.resize((round(size * width / height), size), Image.Resampling.BOX)
         pad = (size - image.width) // 2
         square = Image.new("L", (size, size))
@@ -253,7 +254,7 @@ class SphereRenderer:
         coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
         self._data.SetPoints(coordinates)
         self._data.SetVerts(cells(np.arange(len(points)).reshape(-1, 1)))
-        # Of radii the mapper takes single precision for granted.
+        # The mapper expects radii in single precision.
         for name, values in (("radius", radii.astype(np.float32)), ("color", np.round(255 * colors).astype(np.uint8))):
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
@@ -273,4 +274,4 @@ class SphereRenderer:
 if __name__ == "__main__":
     sphere = SphereRenderer((64, 64), np.zeros(3), np.eye(3), 1.0, 2.0)
     drawn = sphere.image(np.zeros((1, 3)), np.full(1, 0.5), np.array([[0.0, 0.0, 1.0]]))
-    sys.exit(0 if drawn[32, 32, 2] > drawn[32, 32, 0] else 1)  # blue in the middle
+    sys.exit(0 if drawn[32, 32, 2] > drawn[32, 32, 0] else 1)  # the centre must be blue

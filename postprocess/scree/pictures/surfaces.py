@@ -1,21 +1,21 @@
-"""The triangles of meshes in a picture: whose they are, and the edges that outline them."""
+"""Triangles of meshes in a picture: their owners and their outlines."""
 
 import numpy as np
 
 from scree.errors import ScreeError
 from scree.fields import POSITION
 
-SHARP = np.cos(np.radians(30))  # edges at which faces turn by more are drawn
+SHARP = np.cos(np.radians(30))  # cosine of the angle between faces above which their edge is drawn
 
 
 def sharp_edges(points, triangles):
-    """Pairs of points [n][2]: edges of one triangle alone, or between two that lie at an angle."""
+    """Pairs of points [n][2]: edges of a single triangle, or between two triangles at an angle."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
     pairs = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, of_pair, uses = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
-    # The faces of an edge add to a vector of length 2 where they are in one plane.
+    # The sum of the normals at an edge has length 2 if the two faces are coplanar.
     total = np.zeros((len(edges), 3))
     np.add.at(total, of_pair.reshape(-1), np.repeat(normals, 3, axis=0))
     smooth = (uses == 2) & ((total**2).sum(axis=1) / 2 - 1 > SHARP)
@@ -23,12 +23,12 @@ def sharp_edges(points, triangles):
 
 
 class Surfaces:
-    """Of a run that has meshes."""
+    """The meshes of a run."""
 
     def __init__(self, series, holding):
-        """holding: of each mesh on bodies and walls, whether it may hold particles, so that one looks through it."""
+        """holding: for each mesh on bodies and walls, whether it may hold particles and is drawn semi-transparent."""
         self._series = series
-        self.field = None  # what colours them: a name, and the upper end of the scale
+        self.field = None  # field that colours the meshes; limit: upper end of the scale
         self.limit = 0.0
         triangles, body = series.triangles(0), series.rows(0, "body")
         self._rows = {"walls": body < 0, "bodies": body >= 0}
@@ -39,7 +39,7 @@ class Surfaces:
         self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
 
     def color_by(self, field, snapshots):
-        """The scale ends where, in one of these snapshots, all but a percent of what is above zero ends."""
+        """The scale ends at the largest 99th percentile of the positive values in these snapshots."""
         if not self._series.is_of_cells(field):
             raise ScreeError(f"surfaces have no field {field}; the run's output.surface_fields must name it")
         self.field = field
@@ -51,12 +51,12 @@ class Surfaces:
         return f"{self.field.replace('_', ' ')} [{self._series.label(self.field)[0]}]"
 
     def _all_values(self, snapshot):
-        """Of a vector its length."""
+        """Values of the field; of a vector its magnitude."""
         values = self._series.rows(snapshot, self.field)
         return values if values.ndim == 1 else np.linalg.norm(values, axis=1)
 
     def values(self, snapshot):
-        """Of the field that colours them, by triangle, of walls and of bodies."""
+        """Values of the field by triangle, for walls and for bodies."""
         values = self._all_values(snapshot)
         return {whose: values[rows] for whose, rows in self._rows.items()}
 
@@ -64,7 +64,7 @@ class Surfaces:
         return self._series.rows(snapshot, POSITION)
 
     def lines(self, snapshot):
-        """Edges [n][2][3] of walls and of bodies."""
+        """Edges [n][2][3], for walls and for bodies."""
         points = self.points(snapshot)
         return {whose: points[edges] for whose, edges in self._edges.items()}
 

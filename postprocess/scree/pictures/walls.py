@@ -1,4 +1,4 @@
-"""Walls as polygons, cut off by a box."""
+"""Walls as polygons, clipped by a box."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ import numpy as np
 def cut(polygon, point, normal):
     """The part of a convex polygon [n][k] on the normal's side of a plane (Sutherland and Hodgman)."""
     height = (polygon - point) @ normal
-    kept = []
+    clipped = []
     for i in range(len(polygon)):
         j = (i + 1) % len(polygon)
         if height[i] >= 0:
-            kept.append(polygon[i])
+            clipped.append(polygon[i])
         if (height[i] < 0) != (height[j] < 0):
-            share = height[i] / (height[i] - height[j])
-            kept.append(polygon[i] + share * (polygon[j] - polygon[i]))
-    return np.array(kept).reshape(-1, polygon.shape[1])
+            fraction = height[i] / (height[i] - height[j])
+            clipped.append(polygon[i] + fraction * (polygon[j] - polygon[i]))
+    return np.array(clipped).reshape(-1, polygon.shape[1])
 
 
 def rectangle(low, high):
@@ -22,21 +22,21 @@ def rectangle(low, high):
 
 
 def solids(model, low, high):
-    """What is behind the walls, in the part of the plane from low to high: polygons [n][2], each with its
-    wall's (point, normal). Walls inside the space end at its sides."""
+    """Solid regions behind walls within the rectangle from low to high: polygons [n][2], each with (point, normal) of
+    its wall. Walls inside the domain end at its sides."""
     view = rectangle(low, high)
     inside = rectangle(np.maximum(low, model.low[:2]), np.minimum(high, model.high[:2]))
     found = []
-    for walls, room in ((model.side_walls(), view), (model.walls, inside)):
+    for walls, region in ((model.side_walls(), view), (model.walls, inside)):
         for point, normal in walls:
-            polygon = cut(room, point[:2], -normal[:2]) if (room[2] > room[0]).all() else room[:0]
+            polygon = cut(region, point[:2], -normal[:2]) if (region[2] > region[0]).all() else region[:0]
             if len(polygon) > 2:
                 found.append((polygon, (point[:2], normal[:2])))
     return found
 
 
 def section(low, high, point, normal):
-    """Where a plane cuts a box: a polygon [n][3], empty where it does not."""
+    """Intersection of a plane and a box: a polygon [n][3], empty without intersection."""
     normal = normal / np.linalg.norm(normal)
     start = np.eye(3)[np.argmin(np.abs(normal))]
     right = np.cross(normal, start)

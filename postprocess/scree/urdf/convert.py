@@ -1,4 +1,4 @@
-"""A robot's file as a deck."""
+"""Conversion of a URDF file to a deck."""
 
 from __future__ import annotations
 
@@ -19,22 +19,21 @@ from scree.urdf.names import GROUND, allowed
 from scree.urdf.notes import Notes
 from scree.urdf.robot import MOVING, Joint
 from scree.urdf.skeleton import HEAD, TAIL
-from scree.urdf.tree import Part, Tree, make_inertia_possible, plant
+from scree.urdf.tree import Part, Tree, build_tree, make_inertia_possible
 
 DECK_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "translational", "fixed": "fixed",
               "planar": "planar"}
-GIVES_WAY = 0.02  # of a stop under the largest effort of the joint's drive [rad or m]
-STICKS = 1e-3  # way on which friction grows [rad or m], and time in which what sticks comes to rest [s]
+STOP_DEFLECTION = 0.02  # of a stop under the largest effort of the drive of the joint [rad or m]
+STICTION = 1e-3  # deflection of the stiction spring at the limit [rad or m]; damping time of stuck joints [s]
 MATERIAL = "robot"
 
 
 @dataclass(frozen=True)
 class Options:
-    """free: the root link is held by nothing. xyz [m], rpy [rad]: its frame in the space. positions: coordinates of
-    joints at t = 0 [rad or m]. geometry: what particles touch, "collision", "visual" or "none". packages: folders that
-    package://NAME stands for. stop_stiffness: of all stops at limits [N m/rad or N/m]; none: each gives way by 0.02 rad
-    or m under the effort of its joint's limit. mend_inertia: an inertia that no body can have becomes the nearest that
-    one can."""
+    """free: the root link is not fixed to the ground. xyz [m], rpy [rad]: pose of its frame. positions: initial joint
+    coordinates [rad or m]. geometry: that gets contacts, "collision", "visual" or "none". packages: folders by package
+    name. stop_stiffness: of all stops at limits [N m/rad or N/m]; None: each yields by 0.02 rad or m under the effort
+    of its joint's limit. mend_inertia: replace a physically impossible inertia by the nearest possible one."""
 
     free: bool = False
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -47,15 +46,15 @@ class Options:
 
 
 def geometry_of(deck: Deck, part: Part, options: Options, notes: Notes) -> tuple[dict[str, Any], float]:
-    """What a body's table says of it: spheres are shapes, all else meshes, which are added to the deck. And how far it
-    goes from the part's origin [m]."""
-    shapes, used, reach = [], [], 0.0
+    """Keys of a body: spheres are shapes, other geometry becomes meshes, which are added to the deck. And the largest
+    distance of the geometry from the origin of the part [m]."""
+    shapes, used, extent = [], [], 0.0
     for link, geometry, pose in part.geometry():
         made = meshes.mesh_table(geometry, pose, deck.folder, options.packages, notes)
         if made is None:
             continue
-        table, far = made
-        reach = max(reach, far)
+        table, distance = made
+        extent = max(extent, distance)
         if geometry.kind == "sphere" and part.name != GROUND:
             shapes.append({"radius": table["radius"], "offset": pose.origin.tolist(), "material": MATERIAL})
             continue
@@ -64,26 +63,26 @@ def geometry_of(deck: Deck, part: Part, options: Options, notes: Notes) -> tuple
         name = next(each for each in (link.name, *numbered) if each not in names)
         deck.add("meshes", name=name, **table)
         used.append({"mesh": name, "material": MATERIAL})
-    return {key: tables for key, tables in (("shapes", shapes), ("meshes", used)) if tables}, reach
+    return {key: tables for key, tables in (("shapes", shapes), ("meshes", used)) if tables}, extent
 
 
 def add_body(deck: Deck, part: Part, options: Options, notes: Notes) -> float:
-    """What stands on the ground becomes walls. Returns how far it goes from the part's origin [m]."""
-    geometry, reach = geometry_of(deck, part, options, notes)
+    """Adds the body; geometry of the ground becomes walls. Returns the largest distance from the part's origin [m]."""
+    geometry, extent = geometry_of(deck, part, options, notes)
     if part.name == GROUND:
         for used in geometry.get("meshes", []):
             deck.add("walls", name=used["mesh"], **used)
-        return reach
+        return extent
     mass, center, inertia = part.mass_properties()
     tensor = [*np.diag(inertia).tolist(), *inertia[[0, 0, 1], [1, 2, 2]].tolist()]
-    away = {"center_of_mass": center.tolist()} if center.any() else {}
+    offset = {"center_of_mass": center.tolist()} if center.any() else {}
     pose = {"position": [0.0, 0.0, 0.0]} | part.pose.keys("position")
-    deck.add("bodies", name=part.name, kind="spatial", **pose, mass=mass, **away, inertia_tensor=tensor, **geometry)
-    return max(reach, float(np.linalg.norm(center)))
+    deck.add("bodies", name=part.name, kind="spatial", **pose, mass=mass, **offset, inertia_tensor=tensor, **geometry)
+    return max(extent, float(np.linalg.norm(center)))
 
 
 def add_joint(deck: Deck, name: str, kind: str, ends: tuple[tuple[Part, Pose], tuple[Part, Pose]]) -> None:
-    """Between a marker on each of two parts."""
+    """Adds a joint between markers on two parts."""
     markers = [f"{name}_parent", f"{name}_child"]
     for marker, (part, pose) in zip(markers, ends):
         deck.add("markers", name=marker, body=part.name, **pose.keys("local_point"))
@@ -96,31 +95,31 @@ def add_joints(deck: Deck, tree: Tree) -> None:
         add_joint(deck, base, "fixed", ((tree.parts[0], tree.held.pose), (tree.held, Pose.at())))
     for joint, parent, frame, child in tree.joints:
         if joint.type != "floating":
-            turn = Pose.at(rotation=to_z(joint.axis))
-            add_joint(deck, joint.name, DECK_TYPES[joint.type], ((parent, frame @ turn), (child, turn)))
+            rotation = Pose.at(rotation=to_z(joint.axis))
+            add_joint(deck, joint.name, DECK_TYPES[joint.type], ((parent, frame @ rotation), (child, rotation)))
 
 
 def add_efforts(deck: Deck, joint: Joint, start: float, stop_stiffness: float | None, notes: Notes) -> None:
-    """Stops, damping, friction."""
+    """Adds stops, damping and friction of a joint."""
     name, called = joint.name, joint.element.called
     if joint.damping > 0:
         deck.add("joint_springs", name=f"{name}_damping", joint=name, damping=joint.damping)
     if joint.friction > 0:
         deck.add("joint_frictions", name=f"{name}_friction", joint=name, effort=joint.friction,
-                 stiffness=rounded(joint.friction / STICKS), damping=joint.friction)
+                 stiffness=rounded(joint.friction / STICTION), damping=joint.friction)
     ends = {key: end for key, end in (("lower", joint.lower), ("upper", joint.upper)) if np.isfinite(end)}
     if not ends:
         return
     if not joint.lower <= start <= joint.upper:
-        notes.add("starts outside its limits, and its stop throws it back; --position JOINT=VALUE starts it elsewhere",
+        notes.add("starts outside its limits, and the stop pushes it back; --position JOINT=VALUE sets another start",
                   f"{called} at {start:g}, with limits from {joint.lower:g} to {joint.upper:g}")
-    stiffness = stop_stiffness or rounded(joint.effort / GIVES_WAY)
+    stiffness = stop_stiffness or rounded(joint.effort / STOP_DEFLECTION)
     if stiffness > 0:
         deck.add("joint_limits", name=f"{name}_stop", joint=name, **ends, stiffness=stiffness,
-                 damping=rounded(stiffness * STICKS))
+                 damping=rounded(stiffness * STICTION))
     else:
-        notes.add("limits but no effort from which the stiffness of the stops would follow, and so a joint without "
-                  "stops; --stop-stiffness gives one", called)
+        notes.add("limits without an effort, which determines the stiffness of stops: no stops; --stop-stiffness sets "
+                  "one", called)
 
 
 def has_speed_limit(joint: Joint) -> bool:
@@ -129,7 +128,7 @@ def has_speed_limit(joint: Joint) -> bool:
 
 
 def rounded(value: float) -> float:
-    """Without the last digits, which arithmetic leaves."""
+    """Without trailing digits from round-off."""
     return float(f"{value:.12g}")
 
 
@@ -141,21 +140,21 @@ def add_couplers(deck: Deck, joints: list[Joint]) -> None:
                      coefficients=[1.0, -multiple])
 
 
-def size_of(tree: Tree, reach: float) -> float:
-    """How far from the root's place the robot may reach, stretched out, where no part goes farther from its origin than
-    this [m]."""
-    far = sum(float(np.linalg.norm(joint.pose.origin)) for joint, *_ in tree.joints)
+def size_of(tree: Tree, extent: float) -> float:
+    """Largest distance of the stretched robot from its root [m]. extent: largest distance of a part's geometry from its
+    origin."""
+    distance = sum(float(np.linalg.norm(joint.pose.origin)) for joint, *_ in tree.joints)
     for joint, *_ in tree.joints:
         if joint.type == "prismatic":
             ends = (joint.lower, joint.upper, tree.coordinates[joint.name])
-            far += max(abs(end) for end in ends if np.isfinite(end))
-    return far + reach
+            distance += max(abs(end) for end in ends if np.isfinite(end))
+    return distance + extent
 
 
 def tail(deck: Deck, moving: list[Joint]) -> str:
-    """Comments with names and measures of this deck."""
+    """Comments with names and sizes of this deck."""
     low, high = (np.array(deck[f"space.{end}"], dtype=float) for end in ("min", "max"))
-    low[2] += 0.7 * (high[2] - low[2])  # above the robot, in most cases
+    low[2] += 0.7 * (high[2] - low[2])  # mostly above the robot
     return TAIL.format(body=deck["bodies"][-1]["name"] if "bodies" in deck else "LINK",
                        joint=moving[-1].name if moving else "JOINT",
                        low=low.round(6).tolist(), high=high.round(6).tolist(),
@@ -163,12 +162,12 @@ def tail(deck: Deck, moving: list[Joint]) -> str:
 
 
 def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Deck:
-    """Of a URDF: links as bodies, joints between markers, limits as stops, damping and friction, mimics as couplers,
-    and geometry that particles touch; of what the file does not say, a space that has room for it, a time, and comments
-    where the rest goes. Joint coordinates are those of the file.
+    """The deck of a URDF file: links as bodies, joints between markers, limits as stops, damping and friction, mimics
+    as couplers, and geometry with contact. The file has neither a domain nor a time: the domain contains the robot, and
+    comments show further additions. Joint coordinates are those of the file.
 
-    `scree check` takes the deck, where the program is there to be asked. Throws ScreeError with file and line for what
-    is wrong; warns (ScreeWarning) of what is left out or made otherwise, once of each kind.
+    If the program is found, the deck passes `scree check`. Throws ScreeError with file and line for errors; warns
+    (ScreeWarning) of omissions and changes, once per kind.
     """
     chosen, file = options or Options(), pathlib.Path(path)
     if chosen.geometry not in ("collision", "visual", "none"):
@@ -176,20 +175,20 @@ def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Dec
     notes = Notes()
     found = robot.read(file, chosen.geometry, notes)
     base = Pose.at(chosen.xyz, of_roll_pitch_yaw(*chosen.rpy))
-    tree = plant(found, base, chosen.free, chosen.positions)
+    tree = build_tree(found, base, chosen.free, chosen.positions)
     make_inertia_possible(tree, chosen.mend_inertia, notes)
     deck = Deck.parse(HEAD, os.fspath(path), file.resolve().parent)
     deck["title"] = found.name
-    reaches = [add_body(deck, part, chosen, notes) for part in tree.parts]
-    reach = float(f"{1.1 * size_of(tree, max(reaches)) + 0.1:.2g}")
-    deck["space.min"] = [round(float(x) - reach, 6) for x in chosen.xyz]
-    deck["space.max"] = [round(float(x) + reach, 6) for x in chosen.xyz]
+    extents = [add_body(deck, part, chosen, notes) for part in tree.parts]
+    extent = float(f"{1.1 * size_of(tree, max(extents)) + 0.1:.2g}")
+    deck["space.min"] = [round(float(x) - extent, 6) for x in chosen.xyz]
+    deck["space.max"] = [round(float(x) + extent, 6) for x in chosen.xyz]
     add_joints(deck, tree)
     moving = [joint for joint, *_ in tree.joints if joint.type in MOVING]
     for joint in moving:
         add_efforts(deck, joint, tree.coordinates[joint.name], chosen.stop_stiffness, notes)
         if has_speed_limit(joint):
-            notes.add("limits of velocity are left out, as a deck has none", joint.element.called)
+            notes.add("limits of velocity are left out, because a deck has none", joint.element.called)
     add_couplers(deck, moving)
     deck["output.history_coordinates"] = len(moving)
     deck["output.history_bodies"] = [part.name for part in tree.parts if part.name != GROUND]

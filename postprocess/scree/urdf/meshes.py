@@ -1,4 +1,4 @@
-"""Geometry of links as a deck's meshes and shapes."""
+"""Geometry of links as meshes and shapes of a deck."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ from scree.urdf.robot import Geometry
 
 FORMATS = (".stl", ".obj", ".ply")
 SCHEMES = ("package://", "model://")
-SHEET = "made a sheet, which particles touch from both sides, as it is no solid's surface as it stands"
-LEFT_OUT = "left out, particles pass through it"
+SHEET = "imported as an open surface (sheet) with contact on both sides, because it does not bound a solid"
+LEFT_OUT = "left out: no contact"
 
 
 def find_file(geometry: Geometry, folder: pathlib.Path, packages: Mapping[str, str]) -> pathlib.Path:
-    """folder: of the robot's file. packages: their folders by name; one that is not among them may be the name of a
-    folder above. Throws ScreeError where there is no such file."""
+    """folder: of the robot's file. packages: folders by package name; other packages may be folders above. Throws
+    ScreeError if the file does not exist."""
     name, element = geometry.file, geometry.element
     scheme = next((each for each in SCHEMES if name.startswith(each)), None)
     if scheme:
         package, _, rest = name.removeprefix(scheme).partition("/")
         above = next((each for each in (folder, *folder.parents) if each.name == package), None)
         if package not in packages and above is None:
-            element.fail(f"{name}: where package {package} is must be said: --package {package}=FOLDER")
+            element.fail(f"{name}: the folder of package {package} is unknown: --package {package}=FOLDER")
         path = pathlib.Path(packages.get(package) or str(above)) / rest
     else:
         path = folder / name.removeprefix("file://")
     if not path.is_file():
-        path = pathlib.Path(str(path).replace("\\", "/"))  # as Windows has it
+        path = pathlib.Path(str(path).replace("\\", "/"))  # path of Windows
     if not path.is_file():
-        element.fail(f"{name}: no such file: {path}; --geometry none does without all of them")
+        element.fail(f"{name}: no such file: {path}; --geometry none imports without meshes")
     return path.resolve()
 
 
 def factors_of(scales: np.ndarray) -> dict[str, Any]:
-    """What a deck's mesh says of scales along x, y and z."""
+    """Keys of a mesh for scales along x, y and z."""
     x, y, z = scales.tolist()
     if x == y == z > 0:
         return {} if x == 1 else {"scale": x}
@@ -53,16 +53,16 @@ def factors_of(scales: np.ndarray) -> dict[str, Any]:
 
 def surface_of(geometry: Geometry, folder: pathlib.Path, packages: Mapping[str, str],
                notes: Notes) -> tuple[pathlib.Path, surface.Surface] | None:
-    """None, with a note, for what a deck cannot have."""
+    """None, with a note, if a deck cannot have the geometry."""
     item = f"{geometry.file} (line {geometry.element.line})"
     if pathlib.PurePath(geometry.file).suffix.lower() not in FORMATS:
-        notes.add(f"no STL, OBJ or PLY, {LEFT_OUT}; convert it, and name the new file in the robot's", item)
+        notes.add(f"not STL, OBJ or PLY, {LEFT_OUT}; convert the file and name the new one in the robot's file", item)
         return None
     path = find_file(geometry, folder, packages)
     try:
         return path, surface.read(path)
     except ScreeError as error:
-        notes.add(f"no mesh, {LEFT_OUT}", f"{item} {error}")
+        notes.add(f"unreadable mesh, {LEFT_OUT}", f"{item} {error}")
         return None
 
 
@@ -71,28 +71,28 @@ def file_mesh(geometry: Geometry, folder: pathlib.Path, packages: Mapping[str, s
     found = surface_of(geometry, folder, packages, notes)
     if found is None:
         return None
-    path, seen = found
-    if seen.trouble:
-        notes.add(SHEET, f"{geometry.file} (line {geometry.element.line}) {seen.trouble}")
-    far = np.maximum(np.abs(seen.low), np.abs(seen.high)) * np.abs(geometry.numbers)
+    path, mesh = found
+    if mesh.defect:
+        notes.add(SHEET, f"{geometry.file} (line {geometry.element.line}) {mesh.defect}")
+    corner = np.maximum(np.abs(mesh.low), np.abs(mesh.high)) * np.abs(geometry.numbers)
     table = {"kind": "file", "file": os.path.relpath(path, folder), **factors_of(geometry.numbers)}
-    return table | ({"sheet": True} if seen.is_open or seen.trouble else {}), float(np.linalg.norm(far))
+    return table | ({"sheet": True} if mesh.is_open or mesh.defect else {}), float(np.linalg.norm(corner))
 
 
 def mesh_table(geometry: Geometry, pose: Pose, folder: pathlib.Path, packages: Mapping[str, str],
                notes: Notes) -> tuple[dict[str, Any], float] | None:
-    """What [[meshes]] says of it, but for the name, and how far it goes from its frame's origin [m]; None, with a note,
-    for what a deck cannot have. pose: in the frame of its body."""
+    """Keys of [[meshes]] without the name, and the largest distance from the origin of the body's frame [m]; None, with
+    a note, if a deck cannot have the geometry. pose: in the frame of the body."""
     numbers = geometry.numbers.tolist()
     if geometry.kind == "mesh":
         found = file_mesh(geometry, folder, packages, notes)
         if found is None:
             return None
-        table, reach = found
+        table, extent = found
     elif geometry.kind == "box":
-        table, reach = {"kind": "box", "size": numbers}, float(np.linalg.norm(numbers) / 2)
+        table, extent = {"kind": "box", "size": numbers}, float(np.linalg.norm(numbers) / 2)
     elif geometry.kind in ("cylinder", "capsule"):
-        table, reach = {"kind": geometry.kind, "radius": numbers[0], "length": numbers[1]}, numbers[0] + numbers[1] / 2
+        table, extent = {"kind": geometry.kind, "radius": numbers[0], "length": numbers[1]}, numbers[0] + numbers[1] / 2
     else:
-        table, reach = {"kind": "sphere", "radius": numbers[0]}, numbers[0]
-    return table | pose.keys("offset"), reach + float(np.linalg.norm(pose.origin))
+        table, extent = {"kind": "sphere", "radius": numbers[0]}, numbers[0]
+    return table | pose.keys("offset"), extent + float(np.linalg.norm(pose.origin))

@@ -1,4 +1,4 @@
-"""Names that a deck can have, in place of those that it cannot."""
+"""Replaces names that a deck cannot have."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from collections.abc import Container
 from scree.urdf.notes import Notes
 from scree.urdf.xml import Element
 
-GROUND = "ground"  # what a deck calls the space
-LONGEST = 180  # bytes, of a deck's 200: the names of markers, stops and meshes are longer by their endings
+GROUND = "ground"  # name of the ground in a deck
+LONGEST = 180  # bytes; a deck allows 200, and names of markers, stops and meshes get suffixes
 NOT_ALLOWED = re.compile(r"[/\x00-\x1f\x7f]")
 
 
 def allowed(name: str, taken: Container[str]) -> str:
-    """The name itself, where a deck can have it and it is not taken, else one like it."""
+    """The name, if a deck can have it and it is free, otherwise a similar one."""
     found = NOT_ALLOWED.sub("_", name).encode()[:LONGEST].decode(errors="ignore")
     if found in (".", "..", GROUND):
         found = f"{found.replace('.', '_')}_link"
@@ -23,22 +23,22 @@ def allowed(name: str, taken: Container[str]) -> str:
 
 
 def names_of(elements: list[Element], notes: Notes) -> dict[str, str]:
-    """Of each name that links, or joints, have in the file the one in the deck. What a deck can have as it is stays."""
+    """Names in the deck by the names of links or joints in the file. Valid names are unchanged."""
     given = list(dict.fromkeys(element.text("name") for element in elements))
-    kept = {name for name in given if allowed(name, ()) == name}
+    valid = {name for name in given if allowed(name, ()) == name}
     found: dict[str, str] = {}
     for name in given:
-        found[name] = name if name in kept else allowed(name, kept | set(found.values()))
+        found[name] = name if name in valid else allowed(name, valid | set(found.values()))
     for element in elements:
         if found[element.text("name")] != element.text("name"):
-            notes.add('renamed, as a deck\'s names have no "/", no control characters and at most 200 bytes, and '
-                      '"ground" is its space', f'{element.called} is "{found[element.text("name")]}"')
+            notes.add('renamed, because names in a deck have no "/", no control characters and at most 200 bytes, and '
+                      '"ground" is reserved', f'{element.called} is "{found[element.text("name")]}"')
     return found
 
 
 def rename(root: Element, notes: Notes) -> dict[str, str]:
-    """Gives the links and joints of a robot, and what refers to them, names that a deck can have. Returns those of the
-    joints by the names in the file."""
+    """Renames links and joints of a robot, with all references, to names that a deck can have. Returns the names of
+    joints by their names in the file."""
     links, joints = (list(root.all(kind)) for kind in ("link", "joint"))
     link_names, joint_names = names_of(links, notes), names_of(joints, notes)
 

@@ -1,4 +1,4 @@
-"""What is done otherwise than a robot's file says: one warning of each kind, however often it comes."""
+"""Changes and omissions in the import of a robot, with one warning per kind."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import warnings
 
 from scree.errors import ScreeWarning
 
-MOST = 10  # of one kind that are named
+MOST = 10  # items of a kind that are listed
 
 
 class Notes:
@@ -15,11 +15,11 @@ class Notes:
         self._items: dict[str, list[str]] = {}
 
     def add(self, kind: str, item: str) -> None:
-        """kind: what was done, and where that can be, what to do about it. item: to what, with its line in the file."""
+        """kind: the change, and if possible a remedy. item: the affected element with its line in the file."""
         self._items.setdefault(kind, []).append(item)
 
     def lines(self) -> list[str]:
-        """One of each kind, in the order in which they came."""
+        """One line per kind, in the order of occurrence."""
         found = []
         for kind, items in self._items.items():
             count = f" ({len(items)} times)" if len(items) > 1 else ""

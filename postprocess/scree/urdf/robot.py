@@ -1,4 +1,4 @@
-"""Links and joints of a robot as its file has them, each checked by itself."""
+"""Links and joints of a robot as in its file, each checked separately."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from scree.urdf.notes import Notes
 from scree.urdf.xml import Element
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-MOVING = ("revolute", "continuous", "prismatic")  # those with one coordinate
-READ = ("link", "joint", "material")  # elements of a robot; what others say is not of its mechanics
+MOVING = ("revolute", "continuous", "prismatic")  # types with one coordinate
+READ = ("link", "joint", "material")  # elements that are read; others are not part of the mechanics
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """kind: "box", "cylinder", "capsule", "sphere" or "mesh"; numbers [m]: its edges, its radius and length, of a
-    capsule without its half spheres, its radius, or the scales along x, y and z of the mesh's file."""
+    """kind: "box", "cylinder", "capsule", "sphere" or "mesh"; numbers [m]: edges of a box; radius and length (of a
+    capsule without its half spheres); radius of a sphere; scales along x, y and z of a mesh file."""
 
     element: Element
     kind: str
@@ -31,20 +31,20 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Link:
-    """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the link's frame, which may be that of no
-    body; no mass: all zero."""
+    """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the frame of the link, possibly impossible;
+    all zero without mass."""
 
     element: Element
     name: str
     mass: float
     center: np.ndarray
     inertia: np.ndarray
-    geometry: list[Geometry]  # of the kind that was asked for
+    geometry: list[Geometry]  # of the requested kind
 
 
 @dataclass(frozen=True)
 class Joint:
-    """pose: of its frame, which at coordinate 0 is the child's, in the parent's."""
+    """pose: of the joint frame in the frame of the parent; at coordinate 0 it is the frame of the child."""
 
     element: Element
     name: str
@@ -53,12 +53,12 @@ class Joint:
     child: str
     pose: Pose
     axis: np.ndarray  # of length 1, in the joint's frame
-    lower: float  # [rad or m]; infinite: no limit. As the upper one: held there
+    lower: float  # [rad or m]; infinite: no limit; equal to the upper one: fixed there
     upper: float
-    effort: float  # largest one of its drive [N m or N]; 0: not said
+    effort: float  # largest effort of the drive [N m or N]; 0: not given
     damping: float  # [N m s/rad or N s/m]
     friction: float  # [N m or N]
-    mimics: tuple[str, float, float] | None  # another joint, the multiple of its coordinate, and what is added
+    mimics: tuple[str, float, float] | None  # another joint, multiplier and offset of its coordinate
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,11 @@ class Robot:
     name: str
     links: dict[str, Link] = field(default_factory=dict)
     joints: dict[str, Joint] = field(default_factory=dict)
-    joint_names: dict[str, str] = field(default_factory=dict)  # the deck's by those in the file
+    joint_names: dict[str, str] = field(default_factory=dict)  # names in the deck by those in the file
 
 
 def pose_of(element: Element) -> Pose:
-    """Of its <origin>."""
+    """Pose in its <origin>."""
     origin = element.first("origin")
     if origin is None:
         return Pose.at()
@@ -96,7 +96,7 @@ def read_inertia(link: Element) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def read_geometry(owner: Element, notes: Notes) -> Geometry | None:
-    """None, with a note, for what a deck cannot have."""
+    """None, with a note, if a deck cannot have the geometry."""
     geometry = owner.first("geometry")
     shape = next(iter(geometry.children), None) if geometry is not None else None
     if shape is None:
@@ -117,7 +117,7 @@ def read_geometry(owner: Element, notes: Notes) -> Geometry | None:
     if kind == "capsule" and numbers[1] == 0:
         kind, numbers = "sphere", numbers[:1]
     if (numbers == 0).any() or (kind != "mesh" and (numbers < 0).any()):
-        notes.add("a measure is not above 0, left out", f"{kind} (line {shape.line})")
+        notes.add("a dimension is not above 0, left out", f"{kind} (line {shape.line})")
         return None
     return Geometry(shape, kind, pose, numbers, shape.text("filename") if kind == "mesh" else "")
 
@@ -135,18 +135,18 @@ def read_limits(joint: Element, kind: str, notes: Notes) -> tuple[float, float, 
     if kind not in ("revolute", "prismatic"):
         return -np.inf, np.inf, effort
     if limit is None or not (limit.has("lower") or limit.has("upper")):
-        notes.add("limits without lower and upper, and so a joint without stops", joint.called)
+        notes.add("limits without lower and upper: no stops", joint.called)
         return -np.inf, np.inf, effort
     lower, upper = (limit.number(name, 0.0, infinite=True) for name in ("lower", "upper"))
     if lower > upper:
-        notes.add("the lower limit is above the upper one, and so a joint without stops",
+        notes.add("the lower limit is above the upper one: no stops",
                   f"{joint.called} from {lower:g} to {upper:g}")
         return -np.inf, np.inf, effort
     return lower, upper, effort
 
 
 def read_axis(joint: Element, kind: str) -> np.ndarray:
-    """Of one that has none, x."""
+    """Unit axis of the joint; x by default."""
     element = joint.first("axis") if kind in (*MOVING, "planar") else None
     axis = element.numbers("xyz", 3) if element else np.array([1.0, 0.0, 0.0])
     if not axis.any():
@@ -165,74 +165,74 @@ def read_joint(element: Element, notes: Notes) -> Joint:
         element.fail("dynamics: damping and friction must not be below 0")
     mimics = (mimic.text("joint"), mimic.number("multiplier", 1.0), mimic.number("offset", 0.0)) if mimic else None
     if mimics and kind not in MOVING:
-        notes.add("has no coordinate, and so follows no other joint", f"{kind} {element.called}")
+        notes.add("has no coordinate: cannot mimic another joint", f"{kind} {element.called}")
         mimics = None
     parent, child = (element.required(name).text("link") for name in ("parent", "child"))
     return Joint(element, element.text("name"), kind, parent, child, pose_of(element), read_axis(element, kind),
                  *read_limits(element, kind, notes), damping, friction, mimics)
 
 
-def moved(joint: Joint, coordinate: float) -> Pose:
-    """Of the child's frame in the joint's."""
+def joint_motion(joint: Joint, coordinate: float) -> Pose:
+    """Pose of the frame of the child in the joint frame."""
     if joint.type == "prismatic":
         return Pose.at(coordinate * joint.axis)
     return Pose.at(rotation=about(joint.axis, coordinate))
 
 
-def held_at(joint: Joint, joints: dict[str, Joint], held: dict[str, float]) -> float | None:
-    """The coordinate that a joint cannot leave: None where it moves. held: those of joints that are known to be so."""
+def fixed_coordinate(joint: Joint, joints: dict[str, Joint], fixed: dict[str, float]) -> float | None:
+    """The coordinate of a joint that cannot move; None if it can. fixed: coordinates of joints that cannot move."""
     if joint.type not in MOVING:
         return None
     if joint.mimics is None:
         return joint.lower if joint.lower == joint.upper else None
     name, multiple, added = joint.mimics
-    if name in joints and (multiple == 0 or name in held or joints[name].type == "fixed"):
-        return multiple * held.get(name, 0.0) + added
+    if name in joints and (multiple == 0 or name in fixed or joints[name].type == "fixed"):
+        return multiple * fixed.get(name, 0.0) + added
     return None
 
 
-def hold(joints: dict[str, Joint], notes: Notes) -> None:
-    """Makes fixed joints of those that cannot move, at their coordinate."""
-    held: dict[str, float] = {}
+def fix_immovable(joints: dict[str, Joint], notes: Notes) -> None:
+    """Replaces joints that cannot move by fixed joints at their coordinate."""
+    fixed: dict[str, float] = {}
     while True:
         found = {name: at for name, joint in joints.items()
-                 if name not in held and (at := held_at(joint, joints, held)) is not None}
+                 if name not in fixed and (at := fixed_coordinate(joint, joints, fixed)) is not None}
         if not found:
             break
-        held |= found
-    for name, at in held.items():
+        fixed |= found
+    for name, at in fixed.items():
         joint = joints[name]
-        why = ("follows a joint that does not move" if joint.mimics else
+        why = ("mimics a joint that does not move" if joint.mimics else
                "lower = upper; a joint without both has no stops")
-        notes.add(f"held, as by a fixed joint: {why}", f"{joint.element.called} at {at:g}")
-        joints[name] = replace(joint, type="fixed", pose=joint.pose @ moved(joint, at), mimics=None)
+        notes.add(f"made a fixed joint: {why}", f"{joint.element.called} at {at:g}")
+        joints[name] = replace(joint, type="fixed", pose=joint.pose @ joint_motion(joint, at), mimics=None)
     for name, joint in joints.items():
         if joint.type in MOVING and joint.lower == joint.upper:
-            notes.add("lower = upper of a joint that follows another one, and so a joint without stops",
+            notes.add("lower = upper of a joint that mimics another one: no stops",
                       joint.element.called)
             joints[name] = replace(joint, lower=-np.inf, upper=np.inf)
 
 
 def read(path: pathlib.Path, geometry: str = "none", notes: Notes | None = None) -> Robot:
-    """geometry: "collision", "visual" or "none"; others are not read. notes: get what was read otherwise than it stands
-    there. Throws ScreeError for what cannot be read, with file and line."""
-    root, said = xml.read(path), notes or Notes()
+    """geometry: "collision", "visual" or "none"; the others are not read. notes: collects changes. Throws ScreeError
+    with file and line for errors."""
+    root, changes = xml.read(path), notes or Notes()
     if root.name != "robot":
-        root.fail("the file of a robot begins with <robot>")
-    joint_names = names.rename(root, said)
+        root.fail("the file of a robot must begin with <robot>")
+    joint_names = names.rename(root, changes)
     links: dict[str, Link] = {}
     joints: dict[str, Joint] = {}
     for element in root.all("link"):
-        link = read_link(element, geometry, said)
+        link = read_link(element, geometry, changes)
         if link.name in links:
             element.fail("a second link of this name")
         links[link.name] = link
     for element in root.all("joint"):
-        joint = read_joint(element, said)
+        joint = read_joint(element, changes)
         if joint.name in joints:
             element.fail("a second joint of this name")
         joints[joint.name] = joint
-    hold(joints, said)
+    fix_immovable(joints, changes)
     for name in dict.fromkeys(child.name for child in root.children if child.name not in READ):
-        said.add("not read", f"<{name}>")
+        changes.add("not read", f"<{name}>")
     return Robot(path, root.attributes.get("name", path.stem), links, joints, joint_names)

@@ -1,19 +1,19 @@
-"""What a deck needs and a robot's file does not say."""
+"""Parts of a deck that the file of a robot does not contain."""
 
 HEAD = """\
-# Made from a URDF. The frames of bodies are those of its links, and the coordinates of joints are its own, so that
-# limits and positions mean the same. What it does not say stands here and, as comments, at the end.
+# Made from a URDF. Frames of bodies are the frames of its links, and joint coordinates are those of the URDF, so that
+# limits and positions have the same meaning. Data that a URDF does not contain are here and, as comments, at the end.
 title = ""
 gravity = [0.0, 0.0, -9.80665]
 
-[space]                             # has room for the robot, stretched out
+[space]                             # contains the stretched robot
 dimension = 3
 min = [0.0, 0.0, 0.0]
 max = [0.0, 0.0, 0.0]
 leaving = "drift"
 
 [time]
-end = 1.0                           # steps are chosen by their error; with many particles see input/choosing.md
+end = 1.0                           # adaptive steps; with many particles see input/choosing.md
 
 [output]
 snapshot_interval = 0.02
@@ -22,15 +22,16 @@ history_interval = 0.01
 [[materials]]
 name = "robot"
 
-[[contact.pairs]]                   # the parts of the robot do not touch each other
+[[contact.pairs]]                   # no contact between parts of the robot
 materials = ["robot", "robot"]
 stiffness = 0.0
 """
 
 TAIL = """
-# A joint that closes a loop, between the frames of two links. The markers must meet at t = 0; scree-post urdf starts
-# the robot there with --position JOINT=VALUE. Of hinges about parallel axes the last one is a point-on-line, whose
-# first marker's z is along these axes: one more hinge would say again what the others say. Others are spherical, say.
+# A joint that closes a loop, between the frames of two links. The markers must coincide at t = 0; set initial joint
+# coordinates by scree-post urdf --position JOINT=VALUE. In a loop of revolute joints about parallel axes use a
+# point-on-line, with z of the first marker along these axes: a further revolute joint would be redundant. In other
+# loops use a spherical joint, for example.
 # [[markers]]
 # name = "loop_parent"
 # body = "ground"
@@ -51,7 +52,7 @@ TAIL = """
 # type = "effort"
 # effort = 1.0
 
-# Particles, and how they touch each other and the robot:
+# Particles, and their contacts with each other and the robot:
 # [[materials]]
 # name = "grains"
 # [[contact.pairs]]

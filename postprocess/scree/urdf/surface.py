@@ -1,4 +1,4 @@
-"""Whether the triangles of a file can be the surface of a solid."""
+"""Checks whether the triangles of a file can bound a solid."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ import numpy as np
 
 from scree.errors import ScreeError
 
-LEAST_HEIGHT = 1e-12  # of a triangle over its longest side; below it the triangle has no area
-DEPTH = 1e-5  # of the extent: so far behind a triangle its solid begins
-POINTS = 16  # at which the surroundings of a part are tested
-MOST_WORK = 3e8  # triangles seen from points
+LEAST_HEIGHT = 1e-12  # smallest height of a triangle over its longest side; below it is degenerate
+DEPTH = 1e-5  # of the extent: depth of the test points behind a triangle
+POINTS = 16  # number of test points per part
+MOST_WORK = 3e8  # largest number of pairs of a test point and a triangle
 
 
 @dataclass(frozen=True)
 class Surface:
-    """low, high: of its box [the file's unit]. is_open: edges are free, as of a sheet. trouble: why it is neither a
-    sheet nor the surface of a solid; "": it is one of them."""
+    """low, high: bounding box [unit of the file]. is_open: has free edges. defect: why it is neither an open surface
+    nor the surface of a solid; "": it is one of them."""
 
     low: np.ndarray
     high: np.ndarray
     is_open: bool
-    trouble: str
+    defect: str
 
 
 def edges_of(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of the three sides of each triangle, first all first ones, the number of the edge and 1 or -1 for the way."""
+    """Number and direction (1 or -1) of the edges of all triangles: first all first sides, then second, third."""
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     _, edge = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
     return edge.reshape(-1), np.where(sides[:, 0] < sides[:, 1], 1, -1)
 
 
 def parts_of(edge: np.ndarray) -> np.ndarray:
-    """Of each triangle of a closed surface, the number of the part that hangs together over edges."""
+    """For each triangle of a closed surface the number of its connected part."""
     pairs = np.argsort(edge, kind="stable").reshape(-1, 2) % (len(edge) // 3)  # of triangles
     part = np.arange(len(edge) // 3)
     while True:
@@ -51,8 +51,8 @@ def parts_of(edge: np.ndarray) -> np.ndarray:
             return np.unique(part, return_inverse=True)[1].reshape(-1)
 
 
-def turns(point: np.ndarray, corners: np.ndarray) -> float:
-    """How often triangles [n][3][3] go around a point: van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983."""
+def winding_number(point: np.ndarray, corners: np.ndarray) -> float:
+    """Winding number of triangles [n][3][3]: van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983."""
     a, b, c = (corners - point).transpose(1, 0, 2)
     la, lb, lc = (np.linalg.norm(each, axis=1) for each in (a, b, c))
     up = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -61,8 +61,8 @@ def turns(point: np.ndarray, corners: np.ndarray) -> float:
 
 
 def has_misplaced_parts(corners: np.ndarray, part: np.ndarray) -> bool:
-    """Whether parts of a closed surface lie inside one another or cut through each other, but for cavities; where there
-    is too much to see, yes. corners: [triangles][3][3]."""
+    """Whether parts of a closed surface are inside or intersect each other, except cavities; true if the test would
+    take too long. corners: [triangles][3][3]."""
     count = int(part.max()) + 1
     if count == 1:
         return False
@@ -78,7 +78,7 @@ def has_misplaced_parts(corners: np.ndarray, part: np.ndarray) -> bool:
     for k in range(count):
         near = ((low <= high[k]) & (low[k] <= high)).all(axis=1)
         near[k] = False
-        around = 1 if volumes[k] < 0 else 0  # how often the others go around the solid behind the part
+        around = 1 if volumes[k] < 0 else 0  # winding number of the other parts behind the triangles
         if not near.any():
             if around:
                 return True
@@ -92,24 +92,24 @@ def has_misplaced_parts(corners: np.ndarray, part: np.ndarray) -> bool:
         depth = min(DEPTH * extent, 0.01 * abs(volumes[k]) / areas[k])
         for t in largest:
             behind = corners[t].mean(axis=0) - depth * normals[t] / np.linalg.norm(normals[t])
-            if abs(turns(behind, others) - around) > 0.5:
+            if abs(winding_number(behind, others) - around) > 0.5:
                 return True
     return False
 
 
-def judged(points: np.ndarray, triangles: np.ndarray) -> tuple[bool, str]:
-    """Whether it is open, and its trouble. points: each place once."""
+def find_defect(points: np.ndarray, triangles: np.ndarray) -> tuple[bool, str]:
+    """Whether the surface is open, and its defect. points: without duplicates."""
     corners = points[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     doubled = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    edge, way = edges_of(triangles)
+    edge, direction = edges_of(triangles)
     count = np.bincount(edge)
     is_open = bool((count == 1).any())
     if not (doubled > LEAST_HEIGHT * sides.max(axis=1) ** 2).all():
         return is_open, "has triangles without area"
     if len(np.unique(np.sort(triangles, axis=1), axis=0)) < len(triangles):
         return is_open, "has triangles twice"
-    if (np.bincount(edge, way)[count == 2] != 0).any():
+    if (np.bincount(edge, direction)[count == 2] != 0).any():
         return is_open, "has triangles that are wound both ways"
     if is_open:
         return True, ""
@@ -126,7 +126,7 @@ def judged(points: np.ndarray, triangles: np.ndarray) -> tuple[bool, str]:
 
 @contextlib.contextmanager
 def silent_vtk() -> Iterator[None]:
-    """What VTK prints of a file says less than what is said here."""
+    """Suppresses messages of VTK; the messages of this module are more specific."""
     from vtkmodules.vtkCommonCore import vtkLogger
 
     before = vtkLogger.GetCurrentVerbosityCutoff()
@@ -138,16 +138,16 @@ def silent_vtk() -> Iterator[None]:
 
 
 def triangles_of(path: pathlib.Path) -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles as the file has them, those without area, too. Throws ScreeError, without the path."""
+    """Points and triangles of the file, degenerate ones included. Throws ScreeError without the path."""
     import pyvista
 
     try:
         with silent_vtk():
             reader = pyvista.get_reader(path)
-            if hasattr(reader.reader, "MergingOff"):  # which drops triangles
+            if hasattr(reader.reader, "MergingOff"):  # merging drops triangles
                 reader.reader.MergingOff()
             mesh = reader.read().extract_surface(algorithm="dataset_surface").triangulate()
-    except Exception as error:  # whatever a reader of VTK throws
+    except Exception as error:  # any exception of a VTK reader
         raise ScreeError(f"cannot be read: {error}") from error
     if mesh.n_cells == 0:
         raise ScreeError("has no triangles")
@@ -156,12 +156,13 @@ def triangles_of(path: pathlib.Path) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.lru_cache(maxsize=256)
 def read(path: pathlib.Path) -> Surface:
-    """Throws ScreeError, without the path, for what is no mesh."""
+    """Throws ScreeError without the path if the file is not a mesh."""
     with path.open("rb") as file:
         if file.read(40).startswith(b"version https://git-lfs"):
             raise ScreeError("is a Git LFS pointer: git lfs pull fetches the mesh")
     points, triangles = triangles_of(path)
     if not np.isfinite(points).all():
         raise ScreeError("has coordinates that are no finite numbers")
-    places, welded = np.unique(points, axis=0, return_inverse=True)
-    return Surface(places.min(axis=0), places.max(axis=0), *judged(places, welded.reshape(-1)[triangles]))
+    unique_points, welded = np.unique(points, axis=0, return_inverse=True)
+    defect = find_defect(unique_points, welded.reshape(-1)[triangles])
+    return Surface(unique_points.min(axis=0), unique_points.max(axis=0), *defect)

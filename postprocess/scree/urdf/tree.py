@@ -1,4 +1,4 @@
-"""A robot as the bodies that a deck has of it: where its links stand, and which of them make one body."""
+"""The bodies of a robot in a deck: poses of links, and groups of links that form one body."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from scree.frames import Pose
 from scree.urdf import inertia
 from scree.urdf.names import GROUND
 from scree.urdf.notes import Notes
-from scree.urdf.robot import MOVING, Geometry, Joint, Link, Robot, moved
+from scree.urdf.robot import MOVING, Geometry, Joint, Link, Robot, joint_motion
 
 
 @dataclass
 class Part:
-    """Links that move as one, in the frame of the first one. name: of the first one with a mass, or "ground"."""
+    """Links that form one body, in the frame of the first one. name: of the first link with a mass, or "ground"."""
 
     name: str
     pose: Pose  # at t = 0
-    links: list[tuple[Link, Pose]] = field(default_factory=list)  # with their frames in that of the part
+    links: list[tuple[Link, Pose]] = field(default_factory=list)  # with their frames in the frame of the part
 
     def mass_properties(self) -> tuple[float, np.ndarray, np.ndarray]:
         """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the part's frame."""
         heavy = [(link, pose) for link, pose in self.links if link.mass > 0]
         masses = np.array([link.mass for link, _ in heavy])
-        centers = np.array([pose.place(link.center) for link, pose in heavy])
+        centers = np.array([pose.transform(link.center) for link, pose in heavy])
         center = masses @ centers / masses.sum()
         inertia = np.zeros((3, 3))
         for (link, pose), offset in zip(heavy, centers - center):
@@ -41,22 +41,22 @@ class Part:
 
 @dataclass(frozen=True)
 class Tree:
-    parts: list[Part]  # the ground first
-    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint's frame in it, the child's part
-    held: Part | None  # that of a root with mass, where it is fixed to the ground
-    coordinates: dict[str, float]  # at t = 0, of the joints that have one [rad or m]
+    parts: list[Part]  # the ground is the first
+    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint frame in it, the child's part
+    held: Part | None  # part of a root with mass that is fixed to the ground
+    coordinates: dict[str, float]  # initial joint coordinates [rad or m]
 
 
 def find_root(robot: Robot) -> Link:
-    """Throws ScreeError where links and joints are no tree."""
+    """The root link. Throws ScreeError if links and joints do not form a tree."""
     above: dict[str, Joint] = {}
     for joint in robot.joints.values():
         for name in (joint.parent, joint.child):
             if name not in robot.links:
                 joint.element.fail(f'there is no link "{name}"')
         if joint.child in above:
-            joint.element.fail(f'closes a loop: link "{joint.child}" hangs on joint "{above[joint.child].name}". A '
-                               "robot's file is a tree; leave the joint out and add it to the deck")
+            joint.element.fail(f'closes a loop: link "{joint.child}" is a child of joint "{above[joint.child].name}". '
+                               "The file of a robot is a tree; leave the joint out and add it to the deck")
         above[joint.child] = joint
     roots = [link for name, link in robot.links.items() if name not in above]
     for name in robot.links:
@@ -64,26 +64,26 @@ def find_root(robot: Robot) -> Link:
         while seen[-1] in above:
             seen.append(above[seen[-1]].parent)
             if seen[-1] == name:
-                raise ScreeError(f"{robot.path}: links hang on each other in a circle: {' <- '.join(seen)}")
+                raise ScreeError(f"{robot.path}: links form a circle: {' <- '.join(seen)}")
             if seen.count(seen[-1]) > 1:
-                break  # a circle further up, which has its own turn
+                break  # another circle further up, which is found from its own links
     if len(roots) != 1:
         names = ", ".join(f'"{link.name}"' for link in roots)
-        raise ScreeError(f"{robot.path}: {f'several links hang on no joint: {names}' if roots else 'has no links'}; "
+        raise ScreeError(f"{robot.path}: {f'several links have no parent: {names}' if roots else 'has no links'}; "
                          "there must be one")
     return roots[0]
 
 
 def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, float]:
-    """Of the joints that have one: as given, by the names of the file or of the deck, or 0, and what mimics another
-    joint follows it."""
+    """Initial joint coordinates: as given, by the names in the file or in the deck, otherwise 0. Joints that mimic
+    another one follow it."""
     given = {robot.joint_names.get(name, name): value for name, value in given.items()}
     for name in given:
         if name not in robot.joints or robot.joints[name].type not in MOVING:
             raise ScreeError(f"{robot.path}: no joint {name} with a coordinate; there are: "
                              f"{', '.join(j.name for j in robot.joints.values() if j.type in MOVING) or 'none'}")
         if robot.joints[name].mimics:
-            raise ScreeError(f"{robot.path}: joint {name} follows another one, and starts where that says")
+            raise ScreeError(f"{robot.path}: joint {name} mimics another one, which determines its start")
     found: dict[str, float] = {}
 
     def start(joint: Joint, followers: tuple[str, ...]) -> float:
@@ -92,7 +92,7 @@ def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, flo
         name, multiple, added = joint.mimics
         other = robot.joints.get(name)
         if other is None or other.type not in MOVING:
-            joint.element.fail(f'mimics "{name}", which is no joint with a coordinate')
+            joint.element.fail(f'mimics "{name}", which is not a joint with a coordinate')
         if name in followers:
             joint.element.fail("mimics itself")
         return multiple * start(other, (*followers, name)) + added
@@ -106,70 +106,70 @@ def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, flo
     return found
 
 
-def plant(robot: Robot, base: Pose, free: bool, given: Mapping[str, float]) -> Tree:
-    """base: of the root link's frame. free: the root is held by nothing; else a root with mass is fixed to the ground,
-    and one without is part of it. Links without mass become parts of those to which they are fixed."""
+def build_tree(robot: Robot, base: Pose, free: bool, given: Mapping[str, float]) -> Tree:
+    """base: pose of the root link. free: the root is not fixed; otherwise a root with mass is fixed to the ground, and
+    a root without mass is part of it. Links without mass become parts of those to which they are fixed."""
     root, coordinates = find_root(robot), start_coordinates(robot, given)
     ground = Part(GROUND, Pose.at())
     parts, joints = [ground], []
-    where: dict[str, tuple[Part, Pose]] = {}  # of each link its part, and its frame there
+    where: dict[str, tuple[Part, Pose]] = {}  # part of each link, and the frame of the link in it
 
-    def settle(link: Link, part: Part, pose: Pose) -> None:
+    def assign(link: Link, part: Part, pose: Pose) -> None:
         if part.name == "" and link.mass > 0:
             part.name = link.name
         part.links.append((link, pose))
         where[link.name] = part, pose
 
-    def new(link: Link, pose: Pose) -> None:
+    def begin_part(link: Link, pose: Pose) -> None:
         parts.append(Part("", pose))
-        settle(link, parts[-1], Pose.at())
+        assign(link, parts[-1], Pose.at())
 
     if root.mass > 0 or free:
-        new(root, base)
+        begin_part(root, base)
     else:
-        settle(root, ground, base)
-    waiting = [root.name]
-    while waiting:
-        above = waiting.pop(0)
+        assign(root, ground, base)
+    pending = [root.name]
+    while pending:
+        above = pending.pop(0)
         for joint in (each for each in robot.joints.values() if each.parent == above):
             child, (part, pose) = robot.links[joint.child], where[above]
             frame = pose @ joint.pose
             if joint.type == "fixed" and (child.mass == 0 or part.name == ""):
-                settle(child, part, frame)
+                assign(child, part, frame)
             else:
-                new(child, part.pose @ frame @ moved(joint, coordinates.get(joint.name, 0.0)))
+                begin_part(child, part.pose @ frame @ joint_motion(joint, coordinates.get(joint.name, 0.0)))
                 joints.append((joint, part, frame, parts[-1]))
-            waiting.append(child.name)
+            pending.append(child.name)
     for part in parts:
         if part.name == "":
-            part.links[0][0].element.fail("moves, but neither it nor a link that is fixed to it has a mass")
+            part.links[0][0].element.fail("moves, but neither it nor a link fixed to it has a mass")
     return Tree(parts, joints, parts[1] if root.mass > 0 and not free else None, coordinates)
 
 
-def standing(tree: Tree) -> set[str]:
-    """Names of the parts that joints hold to the ground, so that their masses act on nothing."""
+def fixed_to_ground(tree: Tree) -> set[str]:
+    """Names of the parts that are fixed to the ground, whose masses have no effect."""
     found = {GROUND} | ({tree.held.name} if tree.held else set())
-    for joint, above, _, part in tree.joints:  # from the root on
+    for joint, above, _, part in tree.joints:  # from the root outwards
         if joint.type == "fixed" and above.name in found:
             found.add(part.name)
     return found
 
 
 def make_inertia_possible(tree: Tree, mend: bool, notes: Notes) -> None:
-    """That of parts which stand on the ground, and with `mend` of all. Throws ScreeError for one that no body can have
-    and that moves."""
-    still = standing(tree)
+    """Mends the inertia of parts fixed to the ground, and with `mend` of all parts. Throws ScreeError for an impossible
+    inertia of a moving part."""
+    static = fixed_to_ground(tree)
     for part in tree.parts:
         for k, (link, pose) in enumerate(part.links):
             tensor = inertia.without_rounding(link.inertia, link.mass)
             if link.mass > 0 and inertia.excess(tensor) > inertia.OF_PROGRAM:
                 moments = f"principal moments {inertia.text_of(tensor)} kg m^2"
-                if not mend and part.name not in still:
-                    link.element.fail(f"inertia: {moments} are those of no body; they must be above 0, and none above "
-                                      "the sum of the two others; --mend-inertia takes the nearest that can be")
+                if not mend and part.name not in static:
+                    link.element.fail(f"inertia: {moments} are impossible; they must be above 0, and none above the "
+                                      "sum of the two others; --mend-inertia takes the nearest possible ones")
                 tensor = inertia.nearest(tensor, link.mass)
-                kind = "of what stands on the ground, where it acts on nothing" if part.name in still else \
-                    "as --mend-inertia asks for"
-                notes.add(f"an inertia of no body was made the nearest that can be, {kind}",
+                kind = "it is fixed to the ground, where inertia has no effect" if part.name in static else \
+                    "as requested by --mend-inertia"
+                notes.add(f"an impossible inertia was replaced by the nearest possible one: {kind}",
                           f"{link.element.called} with {moments}, now {inertia.text_of(tensor)}")
             part.links[k] = replace(link, inertia=tensor), pose

@@ -1,4 +1,4 @@
-"""A robot's file as elements that know their lines. No document type is read, and so no entities."""
+"""The file of a robot as elements with line numbers. Document types, and therefore entities, are refused."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from scree.errors import ScreeError
 class Element:
     name: str
     attributes: dict[str, str]
-    place: str  # FILE:LINE
+    location: str  # FILE:LINE
     children: list[Element] = field(default_factory=list)
 
     @property
     def line(self) -> str:
-        return self.place.rsplit(":", 1)[1]
+        return self.location.rsplit(":", 1)[1]
 
     @property
     def called(self) -> str:
@@ -30,7 +30,7 @@ class Element:
 
     def fail(self, text: str) -> NoReturn:
         owner = f' "{self.attributes["name"]}"' if "name" in self.attributes else ""
-        raise ScreeError(f"{self.place}: {self.name}{owner}: {text}")
+        raise ScreeError(f"{self.location}: {self.name}{owner}: {text}")
 
     def all(self, name: str) -> Iterator[Element]:
         return (child for child in self.children if child.name == name)
@@ -54,7 +54,7 @@ class Element:
 
     def numbers(self, attribute: str, count: int, default: list[float] | None = None,
                 infinite: bool = False) -> np.ndarray:
-        """Finite ones, unless they may be infinite, separated by blanks; a default of None: they must be there."""
+        """Numbers separated by blanks, finite unless `infinite`. default None: the attribute is required."""
         if not self.has(attribute) and default is not None:
             return np.array(default, dtype=float)
         text = self.text(attribute)
@@ -71,7 +71,7 @@ class Element:
 
 
 def read(path: pathlib.Path) -> Element:
-    """The root element. Throws ScreeError for what is no XML, has a document type, or is a macro of xacro."""
+    """The root element. Throws ScreeError if the file is not XML, has a document type, or has macros of xacro."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -83,7 +83,8 @@ def read(path: pathlib.Path) -> Element:
     def begin(name: str, attributes: dict[str, str]) -> None:
         element = Element(name, attributes, f"{path}:{parser.CurrentLineNumber}")
         if name.startswith("xacro:") or any("${" in value or "$(" in value for value in attributes.values()):
-            raise ScreeError(f"{element.place}: has macros of xacro; expand them first: xacro {path.name} > robot.urdf")
+            raise ScreeError(f"{element.location}: has macros of xacro; expand them first: "
+                             f"xacro {path.name} > robot.urdf")
         within[-1].children.append(element)
         within.append(element)
 
