@@ -206,8 +206,8 @@ class InertiaTest(KindsTest):
             text = link("base", moments=moments) + link("plate", moments=moments) + link("arm") \
                 + joint("screws", "base", "plate", "fixed") + joint("j", "plate", "arm")
             _, lines = self.convert(text)
-            self.one_line(lines, "impossible inertia was replaced by the nearest possible one: it is fixed to the ground",
-                          "(2 times)", "link base (line 3)", "link plate (line 4)")
+            self.one_line(lines, "impossible inertia was replaced by the nearest possible one: it is fixed to the "
+                                 "ground", "(2 times)", "link base (line 3)", "link plate (line 4)")
             _, lines = self.convert(text, "--free", code=2)
             self.one_line(lines, "error: ", 'robot.urdf:3: link "base": inertia: principal moments', "--mend-inertia")
 
@@ -281,8 +281,8 @@ class GeometryTest(KindsTest):
         deck, lines = self.convert(self.robot(*shapes))
         self.assertEqual([each["sheet"] for each in deck["meshes"]], [True] * len(SHEETS))
         self.assertEqual(len(lines), 1)
-        self.one_line(lines, "imported as an open surface (sheet) with contact on both sides, because it does not bound "
-                             f"a solid ({len(SHEETS)} times)", "rib.stl (line 4) has parts inside others",
+        self.one_line(lines, "imported as an open surface (sheet) with contact on both sides, because it does not "
+                             f"bound a solid ({len(SHEETS)} times)", "rib.stl (line 4) has parts inside others",
                       "turned.stl (line 8) is inside out")
         deck, lines = self.convert(self.robot(self.stl("open", CUBE[:7])))
         self.assertEqual((lines, deck["meshes.arm_0.sheet"]), ([], True))
@@ -291,7 +291,8 @@ class GeometryTest(KindsTest):
         for name, triangles in FAULTY.items():
             fault = {"corner": "without area", "sliver": "without area", "anyhow": "that are wound both ways"}
             deck, lines = self.convert(self.robot(self.stl(name, triangles)))
-            self.one_line(lines, "imported as an open surface", f"{name}.stl (line 4) has triangles {fault.get(name, 'twice')}")
+            self.one_line(lines, "imported as an open surface",
+                          f"{name}.stl (line 4) has triangles {fault.get(name, 'twice')}")
             self.assertEqual((len(lines), deck["meshes.arm_0.sheet"]), (1, True))
 
     def test_files_that_are_no_meshes(self):
@@ -302,7 +303,8 @@ class GeometryTest(KindsTest):
         names = ("lfs.stl", "empty.stl", "text.ply", "bytes.stl", "gone.dae")
         deck, lines = self.convert(self.robot(*(f'<mesh filename="{name}"/>' for name in names)))
         self.assertNotIn("meshes", deck)
-        self.one_line(lines, "unreadable mesh, left out", "(4 times)", "lfs.stl (line 4) is a Git LFS pointer: git lfs pull")
+        self.one_line(lines, "unreadable mesh, left out", "(4 times)",
+                      "lfs.stl (line 4) is a Git LFS pointer: git lfs pull")
         self.one_line(lines, "not STL, OBJ or PLY", "gone.dae (line 12)")
         self.convert(self.robot('<mesh filename="gone.stl"/>'), code=2)
         (self.folder / "sub").mkdir()
@@ -319,7 +321,8 @@ class GeometryTest(KindsTest):
         wanted = [("arm_0", False), ("arm_1", True)]
         self.assertEqual([(each["name"], "sheet" in each) for each in deck["meshes"]], wanted)
         self.assertNotIn("meshes", deck["bodies.arm_2"])
-        self.one_line(lines, "imported as an open surface", "rib.stl, by scree check: the mesh is no surface: a shell lies")
+        self.one_line(lines, "imported as an open surface",
+                      "rib.stl, by scree check: the mesh is no surface: a shell lies")
         self.one_line(lines, "refused by scree check, left out", "line.stl: the mesh is no surface")
         deck, lines = self.convert(self.robot(*shapes))
         self.assertEqual([(each["name"], "sheet" in each) for each in deck["meshes"]], wanted)
