@@ -255,7 +255,7 @@ class CommandTest(UrdfTest):
         said = self.command(0, path, "--position", "j=0.2", "-o", self.folder / "other.toml")
         for text in ("not read: <transmission>", "not STL, OBJ or PLY, left out", "x.dae (line 4)",
                      "starts outside its limits", "joint j (line 5) at 0.2, with limits from 0.5 to 1",
-                     "no effort from which the stiffness",
+                     "without an effort, which determines the stiffness",
                      "limits of velocity are left out, because a deck has none: joint j (line 5)"):
             self.assertIn(text, said)
         subprocess.run([PROGRAM, "check", self.folder / "other.toml"], check=True, stdout=subprocess.DEVNULL)
@@ -274,7 +274,7 @@ class CommandTest(UrdfTest):
                 (BASE + link("a"), 'several links have no parent: "world", "a"'),
                 (BASE + link("a") + moving + joint("k", "fixed", "world", "a"), 'joint "k": closes a loop: link "a"'),
                 (BASE + link("a") + link("b") + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a"),
-                 "in a circle: a <- b <- a"),
+                 "form a circle: a <- b <- a"),
                 (BASE + joint("j", "fixed", "world", "b"), 'joint "j": there is no link "b"'),
                 (BASE + link("a") + joint("j", "hinge", "world", "a"), 'type = "hinge": must be one of revolute'),
                 (BASE + link("a") + joint("j", "continuous", "world", "a", "0 0"), 'xyz = "0 0": must be 3 numbers'),
