@@ -231,9 +231,9 @@ class Deck(MutableMapping[str, Any]):
         earlier = path.read_bytes() if path.exists() else None
         path.write_text(self._text_in(path.resolve().parent), encoding="utf-8")
         several = [*launcher.split(), "-n", str(ranks)] if ranks > 1 else []
-        words: list[Path] = [*several, where, "run", path, "--output", folder, "--backend", backend, *options]
+        command: list[Path] = [*several, where, "run", path, "--output", folder, "--backend", backend, *options]
         try:
-            program.call(words, {str(path): self.name}, PIPE if quiet else None)
+            program.call(command, {str(path): self.name}, PIPE if quiet else None)
         except program.RefusedError:  # leave the folder unchanged
             path.unlink() if earlier is None else path.write_bytes(earlier)
             raise

@@ -8,7 +8,7 @@ class ScreeError(Exception):
 class MissingError(ScreeError, KeyError):
     """A missing column, field or key; also a KeyError, as of any dictionary."""
 
-    __str__ = Exception.__str__  # that of KeyError adds quotes
+    __str__ = Exception.__str__  # KeyError adds quotes
 
 
 class ScreeWarning(UserWarning):

@@ -24,7 +24,7 @@ Found = TypeVar("Found")
 ATTEMPTS = 12
 WAIT = 0.005  # before the second attempt, twice as long before each further one [s]
 MOST_BYTES = 2**28  # largest file that is copied into memory
-TRIES = 50  # of a copy into memory, per attempt
+TRIES = 50  # tries of a copy into memory, per attempt
 
 
 def identity(path: pathlib.Path) -> tuple[int, int, int] | None:

@@ -60,7 +60,7 @@ class Panel:
     axis: str
     lines: list[Line]
     height: float = 3.0
-    unit: str = ""  # of ticks with a prefix; empty: plain numbers
+    unit: str = ""  # unit of ticks with a prefix; empty: plain numbers
     notes: list[str] = field(default_factory=list)
 
     def draw(self, along: np.ndarray, axes: Axes) -> None:
@@ -146,7 +146,7 @@ def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
         lines = [Line(history[name].values, label) for name, label in legends.items()]
         unit = history[next(iter(legends))].unit
         rows = sum(len(textwrap.wrap(line.label, LEGEND)) for line in lines if np.any(line.values))
-        height = max(3.0, LEGEND_LINE * rows)  # as high as its legend
+        height = max(3.0, LEGEND_LINE * rows)  # height of the legend
         found.append(Panel(title, axis, lines, height, unit=unit if wants_prefix(lines, unit) else ""))
     return found
 

@@ -49,11 +49,11 @@ def message(output: str) -> str:
     return "\n".join(dict.fromkeys(errors)) or "\n".join(lines[-LINES:]) or "no message"
 
 
-def call(words: Sequence[str | bytes | os.PathLike[str]], names: Mapping[str, str],
+def call(command: Sequence[str | bytes | os.PathLike[str]], names: Mapping[str, str],
          output: int | IO[str] | None = PIPE) -> str:
     """Returns the standard output of the program, unless `output` is a file or None (the terminal). names: replacements
     for paths in messages. Throws ScreeError with the program's message, RefusedError if no run was started."""
-    with subprocess.Popen(words, stdout=output, stderr=PIPE, encoding="utf-8", errors="replace") as process:
+    with subprocess.Popen(command, stdout=output, stderr=PIPE, encoding="utf-8", errors="replace") as process:
         try:
             printed, errors = process.communicate()
         except KeyboardInterrupt:  # the program gets the signal, too, and ends with a checkpoint

@@ -49,7 +49,7 @@ def write_lines(path: Path, lines: Sequence[str]) -> int:
 
 
 def word(value: Any) -> str:
-    """A value as for `--set`, without blanks, which separate the words of a line."""
+    """A value as for `--set`, without blanks, which separate the arguments of a line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
@@ -99,9 +99,9 @@ def is_done(line: str, folder: pathlib.Path) -> bool:
     record = read_record(folder)
     if record is None or record["run"]["status"] != "done":
         return False
-    words = str(record["run"]["command_line"]).split()[2:]
-    own = {k for k, each in enumerate(words) for k in (k, k + 1) if each in OWN_OPTIONS}
-    compared = [each for k, each in enumerate(words) if k not in own and each != "--overwrite"]
+    arguments = str(record["run"]["command_line"]).split()[2:]
+    own = {k for k, each in enumerate(arguments) for k in (k, k + 1) if each in OWN_OPTIONS}
+    compared = [each for k, each in enumerate(arguments) if k not in own and each != "--overwrite"]
     return compared == line.split() and (folder / "run_record.json").stat().st_mtime > path_of(line).stat().st_mtime
 
 
@@ -115,8 +115,8 @@ def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path)
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / LOG, "a", encoding="utf-8") as log:
         try:
-            words = map(given, line.split())
-            program.call([where, "run", *words, "--output", folder, "--backend", backend, *begun], {}, log)
+            arguments = map(given, line.split())
+            program.call([where, "run", *arguments, "--output", folder, "--backend", backend, *begun], {}, log)
         except ScreeError as error:
             log.write(f"{ERROR}{error}\n")
             raise
@@ -159,8 +159,8 @@ def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto"
 
 def settings(line: str) -> dict[str, str]:
     """The settings of a line of the list."""
-    words = line.split()
-    return dict(following.split("=", 1) for option, following in zip(words, words[1:]) if option == "--set")
+    arguments = line.split()
+    return dict(following.split("=", 1) for option, following in zip(arguments, arguments[1:]) if option == "--set")
 
 
 def number(text: str) -> float | str:

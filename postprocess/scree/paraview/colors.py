@@ -4,12 +4,12 @@ from paraview import simple
 
 from results import information
 
-SPEEDS = "ead9ae a9cdb0 45a3b3 2364a8 1b2560"  # of particles, from rest; each step is darker
+SPEEDS = "ead9ae a9cdb0 45a3b3 2364a8 1b2560"  # colours of particles by speed, from rest; each step is darker
 FORCES = "d9d9d9 f6c37c ee8a3a cc3d26 7a0c1e"
-PRESSURES = "f3b27a e66100 b52b10 5c0a14"  # of meshes, beginning near the colour of bodies
-CATEGORIES = "0072b2 f0e442 009e73 cc79a7 56b4e9 e69f00 606060 d55e00"  # of groups and materials; the palette repeats
+PRESSURES = "f3b27a e66100 b52b10 5c0a14"  # colours of meshes, beginning near the colour of bodies
+CATEGORIES = "0072b2 f0e442 009e73 cc79a7 56b4e9 e69f00 606060 d55e00"  # groups and materials; repeats
 BODY, INK, PALE, FLOOR = (0.90, 0.38, 0.0), (0.15, 0.15, 0.15), (0.6, 0.6, 0.6), (0.85, 0.85, 0.85)
-GRAIN = (0.92, 0.85, 0.68)  # of particles without a colour scale
+PARTICLE = (0.92, 0.85, 0.68)  # colour of particles without a scale
 UNITS = {"velocity": "m/s", "angular_velocity": "rad/s", "force": "N", "reaction": "N", "normal_force": "N",
          "pressure": "Pa", "shear": "Pa", "radius": "m", "mass": "kg", "impact_work": "J", "sliding_work": "J",
          "wear_depth": "m"}

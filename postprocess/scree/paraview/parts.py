@@ -8,7 +8,7 @@ PACKAGE = HERE.parent
 # Modules that draw a mechanism, each after its imports.
 DRAWING_FILES = [PACKAGE / "fields.py",
                  *(PACKAGE / "pictures" / f"{name}.py" for name in ("styles", "model", "mechanism")), HERE / "rods.py"]
-MODULES = ("results", "colors", "view")  # of this folder, each after its imports
+MODULES = ("results", "colors", "view")  # modules in this folder, each after its imports
 
 # Modules, because programmable filters replace max, all and others in the main file by those of numpy.
 START = """

@@ -22,7 +22,7 @@ if "results" not in sys.modules:  # contained in the file that scree-post paravi
     sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import results
-from colors import BODY, CATEGORIES, FLOOR, FORCES, GRAIN, INK, PALE, PRESSURES, SPEEDS, color_by, font_size, paint
+from colors import BODY, CATEGORIES, FLOOR, FORCES, INK, PALE, PARTICLE, PRESSURES, SPEEDS, color_by, font_size, paint
 from results import (NothingToShow, box_around, information, largest, open_series, resolved_deck, rounded_up,
                      sampled, times_of)
 
@@ -31,7 +31,7 @@ ROOM = 0.84  # fraction of the picture for the scene
 STRAYS = 1  # percentage of particles that may be outside the picture, at each end of each axis
 SEEN_THROUGH = 0.55  # opacity of particles if contacts are shown
 HOLLOW, GLASS = ("drum", "pipe", "funnel", "hopper", "file"), 0.35  # meshes that may hold particles; their opacity
-AZIMUTH, ELEVATION = 30, 26  # of the direction of view in 3D [degrees]
+AZIMUTH, ELEVATION = 30, 26  # direction of view in 3D [degrees]
 SLOW = 0.1  # smallest end of the speed scale over sqrt(g d): particles at rest have the lowest colour
 LINK_BALL = 0.014  # radius of the balls for forces in links over the longest side of the scene
 NAMED = {"group": "particles", "material": "materials"}  # fields that count the elements of a list of the deck
@@ -133,7 +133,7 @@ class Scene:
         if self.scaled == "particles":
             self.color(display, self.field, SPEEDS)
         else:
-            paint(display, GRAIN)
+            paint(display, PARTICLE)
         if "contacts" in self.sources:
             display.Opacity = SEEN_THROUGH
 

@@ -58,11 +58,11 @@ class FlatSurfaces:
 
     def __init__(self, surfaces, axes, flatten):
         self.surfaces, self.flatten, self.lines = surfaces, flatten, {}
-        for whose, color in SURFACE_COLORS.items() if surfaces else ():
-            self.lines[whose] = LineCollection([], colors=color, linewidths=1.0, zorder=1.5)
-            axes.add_collection(self.lines[whose], autolim=False)
+        for owner, color in SURFACE_COLORS.items() if surfaces else ():
+            self.lines[owner] = LineCollection([], colors=color, linewidths=1.0, zorder=1.5)
+            axes.add_collection(self.lines[owner], autolim=False)
 
     def draw(self, snapshot):
         lines = self.surfaces.lines(snapshot) if self.surfaces else {}
-        for whose, found in lines.items():
-            self.lines[whose].set_segments(self.flatten(found))
+        for owner, found in lines.items():
+            self.lines[owner].set_segments(self.flatten(found))

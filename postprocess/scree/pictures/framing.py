@@ -7,8 +7,8 @@ from scree.pictures.mechanism import Mechanism
 
 LONGEST_SIDE = 7.5  # longest side of the axes [inch]
 SAMPLED = 40  # snapshots that determine the region of moving bodies
-AZIMUTH, ELEVATION = 30, 26  # of the direction of view in 3D [degrees]
-NEAR = 0.2  # of the longest side of a picture: distance up to which sides of the domain are shown, too
+AZIMUTH, ELEVATION = 30, 26  # direction of view in 3D [degrees]
+NEAR = 0.2  # distance over the longest side of a picture up to which sides of the domain are shown, too
 IN_PLANE = np.array([1.0, 1.0, 0.0])
 
 

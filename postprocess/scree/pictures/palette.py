@@ -10,7 +10,7 @@ __all__ = ["BODY_COLOR", "CATEGORIES", "COLORED_OPACITY", "EDGE_COLOR", "GLASS",
 
 # From sand colour at rest to dark blue. Luminance decreases, for print and colour-blind readers.
 SPEED_MAP = LinearSegmentedColormap.from_list("speed", SPEEDS)
-SURFACE_MAP = "YlOrRd"  # of meshes coloured by a field
+SURFACE_MAP = "YlOrRd"  # colour map of meshes coloured by a field
 INK = "#262626"  # text
 PALE_INK = "#6a6a6a"
 SURFACE_COLORS = {"walls": "#8d939b", "bodies": BODY_COLOR}

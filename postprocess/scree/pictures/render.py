@@ -184,7 +184,7 @@ class PictureOptions:
 
     view: Sequence[float] | None = None  # part of the plane, planar runs only [m]
     axes: bool = False  # coordinates instead of a scale bar, planar runs only
-    opacity: float | None = None  # of meshes on bodies; None: opaque, except meshes that hold particles
+    opacity: float | None = None  # opacity of meshes on bodies; None: opaque, except meshes that hold particles
     color: str = SPEED  # field by which particles are coloured
     fastest: float | None = None  # upper end of the speed scale [m/s]
     surfaces: str | None = None  # field by which meshes are coloured

@@ -149,16 +149,16 @@ class SphereScene:
         surfaces = self.run.surfaces
         points, lines = surfaces.points(snapshot), surfaces.lines(snapshot)
         values = surfaces.values(snapshot) if surfaces.field else {}
-        for whose, triangles in surfaces.triangles.items():
-            color = rgb(SURFACE_COLORS[whose])
+        for owner, triangles in surfaces.triangles.items():
+            color = rgb(SURFACE_COLORS[owner])
             for glass in (False, True):
-                rows = surfaces.glass[whose] == glass
+                rows = surfaces.glass[owner] == glass
                 opacity = GLASS if glass else 1.0
-                if whose == "bodies" and self.opacity is not None:
+                if owner == "bodies" and self.opacity is not None:
                     opacity = self.opacity
-                colors = self.field_colors(values[whose][rows], opacity) if values else None
-                self.renderer.set_triangles(f"{whose}, {glass}", points, triangles[rows], color, opacity, colors)
-            self.renderer.set_lines(f"edges of {whose}", lines[whose], 0.55 * np.array(color), 0.5 * TUBE * self.extent)
+                colors = self.field_colors(values[owner][rows], opacity) if values else None
+                self.renderer.set_triangles(f"{owner}, {glass}", points, triangles[rows], color, opacity, colors)
+            self.renderer.set_lines(f"edges of {owner}", lines[owner], 0.55 * np.array(color), 0.5 * TUBE * self.extent)
 
     def field_colors(self, values, opacity):
         """Colours [n][4] of 0 to 255 of triangles, with an opacity that grows with the value."""

@@ -32,11 +32,11 @@ class Surfaces:
         self.limit = 0.0
         triangles, body = series.triangles(0), series.rows(0, "body")
         self._rows = {"walls": body < 0, "bodies": body >= 0}
-        self.triangles = {whose: triangles[rows] for whose, rows in self._rows.items()}
+        self.triangles = {owner: triangles[rows] for owner, rows in self._rows.items()}
         through = np.array([*holding, False])[series.rows(0, "surface")]
-        self.glass = {whose: through[rows] for whose, rows in self._rows.items()}
+        self.glass = {owner: through[rows] for owner, rows in self._rows.items()}
         points = series.rows(0, POSITION)
-        self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
+        self._edges = {owner: sharp_edges(points, found) for owner, found in self.triangles.items()}
 
     def color_by(self, field, snapshots):
         """The scale ends at the largest 99th percentile of the positive values in these snapshots."""
@@ -58,7 +58,7 @@ class Surfaces:
     def values(self, snapshot):
         """Values of the field by triangle, for walls and for bodies."""
         values = self._all_values(snapshot)
-        return {whose: values[rows] for whose, rows in self._rows.items()}
+        return {owner: values[rows] for owner, rows in self._rows.items()}
 
     def points(self, snapshot):
         return self._series.rows(snapshot, POSITION)
@@ -66,7 +66,7 @@ class Surfaces:
     def lines(self, snapshot):
         """Edges [n][2][3], for walls and for bodies."""
         points = self.points(snapshot)
-        return {whose: points[edges] for whose, edges in self._edges.items()}
+        return {owner: points[edges] for owner, edges in self._edges.items()}
 
     def bounds(self, snapshots):
         boxes = [self.points(snapshot) for snapshot in snapshots]

@@ -23,7 +23,7 @@ from scree.urdf.tree import Part, Tree, build_tree, make_inertia_possible
 
 DECK_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "translational", "fixed": "fixed",
               "planar": "planar"}
-STOP_DEFLECTION = 0.02  # of a stop under the largest effort of the drive of the joint [rad or m]
+STOP_DEFLECTION = 0.02  # deflection of a stop under the largest effort of the drive [rad or m]
 STICTION = 1e-3  # deflection of the stiction spring at the limit [rad or m]; damping time of stuck joints [s]
 MATERIAL = "robot"
 

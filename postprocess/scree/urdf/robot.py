@@ -39,7 +39,7 @@ class Link:
     mass: float
     center: np.ndarray
     inertia: np.ndarray
-    geometry: list[Geometry]  # of the requested kind
+    geometry: list[Geometry]  # geometries of the requested kind
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Joint:
     parent: str
     child: str
     pose: Pose
-    axis: np.ndarray  # of length 1, in the joint's frame
+    axis: np.ndarray  # unit vector in the joint frame
     lower: float  # [rad or m]; infinite: no limit; equal to the upper one: fixed there
     upper: float
     effort: float  # largest effort of the drive [N m or N]; 0: not given

@@ -13,7 +13,7 @@ import numpy as np
 from scree.errors import ScreeError
 
 LEAST_HEIGHT = 1e-12  # smallest height of a triangle over its longest side; below it is degenerate
-DEPTH = 1e-5  # of the extent: depth of the test points behind a triangle
+DEPTH = 1e-5  # depth of the test points behind a triangle over the extent
 POINTS = 16  # number of test points per part
 MOST_WORK = 3e8  # largest number of pairs of a test point and a triangle
 
@@ -38,7 +38,7 @@ def edges_of(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def parts_of(edge: np.ndarray) -> np.ndarray:
     """For each triangle of a closed surface the number of its connected part."""
-    pairs = np.argsort(edge, kind="stable").reshape(-1, 2) % (len(edge) // 3)  # of triangles
+    pairs = np.argsort(edge, kind="stable").reshape(-1, 2) % (len(edge) // 3)  # pairs of triangles
     part = np.arange(len(edge) // 3)
     while True:
         before = part.copy()

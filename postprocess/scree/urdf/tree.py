@@ -21,7 +21,7 @@ class Part:
 
     name: str
     pose: Pose  # at t = 0
-    links: list[tuple[Link, Pose]] = field(default_factory=list)  # with their frames in the frame of the part
+    links: list[tuple[Link, Pose]] = field(default_factory=list)  # links with their frames in the frame of the part
 
     def mass_properties(self) -> tuple[float, np.ndarray, np.ndarray]:
         """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the part's frame."""
@@ -42,7 +42,7 @@ class Part:
 @dataclass(frozen=True)
 class Tree:
     parts: list[Part]  # the ground is the first
-    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint frame in it, the child's part
+    joints: list[tuple[Joint, Part, Pose, Part]]  # joint, parent's part, joint frame in it, child's part
     held: Part | None  # part of a root with mass that is fixed to the ground
     coordinates: dict[str, float]  # initial joint coordinates [rad or m]
 
