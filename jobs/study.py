@@ -37,7 +37,7 @@ KEYS = {
     "walls.belt.surface_velocity": [[0.5, 0.0, 0.0], [1.0, 0.0, 0.0]],
 }
 MEASURES = {
-    "escaped": lambda run: run.history["step/left"][-1],  # particles that the belt has carried out of the domain
+    "escaped": lambda run: run.history["step/particles_escaped"][-1],  # particles that the belt has carried out
     "belt force [N]": lambda run: np.mean(run.history["contacts/belt/fx"]),
     "belt work [J]": lambda run: run.history["energy/driver_work"][-1],
 }

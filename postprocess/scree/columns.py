@@ -51,7 +51,7 @@ def column_label(name: str, unit: str, description: str) -> ColumnLabel:
     quaternion = re.fullmatch(r"e([0-3])", last)
     if quaternion:
         component = "wxyz"[int(quaternion[1])]
-    if what == "its rate":  # rate of the preceding column
+    if what in ("its rate", "rate of the coordinate"):  # the first one in results of earlier versions
         what = f"rate of {(' '.join(owner[-1:] + [last.removesuffix('rate').strip('_')])).strip()}"
         owner = []
     return ColumnLabel(what, "/".join(owner), component, unit)

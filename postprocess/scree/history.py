@@ -20,14 +20,17 @@ if TYPE_CHECKING:
     import pandas
 
 TIME = "step/time"
+FORMER = {"step/left": "step/particles_escaped"}  # names of columns in files of earlier versions, still understood
 
 
 @dataclass(frozen=True)
 class HistoryFile:
-    """A history.h5: the labels (unit, description) of its columns by their paths, and its times [rows] [s]."""
+    """A history.h5: the labels (unit, description) of its columns by their names, their paths in the file where those
+    are other ones, and its times [rows] [s]."""
 
     path: pathlib.Path
     labels: dict[str, tuple[str, str]]
+    paths: dict[str, str]
     times: np.ndarray
 
     @staticmethod
@@ -37,7 +40,9 @@ class HistoryFile:
             if TIME not in found:
                 raise ScreeError(f"{path}: has no column {TIME}")
             rows = min(len(dataset) for dataset in found.values())
-            return HistoryFile(path, {name: files.label(d) for name, d in found.items()}, found[TIME][:rows])
+            paths = {FORMER[name]: name for name in found if name in FORMER}
+            labels = {FORMER.get(name, name): files.label(d) for name, d in found.items()}
+            return HistoryFile(path, labels, paths, found[TIME][:rows])
 
         return files.read(path, take)
 
@@ -77,14 +82,15 @@ class History(Mapping[str, Quantity]):
         return self.read(name)[name]
 
     def read(self, *names: str) -> dict[str, Quantity]:
-        """Columns of these names, or all columns, with one access to the files. Throws MissingError for a missing
-        one."""
+        """Columns of these names, or all, read together. Former names are understood. Throws MissingError where one is
+        not there."""
+        present = {name: name if name in self._labels else FORMER.get(name, name) for name in names or self._labels}
         for name in names:
-            if name not in self._labels:
+            if present[name] not in self._labels:
                 near = [path for path in self if name.split("/")[-1] in path][:5]
                 raise MissingError(f"no column {name}" + (f"; there are {', '.join(near)}" if near else ""))
-        self._load(names or self._labels)
-        return {name: Quantity(self._read[name], *self._labels[name]) for name in names or self._labels}
+        self._load(present.values())
+        return {name: Quantity(self._read[now], *self._labels[now]) for name, now in present.items()}
 
     def _load(self, names: Iterable[str]) -> None:
         wanted = [name for name in dict.fromkeys(names) if name not in self._read]
@@ -92,9 +98,10 @@ class History(Mapping[str, Quantity]):
             return
         values: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
         for file, rows in self._parts:
+            paths = [file.paths.get(name, name) for name in wanted]
 
-            def take(opened: h5py.File, count: int = rows) -> list[np.ndarray]:
-                return [opened[name][:count] for name in wanted]
+            def take(opened: h5py.File, count: int = rows, paths: Sequence[str] = tuple(paths)) -> list[np.ndarray]:
+                return [opened[path][:count] for path in paths]
 
             for name, column in zip(wanted, files.read(file.path, take)):
                 if len(column) < rows:
@@ -103,15 +110,15 @@ class History(Mapping[str, Quantity]):
         self._read.update({name: np.concatenate(columns) for name, columns in values.items()})
 
     def names(self, *patterns: str) -> list[str]:
-        """Columns that match a pattern ("contacts/*/fx", or a name); throws ScreeError if there is none."""
+        """Columns whose paths a pattern fits ("contacts/*/fx", or a name); throws ScreeError where none does."""
         found: list[str] = []
         for pattern in patterns:
-            matching = fnmatch.filter(self, pattern)
-            if not matching:
+            fitting = fnmatch.filter(self, FORMER.get(pattern, pattern))
+            if not fitting:
                 near = difflib.get_close_matches(pattern, self, cutoff=0.7)
                 raise ScreeError(f"no column {pattern}; " + (f"did you mean {' or '.join(near)}?" if near else
                                                              f"there are: {', '.join(self) or 'none'}"))
-            found += [name for name in matching if name not in found]
+            found += [name for name in fitting if name not in found]
         return found
 
     def to_dataframe(self, *patterns: str) -> pandas.DataFrame:

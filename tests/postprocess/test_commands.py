@@ -112,7 +112,7 @@ class PlotTest(CommandTest):
         self.assertGreater(path.stat().st_size, 20000)
         self.assertIn("error: no column contact/net/fy; did you mean contacts/net/fy",
                       self.command(WRONG, "plot", NET, "--x", "contact/net/fy"))
-        self.assertIn("energy/elastic_* fits 2 columns, and the horizontal axis takes one: energy/elastic_contacts",
+        self.assertIn("energy/elastic_* matches 2 columns, and the horizontal axis takes one: energy/elastic_contacts",
                       self.command(WRONG, "plot", NET, "--x", "energy/elastic_*"))
 
     def test_files_and_what_is_refused(self):
@@ -136,8 +136,8 @@ class WordsTest(unittest.TestCase):
                 ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
                 ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
                 ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
-                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
-                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
+                ("coordinates/axle/angle_rate", "rad/s", "rate of the coordinate", "rate of axle angle"),
+                ("step/contacts", "1", "contacts, including those with walls", "contacts")):
             self.assertEqual(column_label(name, unit, description).legend(True), legend)
         self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
 
@@ -191,8 +191,8 @@ class CompareTest(CommandTest):
             del file["energy/total"]
         (other / "bodies.vtkhdf").unlink()
         said = self.command(DIFFERENT, "compare", NET, other, "--tolerance", "1")
-        self.assertIn(f"energy/total: in {NET} alone", said)
-        self.assertIn(f"bodies: in {NET} alone", said)
+        self.assertIn(f"energy/total: in {NET} only", said)
+        self.assertIn(f"bodies: in {NET} only", said)
         self.assertIn("drum", self.command(DIFFERENT, "compare", NET, DRUM))
 
     def test_times_that_only_one_run_has(self):
