@@ -98,9 +98,9 @@ class Run:
 
     @property
     def status(self) -> str:
-        """"done", the reason of the end, or "going on"."""
+        """"done", the reason of the end, or "running"."""
         if self.is_going_on:
-            return "going on"
+            return "running"
         return str(self.record["run"]["status"]) if self.record else "ended without a record: killed?"
 
     @property

@@ -66,7 +66,7 @@ class PictureTest(CommandTest):
 
     def test_what_is_refused(self):
         self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
-        self.assertIn("for runs in the plane", self.command(WRONG, "picture", DRUM, "--axes"))
+        self.assertIn("for planar runs", self.command(WRONG, "picture", DRUM, "--axes"))
 
 
 class ColorTest(CommandTest):

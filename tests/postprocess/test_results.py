@@ -348,7 +348,7 @@ class GoingOnTest(FolderTest):
     def test_a_lock_says_that_a_run_goes_on(self):
         run(self.folder / "out")
         here = pathlib.Path("/proc/sys/kernel/hostname").read_text().strip()
-        for host, process, status in ((here, os.getpid(), "going on"), ("elsewhere", 1, "going on"),
+        for host, process, status in ((here, os.getpid(), "running"), ("elsewhere", 1, "running"),
                                       (here, 2**22 + 1, "done")):
             (self.folder / "out/scree.lock").write_text(f"host {host}\nprocess {process}\n")
             self.assertEqual(scree.open(self.folder / "out").status, status)
