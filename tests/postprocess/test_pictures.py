@@ -48,7 +48,7 @@ class PictureTest(unittest.TestCase):
                 continue
             deck = tomllib.loads((ROOT / f"input/{picture.deck}.toml").read_text())
             settings = dict(setting.split("=", 1) for setting in picture.settings)
-            words = dict(zip(picture.words[::2], picture.words[1::2]))
+            words = dict(zip(picture.options[::2], picture.options[1::2]))
             time = float(words.get("--time", settings.get("time.end", deck["time"]["end"])))
             with PIL.Image.open(PICTURES / name) as image:
                 said = image.text
