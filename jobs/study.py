@@ -38,8 +38,8 @@ KEYS = {
 }
 MEASURES = {
     "escaped": lambda run: run.history["step/particles_escaped"][-1],  # particles that the belt has carried out
-    "belt force [N]": lambda run: np.mean(run.history["contacts/belt/fx"]),
-    "belt work [J]": lambda run: run.history["energy/driver_work"][-1],
+    "pull [N]": lambda run: np.mean(run.history["contacts/belt/fx"]),  # on the belt
+    "work [J]": lambda run: run.history["energy/driver_work"][-1],
 }
 
 

@@ -83,9 +83,9 @@ def innermost(error: ValidationError) -> list[ValidationError]:
 
 
 def unknown_keys(error: ValidationError, path: str) -> list[str]:
-    known = list(error.schema["properties"])
+    known = [key for key, schema in error.schema["properties"].items() if not schema.get("deprecated")]
     found = []
-    for key in (key for key in error.instance if key not in known):
+    for key in (key for key in error.instance if key not in error.schema["properties"]):
         near = difflib.get_close_matches(key, known, 1)
         hint = f'; did you mean "{near[0]}"?' if near else f"; known: {', '.join(known)}"
         where = f"{path}.{key}" if path else key

@@ -56,9 +56,11 @@ auto naming_deck(const std::string& deck, const Action& action) {
   }
 }
 
-Deck checked_deck(const Order& order) {
+// Says which names in the deck are those of earlier versions.
+Deck checked_deck(const Order& order, Log& log) {
   Deck deck = load_deck(order.deck, order.overrides);
   check_output_fields(deck);
+  for (const std::string& line : deck.former_names) log.info("former name: " + line);
   return deck;
 }
 
@@ -95,7 +97,7 @@ ExitCode run(const Order& order) {
   catch_signals();  // again: the MPI library has handlers of its own
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  Deck deck = checked_deck(order);
+  Deck deck = checked_deck(order, log);
   const std::string directory = output_directory(order, deck);
   ranks.on_root([&] { ResultsFolder({directory, order.restart, order.overwrite}).check(); });
   std::vector<ChosenValue> chosen;
@@ -148,7 +150,7 @@ ExitCode check(const Order& order) {
   Log log(!ranks.is_root());
   std::string drawer;
   if (draws) ranks.on_root([&] { drawer = find_scree_post(); });
-  Deck deck = checked_deck(order);
+  Deck deck = checked_deck(order, log);
   std::vector<ChosenValue> chosen;
   Model model = build_model(deck, log, RanksShare(ranks), chosen);
   enter_chosen(chosen, deck);

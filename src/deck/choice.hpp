@@ -1,4 +1,4 @@
-// A choice of the deck: the words that a key takes, each beside the value of an enum that it stands for.
+// Choices of the deck: the words that a key accepts, and the enum values for which they stand.
 #pragma once
 
 #include <array>
@@ -15,13 +15,17 @@ struct Word {
   Value value;
 };
 
-// All words of an enum, in the order of messages and manual: specialised beside the enum (deck/choices.hpp).
+// All words of an enum, in the order in which messages and the manual list them. Specialised next to the enum
+// (deck/choices.hpp).
 template <class Value>
 inline constexpr std::array<Word<Value>, 0> kNoWords{};
 template <class Value>
 inline constexpr auto kWords = kNoWords<Value>;
+// Words of earlier versions that are still read. Specialised where there are any.
+template <class Value>
+inline constexpr auto kFormerWords = kNoWords<Value>;
 
-// Whether there are words, and no word and no value stands there twice.
+// Whether the enum has words, and every word and every value occurs once.
 template <class Value>
 constexpr bool words_are_distinct() {
   for (const Word<Value>& one : kWords<Value>)
@@ -38,6 +42,13 @@ std::vector<std::string> words_of() {
   return words;
 }
 
+struct FormerWord {
+  std::string text, now;
+};
+
+template <class Value>
+std::vector<FormerWord> former_words_of();
+
 // Throws std::logic_error where the value has no word.
 template <class Value>
 std::string word_of(Value value) {
@@ -46,12 +57,20 @@ std::string word_of(Value value) {
   throw std::logic_error("deck: no word for value " + std::to_string(static_cast<int>(value)));
 }
 
-// Throws std::logic_error where no value has this word: never another value.
+// Throws std::logic_error where no value has this word.
 template <class Value>
 Value value_of(std::string_view text) {
   for (const Word<Value>& word : kWords<Value>)
     if (word.text == text) return word.value;
   throw std::logic_error("deck: no value for the word \"" + std::string(text) + "\"");
+}
+
+template <class Value>
+std::vector<FormerWord> former_words_of() {
+  std::vector<FormerWord> words;
+  for (const Word<Value>& former : kFormerWords<Value>)
+    words.push_back({std::string(former.text), word_of(former.value)});
+  return words;
 }
 
 }  // namespace scree

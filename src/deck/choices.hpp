@@ -1,11 +1,11 @@
-// Every choice of the deck, once: the enum that the model keeps, and its words.
+// All choices of the deck: the enums that the model stores, and their words.
 #pragma once
 
 #include "deck/choice.hpp"
 
 namespace scree {
 
-// ---- the space
+// ---- the domain
 // -----------------------------------------------------------------------------------------------
 
 enum class Boundary { open, wall, periodic };
@@ -14,16 +14,18 @@ inline constexpr auto kWords<Boundary> = std::to_array<Word<Boundary>>({{"open",
                                                                         {"wall", Boundary::wall},
                                                                         {"periodic", Boundary::periodic}});
 
-// What happens to a particle whose centre leaves through an open side.
+// Treatment of a particle whose centre leaves through an open side.
 enum class Leaving {
-  error,   // the simulation fails and names it
-  remove,  // taken out of the simulation, counted, its energy booked as carried out
-  drift    // counted; goes on under gravity alone, kept out of the pair search
+  error,   // the simulation fails with a message that names the particle
+  remove,  // removed and counted; its energy is accounted as carried out
+  drift    // counted; ballistic: moves under gravity alone, excluded from contact detection
 };
 template <>
 inline constexpr auto kWords<Leaving> = std::to_array<Word<Leaving>>({{"error", Leaving::error},
                                                                       {"remove", Leaving::remove},
-                                                                      {"drift", Leaving::drift}});
+                                                                      {"ballistic", Leaving::drift}});
+template <>
+inline constexpr auto kFormerWords<Leaving> = std::to_array<Word<Leaving>>({{"drift", Leaving::drift}});
 
 // ---- time
 // ----------------------------------------------------------------------------------------------------
@@ -38,25 +40,28 @@ template <>
 inline constexpr auto kWords<ParticleIntegrator> = std::to_array<Word<ParticleIntegrator>>(
     {{"hht", ParticleIntegrator::hht}, {"velocity-verlet", ParticleIntegrator::velocity_verlet}});
 
-// How an implicit step meets a contact that opens or closes within it.
+// Treatment of a contact that opens or closes within an implicit step.
 enum class ContactEvents {
-  resolved,    // it acts over the part of the step that it is closed
-  end_of_step  // the force at the end of the step stands for all of it, as in the paper
+  resolved,    // the force acts over the part of the step in which the contact is closed
+  end_of_step  // the force at the end of the step acts over the whole step, as in the paper
 };
 template <>
 inline constexpr auto kWords<ContactEvents> = std::to_array<Word<ContactEvents>>(
     {{"resolved", ContactEvents::resolved}, {"end-of-step", ContactEvents::end_of_step}});
 
-// Rows of the joints and drivers that repeat others.
+// Redundant constraint rows of joints and drivers.
 enum class RedundantRows {
-  error,  // the run is refused and names them
-  share   // they share the load: the least reactions of those that hold the motion
+  error,  // the run is refused; the message names the rows
+  share   // minimum-norm reactions: the least ones that hold the motion
 };
 template <>
-inline constexpr auto kWords<RedundantRows> =
-    std::to_array<Word<RedundantRows>>({{"error", RedundantRows::error}, {"share", RedundantRows::share}});
+inline constexpr auto kWords<RedundantRows> = std::to_array<Word<RedundantRows>>(
+    {{"error", RedundantRows::error}, {"minimum-norm", RedundantRows::share}});
+template <>
+inline constexpr auto kFormerWords<RedundantRows> =
+    std::to_array<Word<RedundantRows>>({{"share", RedundantRows::share}});
 
-// Of the particles on a GPU. The CPU always computes in full precision.
+// Precision of the particles on a GPU. The CPU always computes in full precision.
 enum class Precision {
   full,  // double throughout
   mixed  // state and sums at about double, contact forces in single
@@ -65,10 +70,10 @@ template <>
 inline constexpr auto kWords<Precision> = std::to_array<Word<Precision>>({{"double", Precision::full},
                                                                           {"mixed", Precision::mixed}});
 
-// Of surfaces with a work of adhesion.
+// Adhesion model of surfaces with a work of adhesion.
 enum class Adhesion {
-  jkr,  // a neck that holds beyond touch: Johnson, Kendall, Roberts
-  dmt   // a constant pull while they touch: Derjaguin, Muller, Toporov
+  jkr,  // the contact persists under tension up to the pull-off force: Johnson, Kendall, Roberts
+  dmt   // a constant adhesive force while the surfaces touch: Derjaguin, Muller, Toporov
 };
 template <>
 inline constexpr auto kWords<Adhesion> = std::to_array<Word<Adhesion>>({{"jkr", Adhesion::jkr},
@@ -76,14 +81,15 @@ inline constexpr auto kWords<Adhesion> = std::to_array<Word<Adhesion>>({{"jkr", 
 
 // The bodies' velocities at t = 0.
 enum class StartVelocities {
-  given,      // the run is refused where they contradict joints and drivers
-  consistent  // changed to agree with them
+  given,      // the run is refused where the velocities contradict joints and drivers
+  consistent  // the velocities are corrected to agree with joints and drivers
 };
 template <>
 inline constexpr auto kWords<StartVelocities> = std::to_array<Word<StartVelocities>>(
     {{"given", StartVelocities::given}, {"consistent", StartVelocities::consistent}});
 
-// Of a pair of materials that the deck does not give: how coefficients follow from those of each with itself.
+// How the coefficients of a pair of materials that the deck does not give follow from the pairs of each
+// material with itself.
 enum class Mixing { none, geometric, arithmetic, harmonic, minimum, maximum };
 template <>
 inline constexpr auto kWords<Mixing> = std::to_array<Word<Mixing>>({{"none", Mixing::none},
@@ -97,14 +103,14 @@ inline constexpr auto kWords<Mixing> = std::to_array<Word<Mixing>>({{"none", Mix
 // --------------------------------------------------------------------------------------------------
 
 enum class BodyKind {
-  planar,  // moves in a plane z = const, turns about z
+  planar,  // moves in a plane z = const, rotates about z
   spatial
 };
 template <>
 inline constexpr auto kWords<BodyKind> = std::to_array<Word<BodyKind>>({{"planar", BodyKind::planar},
                                                                         {"spatial", BodyKind::spatial}});
 
-// Homogeneous solids that a body is made of; axes along z.
+// Homogeneous solids that define a body's mass properties; axes along z.
 enum class SolidKind { sphere, box, cylinder, capsule, mesh };
 template <>
 inline constexpr auto kWords<SolidKind> = std::to_array<Word<SolidKind>>({{"sphere", SolidKind::sphere},
@@ -113,11 +119,11 @@ inline constexpr auto kWords<SolidKind> = std::to_array<Word<SolidKind>>({{"sphe
                                                                           {"capsule", SolidKind::capsule},
                                                                           {"mesh", SolidKind::mesh}});
 
-// What a mesh that is a solid stands for.
+// The solid that a mesh stands for.
 enum class MeshInertia {
-  exact,   // what it encloses
-  convex,  // what its convex hull encloses
-  shell    // a skin on it
+  exact,   // the volume that the mesh encloses
+  convex,  // the volume of its convex hull
+  shell    // a thin shell on the mesh
 };
 template <>
 inline constexpr auto kWords<MeshInertia> = std::to_array<Word<MeshInertia>>({{"exact", MeshInertia::exact},
@@ -163,7 +169,7 @@ enum class JointKind {
   distance,           // the two points keep their distance
   spherical,          // the two points coincide
   cylindrical,        // body 2's point stays on body 1's axis, the axes are parallel
-  screw,              // the same, and the displacement along the axis is lead times the turns about it
+  screw,              // as cylindrical, and the displacement along the axis is lead times the revolutions
   universal,          // the two points coincide, an arm of either body perpendicular to that of the other one
   constant_velocity,  // the two points coincide, equal rates of rotation about two axes
   planar,             // body 2's point stays in body 1's plane, the normals are parallel
@@ -191,13 +197,13 @@ inline constexpr auto kWords<JointKind> =
                                     {"perpendicular", JointKind::perpendicular},
                                     {"orientation", JointKind::orientation}});
 
-// What a joint leaves free that can be driven, pushed and coupled.
+// The coordinates of a joint, on which drivers, motors, springs and couplers act.
 enum class JointCoordinate {
-  angle,         // of body 2 less that of body 1, about the axis
-  displacement,  // of body 2's point along body 1's axis
-  length,        // from body 1's point to body 2's
-  angle_1,       // of a universal joint: of its cross against body 1, about body 1's arm
-  angle_2        // of body 2 against the cross, about body 2's arm
+  angle,         // angle of body 2 minus that of body 1, about the axis
+  displacement,  // displacement of body 2's point along body 1's axis
+  length,        // distance from body 1's point to body 2's point
+  angle_1,       // universal joint: rotation of the cross relative to body 1, about body 1's arm
+  angle_2        // universal joint: rotation of body 2 relative to the cross, about body 2's arm
 };
 template <>
 inline constexpr auto kWords<JointCoordinate> =
@@ -207,24 +213,26 @@ inline constexpr auto kWords<JointCoordinate> =
                                           {"angle_1", JointCoordinate::angle_1},
                                           {"angle_2", JointCoordinate::angle_2}});
 
-// What makes the effort of a motor.
+// How the effort (generalized force) of a motor is determined.
 enum class MotorKind {
   effort,   // a function of time
-  line,     // falls in a straight line with the joint's rate
-  speed,    // a controller that wants a rate
-  position  // a servo: a controller that wants a position
+  line,     // linear torque-speed curve: falls linearly with the joint's rate
+  speed,    // a controller of the rate
+  position  // a servo: a controller of the position
 };
 template <>
 inline constexpr auto kWords<MotorKind> = std::to_array<Word<MotorKind>>({{"effort", MotorKind::effort},
-                                                                          {"line", MotorKind::line},
+                                                                          {"torque-speed", MotorKind::line},
                                                                           {"speed", MotorKind::speed},
                                                                           {"position", MotorKind::position}});
+template <>
+inline constexpr auto kFormerWords<MotorKind> = std::to_array<Word<MotorKind>>({{"line", MotorKind::line}});
 
-// What moves a cylinder.
+// How the force of a cylinder is determined.
 enum class CylinderKind {
   force,  // a function of time
-  speed,  // a controller that wants a rate of the length
-  length  // a servo that wants a length
+  speed,  // a controller of the rate of the length
+  length  // a servo: a controller of the length
 };
 template <>
 inline constexpr auto kWords<CylinderKind> = std::to_array<Word<CylinderKind>>(
@@ -239,7 +247,7 @@ inline constexpr auto kWords<CouplerKind> =
                                       {"differential", CouplerKind::differential},
                                       {"sum", CouplerKind::sum}});
 
-// How a wall moves.
+// Prescribed motion of a wall.
 enum class WallMotionKind { translation, rotation };
 template <>
 inline constexpr auto kWords<WallMotionKind> = std::to_array<Word<WallMotionKind>>(
@@ -254,12 +262,12 @@ inline constexpr auto kWords<TimeFunctionKind> =
                                            {"step", TimeFunctionKind::step},
                                            {"table", TimeFunctionKind::table}});
 
-// How a table is read between its points.
+// Interpolation between the points of a table.
 enum class Interpolation {
   natural,   // cubic spline, class C2; second derivative 0 at both ends
   clamped,   // cubic spline, class C2; the given rates at both ends
-  monotone,  // quintic, class C2; rises, falls and stands still only where the points do, and is local
-  linear     // class C0: its rate jumps, so no motion can follow it
+  monotone,  // quintic pieces, class C2; monotone between the points, and local
+  linear     // class C0: the rate jumps, so it is not allowed for motions
 };
 template <>
 inline constexpr auto kWords<Interpolation> =
@@ -271,7 +279,7 @@ inline constexpr auto kWords<Interpolation> =
 // ---- output
 // --------------------------------------------------------------------------------------------------
 
-// What snapshots tell of each triangle of the meshes.
+// Fields that snapshots have of each triangle of the meshes.
 enum class SurfaceField { pressure, shear, impact_work, sliding_work, wear_depth };
 template <>
 inline constexpr auto kWords<SurfaceField> =
@@ -284,7 +292,7 @@ inline constexpr auto kWords<SurfaceField> =
 // ---- particles
 // -----------------------------------------------------------------------------------------------
 
-// Where a group of particles comes from.
+// How the positions of a group of particles are given.
 enum class GroupKind { list, row, lattice, random, file };
 template <>
 inline constexpr auto kWords<GroupKind> = std::to_array<Word<GroupKind>>({{"list", GroupKind::list},
@@ -304,7 +312,7 @@ inline constexpr auto kWords<DistributionKind> =
 // ---- ranks and devices
 // ---------------------------------------------------------------------------------------
 
-// How ghosts travel between the GPUs of several ranks.
+// How ghost data are sent between the GPUs of several ranks.
 enum class Transport { automatic, cuda_aware, nccl, staged };
 template <>
 inline constexpr auto kWords<Transport> = std::to_array<Word<Transport>>({{"auto", Transport::automatic},
@@ -313,7 +321,7 @@ inline constexpr auto kWords<Transport> = std::to_array<Word<Transport>>({{"auto
                                                                           {"nccl", Transport::nccl},
                                                                           {"staged", Transport::staged}});
 
-// Where the particles of a run are computed: --backend of the command line.
+// The device that computes the particles of a run: --backend of the command line.
 enum class BackendChoice { automatic, cpu, cuda };
 template <>
 inline constexpr auto kWords<BackendChoice> = std::to_array<Word<BackendChoice>>(

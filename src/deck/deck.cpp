@@ -16,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/file_kinds.hpp"
 #include "base/input_file.hpp"
+#include "deck/former_names.hpp"
 #include "deck/nesting.hpp"
 #include "deck/overrides.hpp"
 #include "deck/reader.hpp"
@@ -24,7 +25,7 @@ namespace scree {
 
 namespace {
 
-// What toml++ says of a text without quotes, by how it begins.
+// Beginnings of toml++'s messages about a text without quotes.
 constexpr std::array<std::string_view, 3> kBareWords = {
     "could not determine value type", "parsing boolean: expected", "parsing floating-point: expected"};
 
@@ -57,24 +58,29 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
     throw InputError(fmt::format("{}:{}: a key of more than {} parts", path, line, kMostKeyParts));
   try {
     toml::table source = toml::parse(text, std::string_view(path));
-    for (const std::string& override_text : overrides) apply_override(source, override_text);
-    return {path, read_deck(source, text, path)};
+    FormerNames former(SourceText(text, path), path);
+    former.replace(source);
+    for (const std::string& override_text : overrides) {
+      apply_override(source, override_text);
+      former.replace(source);
+    }
+    return {path, read_deck(source, text, path), former.lines()};
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     const bool bare = std::ranges::any_of(kBareWords, [&](std::string_view words) {
       return error.description().find(words) != std::string_view::npos;
     });
     throw InputError(fmt::format("{}:{}:{}: not TOML: {}{}", path, at.line, at.column, error.description(),
-                                 bare ? "; texts stand in quotes" : ""));
+                                 bare ? "; texts need quotes" : ""));
   }
 }
 
 namespace {
 
-// What to do with some files that are no decks; "" of others.
+// Advice for some kinds of files that are not decks; "" for others.
 std::string way_to_a_deck(const std::string& path, const std::string& kind) {
   if (kind == "a robot (URDF)") return fmt::format(": scree-post urdf {} makes one of it", path);
-  if (kind == "an HDF5 file") return "; a run goes on with its deck and --restart CHECKPOINT";
+  if (kind == "an HDF5 file") return "; a run continues with its deck and --restart CHECKPOINT";
   if (kind.starts_with("a triangle mesh")) return ", which names meshes by meshes.file";
   return "";
 }
@@ -84,7 +90,7 @@ std::string way_to_a_deck(const std::string& path, const std::string& kind) {
 Deck load_deck(const std::string& path, const std::vector<std::string>& overrides) {
   if (std::filesystem::is_directory(path)) throw IoError("deck " + path + ": is a folder; must be a file");
   errno = 0;
-  std::ifstream file(path);  // a pipe will do
+  std::ifstream file(path);  // may be a pipe
   if (!file) throw IoError(fmt::format("deck {}: cannot be read: {}", path, std::strerror(errno)));
   std::stringstream text;
   text << file.rdbuf();

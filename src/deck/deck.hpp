@@ -1,4 +1,4 @@
-// The deck: checked values of one input file, and where each of them stands.
+// The deck: checked values of one input file, and the place of each value in it.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,23 @@ namespace scree {
 
 class DeckTable;
 
-// One value with its source. A table is a vector of one; a list of tables a vector of any length.
+// One value with its source. A table is stored as a vector of one element, a list of tables as a vector of
+// any length.
 struct DeckValue {
   std::variant<bool, std::int64_t, Real, std::string, Vec3, std::vector<Real>, std::vector<std::int64_t>,
                std::vector<std::string>, std::vector<Vec3>, std::vector<DeckTable>>
       data;
   std::string place;        // "deck.toml:12:8", or "--set key=value"
   std::string shown;        // the value as TOML text, shortened, for messages
-  bool is_given = false;    // by the deck or by --set; else a default, or chosen
-  std::string reason = {};  // of a value that the program chose
+  bool is_given = false;    // by the deck or by --set; otherwise a default, or chosen by the program
+  std::string reason = {};  // why the program chose the value
 };
 
-// A value that the deck leaves to the program.
+// A value that the program chooses because the deck does not give it.
 struct ChosenValue {
   std::string table, key;  // "time", "step"
   std::variant<Real, std::string> value;
-  std::string reason;  // of the choice, for people; empty where it follows from another one
+  std::string reason;  // of the choice, for the user; empty where it follows from another choice
 
   // "time.step = 1.2e-05"
   std::string text() const;
@@ -46,15 +47,15 @@ class DeckTable {
 
   // Whether the key was given or has a default value.
   bool has(const std::string& key) const { return values_.count(key) > 0; }
-  // Whether the deck itself gives the key.
+  // Whether the deck or --set gives the key.
   bool gives(const std::string& key) const { return has(key) && value(key).is_given; }
-  // The word of a choice is "auto": choice() has no value for it.
+  // Whether the word of a choice is "auto", for which choice() has no value.
   bool is_automatic(const std::string& key) const { return text(key) == kAutomatic; }
   bool boolean(const std::string& key) const { return get<bool>(key); }
   std::int64_t integer(const std::string& key) const { return get<std::int64_t>(key); }
   Real real(const std::string& key) const { return get<Real>(key); }
   const std::string& text(const std::string& key) const { return get<std::string>(key); }
-  // What the key's word stands for. Value: the enum that the key was declared with.
+  // The enum value of the key's word. Value: the enum with which the key was declared.
   template <class Value>
   Value choice(const std::string& key) const {
     return value_of<Value>(word(key, typeid(Value)));
@@ -68,24 +69,25 @@ class DeckTable {
     return get<std::vector<std::string>>(key);
   }
   const std::vector<Vec3>& vectors(const std::string& key) const { return get<std::vector<Vec3>>(key); }
-  // A table or a quantity; a list of tables, empty if the deck has none.
+  // table: a table or a quantity. tables: a list of tables, empty where the deck has none.
   const DeckTable& table(const std::string& key) const { return get<std::vector<DeckTable>>(key).front(); }
   const std::vector<DeckTable>& tables(const std::string& key) const {
     return get<std::vector<DeckTable>>(key);
   }
 
-  // "bodies.net"; with the place in front: "deck.toml:12:1: bodies.net".
+  // path: "bodies.net". label: with the place in front, "deck.toml:12:1: bodies.net".
   const std::string& path() const { return path_; }
   const std::string& place() const { return place_; }
   std::string label() const { return place_ + ": " + path_; }
-  // Throws InputError "place: path.key = value: problem"; without a value "place: path.key: problem".
+  // Throws InputError "place: path.key = value: problem", or "place: path.key: problem" where the key has no
+  // value.
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
 
   const TableKeys& keys() const { return *keys_; }
   const std::map<std::string, DeckValue>& values() const { return values_; }
   void set(const std::string& key, DeckValue value) { values_.insert_or_assign(key, std::move(value)); }
-  // Takes values that the program chose: of the table's own keys, or of those of a table in it. Where one is
-  // the table's selector, values of keys that its word does not have are dropped.
+  // Stores a value that the program chose, of a key of this table or of a table in it. Where the key is the
+  // table's selector, the values of keys that do not exist for the chosen word are removed.
   void take(const ChosenValue& chosen);
 
  private:
@@ -104,19 +106,23 @@ class DeckTable {
 struct Deck {
   std::string path;
   DeckTable root;
+  std::vector<std::string> former_names = {};  // a line for each that the deck has (deck/former_names.hpp)
 
-  // The deck with all defaults filled in and overrides applied, as TOML that loads to the same deck.
+  // The deck as TOML, with all defaults and overrides; it loads to the same deck.
   std::string resolved_text() const;
-  // What a restarted run must share, as TOML: all values but title, time.end, output.* and parallel.*, and
-  // for the files that the deck names hashes of their contents. Throws IoError on such a file.
+  // The values, as TOML, that must be equal in a restarted run: all but title, time.end, output.* and
+  // parallel.*. Files are represented by hashes of their contents. Throws IoError where a file cannot be
+  // read.
   std::string fingerprint() const;
 };
 
-// Reads and checks a deck. overrides: "key.path=value" in TOML's syntax; what is no TOML value is a text.
-// Elements of a list of tables go by name or number: particles.block.count=5, bodies.0.mass=2. Throws
-// InputError, with file, line, column, key, value and what is allowed; IoError where the file cannot be read.
+// Reads and checks a deck. overrides: "key.path=value" in TOML's syntax; a value that is not TOML is taken as
+// a text. Elements of a list of tables are addressed by name or number: particles.block.count=5,
+// bodies.0.mass=2. Throws InputError with file, line, column, key, value and the allowed values, and IoError
+// where the file cannot be read.
 Deck load_deck(const std::string& path, const std::vector<std::string>& overrides);
-// The same for text; path: for messages and for the folder of the files that it names.
+// Reads and checks the text of a deck. path: for messages, and for the folder of the files that the deck
+// names.
 Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace scree

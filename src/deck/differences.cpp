@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "deck/former_names.hpp"
 #include "deck/source_text.hpp"
 
 namespace scree {
@@ -33,7 +34,7 @@ std::string join(const std::string& path, std::string_view part) {
 
 std::string shown_or_nothing(const toml::node* node) { return node == nullptr ? "nothing" : shown(*node); }
 
-// Not the value: zeros with unequal signs have unequal bits.
+// Text is compared, not values: zeros with unequal signs have unequal bits.
 std::string full_text(const toml::node* node) {
   std::ostringstream text;
   if (node != nullptr) node->visit([&](const auto& value) { text << value; });
@@ -45,7 +46,7 @@ bool is_list_of_tables(const toml::node* node) {
          node->as_array()->front().is_table();
 }
 
-// What an entry is called: by its name, or else by its number.
+// The name of each element, or its number where it has no name.
 std::vector<std::string> labels(const toml::array& list) {
   std::vector<std::string> result;
   for (const toml::node& entry : list)
@@ -94,8 +95,10 @@ void Comparison::lists(const toml::array& before, const toml::array& after, cons
 
 std::vector<DeckDifference> deck_differences(const std::string& before, const std::string& after) {
   try {
+    toml::table old_deck = toml::parse(before);
+    FormerNames({}, "").replace(old_deck);
     Comparison comparison;
-    comparison.tables(toml::parse(before), toml::parse(after), "", "");
+    comparison.tables(old_deck, toml::parse(after), "", "");
     return comparison.found;
   } catch (const toml::parse_error&) {
     return {{"", "", "another text", "this deck"}};

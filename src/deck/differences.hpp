@@ -1,4 +1,4 @@
-// Where two decks differ, key by key.
+// Differences between two decks, key by key.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@ namespace scree {
 
 struct DeckDifference {
   std::string key;            // as --set takes it: "contact.pairs.0.damping"
-  std::string pattern;        // the same for all entries of a list: "contact.pairs.*.damping"
+  std::string pattern;        // equal for all elements of a list: "contact.pairs.*.damping"
   std::string before, after;  // as TOML, shortened; "nothing" where the deck has no such key
 };
 
-// Of two fingerprints (Deck::fingerprint), in the order of their keys. A list whose entries are not the same
-// ones, by name or else by number, differs as a whole, and so may those that both have. A text that is no
-// TOML differs as a whole, with an empty key.
+// Differences between two fingerprints (Deck::fingerprint), in the order of their keys. `before` may have
+// names of earlier versions. A list whose elements differ, by name or number, is one difference, in addition
+// to those of the elements that both have. A text that is not TOML is one difference with an empty key.
 std::vector<DeckDifference> deck_differences(const std::string& before, const std::string& after);
 
 // "time.step: 0.001 -> 0.0005"

@@ -9,6 +9,11 @@
 
 namespace scree {
 
+Key& Key::formerly(const std::string& former, FormerSense sense) {
+  former_names.push_back({former, sense});
+  return *this;
+}
+
 Key& Key::above(Real limit) {
   min = limit;
   min_excluded = true;
@@ -98,12 +103,12 @@ Key choice_of_words(const std::string& name, std::vector<std::string> words,
 }
 Key coordinate_key() {
   return choice<JointCoordinate>("coordinate")
-      .left_out("the joint's only one; of a screw the angle")
+      .left_out("the joint's only coordinate; for a screw the angle")
       .about(
-          "Which coordinate of the joint: revolute joints have an angle, translational ones a displacement, "
-          "cylindrical joints and screws both, distance joints a length; universal joints have angle_1, of "
-          "the cross against the first body about that body's arm, and angle_2, of the second body against "
-          "the cross.");
+          "Which coordinate of the joint: revolute joints have an angle, translational joints a "
+          "displacement, cylindrical joints and screws both, distance joints a length. Universal joints have "
+          "angle_1, the rotation of the cross relative to the first body about that body's arm, and angle_2, "
+          "the rotation of the second body relative to the cross about the second body's arm.");
 }
 Key name_key() { return make_key("name", ValueType::name); }
 Key file(const std::string& name) { return make_key(name, ValueType::file); }

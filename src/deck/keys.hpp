@@ -1,4 +1,4 @@
-// Declaration of the deck's keys. The reader and the manual (`scree keys`) both work from these declarations.
+// Declarations of the deck's keys, from which the reader, the manual (`scree keys`) and the schema work.
 #pragma once
 
 #include <initializer_list>
@@ -17,54 +17,68 @@ enum class ValueType {
   real,
   text,
   choice,    // one of the words of an enum (deck/choices.hpp)
-  name,      // text that others refer to, and that results are called by
+  name,      // text to which other keys refer, and which names results
   file,      // path, relative to the deck's folder
   vector,    // as many numbers as space.dimension
   reals,     // list of numbers
   integers,  // list of integers
   texts,     // list of texts
   vectors,   // list of vectors
-  quantity,  // a number, or a table with its own keys; the number x stands for { kind = "constant", value = x
-             // }
+  quantity,  // a number, or a table with its own keys; x is short for { kind = "constant", value = x }
   table,     // [name]
   tables     // [[name]], any number of them
 };
 
 struct TableKeys;
 
+// How the value of a former key becomes that of the present one.
+enum class FormerSense {
+  same,
+  negated  // a boolean that says the opposite
+};
+
+// The name of a key in earlier versions, which is still read.
+struct FormerName {
+  std::string text;
+  FormerSense sense = FormerSense::same;
+};
+
 constexpr std::size_t kLongestName = 200;  // [B]
-// The word of a choice that the program makes from the rest of the deck.
+// The word of a choice that leaves the decision to the program.
 inline const std::string kAutomatic = "auto";
-// The unit of a key within a quantity's table: that of the quantity.
+// The unit of a key in a quantity's table: that of the quantity.
 inline const std::string kQuantityUnit = "the quantity's unit";
 
-// One key. The functions below start a declaration, the members complete it:
+// One key. The functions below begin a declaration, the members complete it:
 //   real("step", "s").above(0).required().about("Step size.")
 struct Key {
   std::string name;
+  std::vector<FormerName> former_names;
   ValueType type = ValueType::real;
   std::string unit;  // empty: dimensionless or not a number
   Real min = -kInfinity, max = kInfinity;
   bool min_excluded = false;
   std::size_t length = 0;                     // number of entries of a list; 0: any
   std::vector<std::string> words;             // of a choice
+  std::vector<FormerWord> former_words;       // likewise, still read
   const std::type_info* choice_of = nullptr;  // its enum
   bool is_required = false;
   std::string default_value;  // TOML text, "zero" for a vector of zeros; empty: none
-  std::string default_note;   // what holds when the key is left out and default_value is empty
-  // Another default value where the deck gives the text `where_value` for the key at the path `where_key`.
+  std::string default_note;   // the behaviour where the key is left out and default_value is empty
+  // default_there is the default value where the deck gives the text `where_value` for the key `where_key`.
   std::string where_key, where_value, default_there;
   std::vector<std::string> kinds;  // values of the table's selector for which the key exists; empty: all
-  std::vector<std::string> required_kinds;  // those for which it must be given; is_required: for all
+  std::vector<std::string> required_kinds;  // those for which the key is required; is_required: for all
   std::string sentence;
   const TableKeys* table = nullptr;  // keys of a table, of tables, or of a quantity
 
+  Key& formerly(const std::string& former, FormerSense sense = FormerSense::same);
   Key& above(Real limit);     // numbers > limit
   Key& at_least(Real limit);  // numbers >= limit
   Key& within(Real low, Real high);
   Key& entries(std::size_t count);
   Key& required();
-  // Of the table's selector, a choice.
+  // Required for these words of the table's selector, a choice.
   template <class Value>
   Key& required_for(std::initializer_list<Value> selector_values) {
     for (const Value value : selector_values) required_kinds.push_back(word_of(value));
@@ -75,9 +89,9 @@ struct Key {
   Key& otherwise_choice(Value value) {
     return otherwise('"' + word_of(value) + '"');
   }
-  // The word kAutomatic besides the choice's own, and by default.
+  // Adds the word kAutomatic to the choice, as its default.
   Key& otherwise_automatic();
-  // The choice `there` where the deck gives the choice `value` for the key at the path.
+  // The default is `there` where the deck gives the choice `value` for the key at the path.
   template <class Where, class Value>
   Key& otherwise_where(const std::string& key_path, Where value, Value there) {
     where_key = key_path, where_value = word_of(value), default_there = '"' + word_of(there) + '"';
@@ -95,7 +109,7 @@ struct Key {
 struct TableKeys {
   std::string sentence;
   std::vector<Key> keys;
-  std::string selector;  // key whose value decides which of the others exist; empty: none
+  std::string selector;  // key whose value decides which of the other keys exist; empty: none
 };
 
 Key boolean(const std::string& name);
@@ -103,14 +117,16 @@ Key integer(const std::string& name);
 Key real(const std::string& name, const std::string& unit);
 Key text(const std::string& name);
 Key choice_of_words(const std::string& name, std::vector<std::string> words, const std::type_info& choice_of);
-// One of the words of an enum; DeckTable::choice reads it.
+// A key that accepts the words of an enum; DeckTable::choice reads it.
 template <class Value>
 Key choice(const std::string& name) {
-  return choice_of_words(name, words_of<Value>(), typeid(Value));
+  Key key = choice_of_words(name, words_of<Value>(), typeid(Value));
+  key.former_words = former_words_of<Value>();
+  return key;
 }
 Key name_key();        // "name"
 Key coordinate_key();  // "coordinate", of a joint
-// Of what connects two bodies: its name, which bodies, and its own keys.
+// Keys of an element that connects two bodies: its name, the bodies, and its own keys.
 TableKeys with_connection(const std::string& sentence, std::vector<Key> own,
                           const std::string& selector = "");
 Key local_points_key();  // "local_points", one on either body
@@ -124,9 +140,9 @@ Key quantity(const std::string& name, const std::string& unit, const TableKeys& 
 Key table(const std::string& name, const TableKeys& keys);
 Key tables(const std::string& name, const TableKeys& keys);
 
-// Of an orientation: quaternion, or rotation_axis and rotation_angle, or z_axis with or without x_axis, each
-// after `prefix`; DeckTable's reader is read_orientation (model/derived/frames.hpp). what: "the body's
-// frame"; outer: the frame in which that stands.
+// Keys of an orientation: quaternion, or rotation_axis and rotation_angle, or z_axis with or without x_axis,
+// each after `prefix`; read by read_orientation (model/frames.hpp). what: "the body's frame"; outer: the
+// frame relative to which it is oriented.
 std::vector<Key> orientation_keys(const std::string& prefix, const std::string& what,
                                   const std::string& outer);
 
@@ -161,19 +177,21 @@ const TableKeys& particle_keys();
 const TableKeys& time_function_keys();
 const TableKeys& distribution_keys();
 
-// What values a key takes, for messages and the manual: "a number above 0 [s]". dimension: of the space, or 0
-// where it is not known.
+// The values that a key accepts, for messages and the manual: "a number above 0 [s]". dimension: of the
+// domain, or 0 where it is not known.
 std::string allowed_values(const Key& key, int dimension);
-// What holds where the key is left out: "required", "default 1e-3", "left out: none".
+// The behaviour where the key is left out: "required", "default 1e-3", "left out: none".
 std::string default_text(const Key& key);
-// For which values of the table's selector the key exists, or must be given; empty: for all the same.
+// The words of the table's selector for which the key exists or is required; empty where that holds for all.
 std::string kinds_text(const Key& key, const std::string& selector);
-// The three of them as one line.
+// Former names and words: "formerly tension, with the opposite value"; empty without any.
+std::string former_text(const Key& key);
+// These four texts as one line.
 std::string key_facts(const Key& key, const std::string& selector);
 
-// The manual: for a terminal, 110 columns wide; as a page in Markdown; as a JSON schema (draft 2020-12) that
-// takes every deck which the reader takes. It refuses what a key alone is refused for, but for 1.0 in the
-// place of an integer and for numbers that are not finite.
+// The manual: for a terminal, 110 columns wide; as a page in Markdown; as a JSON schema (draft 2020-12). The
+// schema accepts every deck that the reader accepts. It rejects the values that the reader rejects for a
+// single key, except for 1.0 in place of an integer and for numbers that are not finite.
 std::string keys_text();
 std::string keys_markdown();
 std::string keys_schema();

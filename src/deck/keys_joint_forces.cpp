@@ -8,27 +8,26 @@ namespace {
 
 Key joint_key() {
   return text("joint").required().about(
-      "The joint (revolute, translational, cylindrical, screw or universal), or a row of joints: one for "
-      "each, named "
-      "NAME.0, NAME.1, ...; or a cylinder, whose coordinate is its length. Its coordinate c: the angle of "
-      "its second body minus that of the first [rad], in "
-      "space about the axis and counted on over whole turns, or the displacement along its axis [m]. An "
-      "effort above 0 pushes c up.");
+      "The joint (revolute, translational, cylindrical, screw or universal); or a row of joints: one element "
+      "for each, named NAME.0, NAME.1, ...; or a cylinder, whose coordinate is its length. The coordinate c "
+      "is the angle of the second body minus that of the first [rad], in space about the axis and counted "
+      "beyond full revolutions, or the displacement along the axis [m]. An effort is the generalized force "
+      "on c: a torque on an angle, a force on a displacement; above 0 it increases c.");
 }
 
 }  // namespace
 
 const TableKeys& motor_keys() {
   static const TableKeys keys{
-      "Motors: efforts on the coordinates of joints, a torque on an angle and a force on a displacement.",
+      "Motors: efforts (generalized forces) on the coordinates of joints: a torque on an angle, a force on a "
+      "displacement.",
       {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
-       choice<MotorKind>("type").required().about("Effort: a function of time. Line: stall_effort (command - "
-                                                  "c'/free_rate), the torque-speed line of a motor. "
-                                                  "Speed: gain e + integral_gain (integral of e over time), "
-                                                  "e = rate - c'; the integral stands while the limit "
-                                                  "holds the motor back. Position: position_gain e + "
-                                                  "rate_gain e', e = position - c: a servo."),
-       real("limit", "N m or N").above(0).left_out("none").about("Largest effort, either way."),
+       choice<MotorKind>("type").required().about(
+           "Effort: a function of time. Torque-speed: stall_effort (command - c'/free_rate), the linear "
+           "torque-speed curve of a DC motor. Speed: gain e + integral_gain (integral of e over time), e = "
+           "rate - c'; the integral is held while the effort is at the limit. Position: position_gain e + "
+           "rate_gain e', e = position - c: a servo."),
+       real("limit", "N m or N").above(0).left_out("none").about("Largest effort in either direction."),
        quantity("effort", "N m or N", time_function_keys())
            .required()
            .only_for({MotorKind::effort})
@@ -37,7 +36,7 @@ const TableKeys& motor_keys() {
            .above(0)
            .required()
            .only_for({MotorKind::line})
-           .about("Effort at rest, with command 1."),
+           .about("Effort at c' = 0 with command 1."),
        real("free_rate", "rad/s or m/s")
            .above(0)
            .required()
@@ -46,68 +45,74 @@ const TableKeys& motor_keys() {
        quantity("command", "", time_function_keys())
            .only_for({MotorKind::line})
            .otherwise("1.0")
-           .about("Function of time: voltage or throttle as a part of the full one; below 0 it drives back."),
+           .about(
+               "Function of time: voltage or throttle as a fraction of its full value; below 0 in reverse."),
        quantity("rate", "rad/s or m/s", time_function_keys())
            .required()
            .only_for({MotorKind::speed})
-           .about("Function of time: the rate that is wanted."),
+           .about("Function of time: the demanded rate."),
        real("gain", "N m s/rad or N s/m")
            .above(0)
            .required()
            .only_for({MotorKind::speed})
-           .about("Effort per rate that is missing."),
+           .about("Effort per rate error."),
        real("integral_gain", "N m/rad or N/m")
            .only_for({MotorKind::speed})
            .at_least(0)
            .otherwise("0.0")
-           .about("Effort per integral of the rate that is missing; 0: a load leaves a rest of it."),
+           .about("Effort per time integral of the rate error. With 0, a load leaves a constant rate error."),
        quantity("position", "rad or m", time_function_keys())
            .required()
            .only_for({MotorKind::position})
-           .about("Function of time: the coordinate that is wanted."),
+           .about("Function of time: the demanded coordinate."),
        real("position_gain", "N m/rad or N/m")
            .above(0)
            .required()
            .only_for({MotorKind::position})
-           .about("Effort per distance from the wanted position; a load leaves load / position_gain of it."),
+           .about("Effort per position error; a load leaves an error of load / position_gain."),
        real("rate_gain", "N m s/rad or N s/m")
            .only_for({MotorKind::position})
            .at_least(0)
            .otherwise("0.0")
-           .about("Effort per rate of this distance: damps the servo.")},
+           .about("Effort per rate of the position error: damps the servo.")},
       "type"};
   return keys;
 }
 
 const TableKeys& joint_spring_keys() {
   static const TableKeys keys{
-      "Springs and dampers on the coordinates of joints: effort = -(k (c - free) + d c' + F(c) + G(c')).",
+      "Springs and dampers on the coordinates of joints: effort = -(k (c - free_coordinate) + d c' + F(c) + "
+      "G(c')).",
       {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
        real("stiffness", "N m/rad or N/m").at_least(0).otherwise("0.0").about("k."),
        real("damping", "N m s/rad or N s/m").at_least(0).otherwise("0.0").about("d."),
-       real("free", "rad or m").left_out("c at t = 0").about("c at which k has no effort."),
-       reals("coordinates", "rad or m").left_out("no F").about("Of a table F: c of its points, increasing."),
+       real("free_coordinate", "rad or m")
+           .formerly("free")
+           .left_out("c at t = 0")
+           .about("c at which the spring k is unloaded."),
+       reals("coordinates", "rad or m").left_out("no F").about("Table F: c of its points, increasing."),
        reals("elastic_efforts", "N m or N")
            .left_out("no F")
-           .about("F at the points: what it takes to hold the joint there. Past them F goes on in a straight "
-                  "line."),
-       reals("rates", "rad/s or m/s").left_out("no G").about("Of a table G: c' of its points, increasing."),
+           .about("Table F: the effort at each point that holds the joint there. Beyond the points F "
+                  "continues in a straight line."),
+       reals("rates", "rad/s or m/s").left_out("no G").about("Table G: c' of its points, increasing."),
        reals("damping_efforts", "N m or N")
            .left_out("no G")
-           .about("G at the points: what it takes to keep the joint moving."),
+           .about("Table G: the effort at each point that keeps the joint moving at this rate."),
        choice<Interpolation>("interpolation")
            .otherwise_choice(Interpolation::linear)
-           .about("Of both tables, as of functions of time; not clamped.")},
+           .about("Interpolation of both tables, as for functions of time; not clamped.")},
       ""};
   return keys;
 }
 
 const TableKeys& joint_limit_keys() {
   static const TableKeys keys{
-      "Stops of joints: beyond a limit, by d > 0, the effort K d^n + C d' pushes back, and never pulls.",
+      "Stops of joints: at a distance d > 0 beyond a limit, the effort K d^n + C d' pushes back; it never "
+      "pulls.",
       {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
-       real("lower", "rad or m").left_out("none").about("Smallest c that is free."),
-       real("upper", "rad or m").left_out("none").about("Largest c that is free."),
+       real("lower", "rad or m").left_out("none").about("Smallest c within the limits."),
+       real("upper", "rad or m").left_out("none").about("Largest c within the limits."),
        real("stiffness", "N m/rad^n or N/m^n").above(0).required().about("K."),
        real("damping", "N m s/rad or N s/m").at_least(0).otherwise("0.0").about("C."),
        real("exponent", "").at_least(1).otherwise("1.0").about("n.")},
@@ -117,37 +122,39 @@ const TableKeys& joint_limit_keys() {
 
 const TableKeys& joint_friction_keys() {
   static const TableKeys keys{
-      "Dry friction of joints: they stick on a spring up to the effort T_max = s (effort + "
-      "friction_coefficient radius F), F the force that the joint transmits, and slide with it; s = 1 + "
+      "Dry friction of joints: stiction is a spring; the joint slides once the effort of the spring reaches "
+      "T_max = s (effort + friction_coefficient radius F), F: the force that the joint transmits; s = 1 + "
       "(static_ratio - 1) exp(-(c'/stribeck_rate)^2).",
       {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
-       real("effort", "N m or N").at_least(0).otherwise("0.0").about("Friction without load."),
+       real("effort", "N m or N")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Friction effort of the unloaded joint."),
        real("friction_coefficient", "")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of the surfaces that the joint's force F presses together; in a translational joint F is "
-                  "the force across the axis."),
+           .about("Coefficient of friction of the surfaces that the joint force F presses together. In a "
+                  "translational joint F is the force perpendicular to the axis."),
        real("radius", "m")
            .above(0)
            .left_out("there is no friction_coefficient, or the coordinate is a displacement: 1 in its place")
-           .about("Of the pin, or of a screw's thread: where an angle rubs."),
+           .about("Radius of the pin or of the screw's thread at which friction acts, for an angle."),
        real("stiffness", "N m/rad or N/m")
            .above(0)
            .required()
-           .about("Of the spring on which the joint sticks: it gives way by T_max / stiffness before it "
-                  "slides."),
+           .about("Stiffness of the stiction spring. The joint slides at a deflection of T_max / stiffness."),
        real("damping", "N m s/rad or N s/m")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of a dashpot beside this spring."),
+           .about("Damping in parallel with the stiction spring."),
        real("static_ratio", "")
            .at_least(1)
            .otherwise("1.0")
-           .about("T_max at rest over that of a fast slide."),
+           .about("Ratio of T_max at c' = 0 to T_max at a high rate."),
        real("stribeck_rate", "rad/s or m/s")
            .above(0)
            .left_out("static_ratio is 1")
-           .about("c' at which the excess of T_max at rest has fallen to 37 %.")},
+           .about("c' at which the excess of T_max has fallen to 37 %.")},
       ""};
   return keys;
 }
@@ -155,42 +162,40 @@ const TableKeys& joint_friction_keys() {
 const TableKeys& coupler_keys() {
   using Kind = CouplerKind;
   static const TableKeys keys{
-      "Couplers: a fixed sum of the coordinates of two or three joints, as gears and belts make it.",
+      "Couplers: a linear combination of the coordinates of two or three joints is constant, as in gears and "
+      "belts.",
       {name_key().required().about("Name for messages and results."),
        choice<Kind>("type").required().about(
-           "With c1, c2, c3 the joints' coordinates, and r1, r2 the radii, what keeps its value of t = 0 is, "
-           "for a gear, "
-           "c1 + (r2/r1) c2 (internal: -); belt, c1 - (r2/r1) c2; rack and pinion, the pinion first, c2 - "
-           "radius c1; "
-           "differential, the carrier last, c1 + c2 - 2 c3; sum, the sum of coefficients times coordinates."),
+           "c1, c2, c3: the joints' coordinates; r1, r2: the radii. The combination that keeps its value of "
+           "t = 0 is for a gear c1 + (r2/r1) c2 (internal: -), a belt c1 - (r2/r1) c2, a rack and pinion "
+           "(pinion first) c2 - radius c1, a differential (carrier last) c1 + c2 - 2 c3, a sum the sum of "
+           "coefficients times coordinates."),
        texts("joints").required().about(
-           "The joints (revolute, translational, cylindrical, screw or universal); gears, "
-           "belts, differentials and pinions take their angles, a rack its "
-           "displacement."),
+           "The joints (revolute, translational, cylindrical, screw or universal). Gears, belts, "
+           "differentials and pinions use their angles, a rack its displacement."),
        texts("coordinates")
            .only_for({Kind::sum})
-           .left_out("of each joint the only one, of a screw the angle")
-           .about("Per joint what the key coordinate says elsewhere: \"angle\", \"displacement\", "
-                  "\"angle_1\" or "
-                  "\"angle_2\"."),
+           .left_out("for each joint its only coordinate, for a screw the angle")
+           .about("Which coordinate of each joint: \"angle\", \"displacement\", \"angle_1\" or \"angle_2\", "
+                  "as in the key `coordinate` of other tables."),
        reals("radii", "m")
            .only_for({Kind::gear, Kind::belt})
            .entries(2)
            .required()
-           .about("Of the two wheels, or their numbers of teeth."),
+           .about("Radii of the two wheels, or their numbers of teeth."),
        boolean("internal")
            .only_for({Kind::gear})
            .otherwise("false")
-           .about("Whether one wheel turns inside the other."),
+           .about("Whether one wheel runs inside the other."),
        real("radius", "m")
            .only_for({Kind::rack_and_pinion})
            .required()
-           .about("Of the pinion; below 0 where the rack lies on its other side."),
+           .about("Radius of the pinion; below 0 where the rack is on its other side."),
        reals("coefficients", "")
            .only_for({Kind::sum})
            .required()
-           .about("One for each joint, none of them 0; in their units [m/rad] where joints of both kinds are "
-                  "coupled.")},
+           .about("One for each joint, none of them 0; in units such as [m/rad] where angles and "
+                  "displacements are coupled.")},
       "type"};
   return keys;
 }

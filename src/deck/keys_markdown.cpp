@@ -14,25 +14,23 @@ namespace {
 constexpr std::size_t kWidth = 120;
 
 constexpr const char* kIntroduction =
-    "`scree keys --markdown` makes this page, `scree keys` prints the same for a terminal; how the keys go "
-    "together is in [README.md](README.md), what the model leaves out in [limits.md](limits.md). `[name]` is "
-    "a "
-    "table; `[[name]]` is an element of a list and may stand any number of times. Quantities are in SI "
-    "units, "
-    "angles in radians.";
+    "This page is made by `scree keys --markdown`; `scree keys` prints the same for a terminal. "
+    "[README.md](README.md) describes how the keys are used together, [limits.md](limits.md) what is not "
+    "modelled. `[name]` is a table; `[[name]]` is an element of a list and may occur any number of times. "
+    "Quantities are in SI units, angles in radians.";
 
 constexpr const char* kEditors =
     "Editors complete and check decks with the JSON schema `postprocess/scree/deck.schema.json`, which "
-    "`scree keys --schema` prints: those that know [Taplo](https://taplo.tamasfe.dev), as VS Code with the "
-    "extension Even Better TOML does, where the deck's first line names it, by its path from the deck or as "
-    "a "
-    "URL:";
+    "`scree keys --schema` prints. Editors that use [Taplo](https://taplo.tamasfe.dev), such as VS Code with "
+    "the extension Even Better TOML, read it where the first line of the deck names it, by its path from the "
+    "deck or as a URL:";
 
 constexpr const char* kSchemaLine = "    #:schema ../../postprocess/scree/deck.schema.json\n";
 
-constexpr const char* kNoSchemaKnows = "A schema cannot know all rules: `scree check DECK` does.";
+constexpr const char* kNoSchemaKnows =
+    "A schema cannot express all rules; `scree check DECK` checks all of them.";
 
-// Text as Markdown shows it; what stands between backticks is code already.
+// Escapes a text for Markdown; text between backticks is code and stays as it is.
 std::string escaped(const std::string& text) {
   std::string result;
   bool code = false;
@@ -67,7 +65,7 @@ std::string values_text(const Key& key) {
       distribution ? link("distribution", "distribution") : link("function of time", "time_function"));
 }
 
-// In the column of the default values.
+// The cell in the column of the default values.
 std::string cell_of_default(const Key& key) {
   const std::string text = default_text(key), word = "default ";
   return escaped(text.starts_with(word) ? text.substr(word.size()) : text);
@@ -77,10 +75,11 @@ void describe_keys(std::string& out, const TableKeys& table, const std::string& 
   out += "| key | takes | default | meaning |\n|---|---|---|---|\n";
   for (const Key& key : table.keys) {
     if (is_table(key)) continue;
-    const std::string kinds = kinds_text(key, table.selector);
-    out += fmt::format("| <a id=\"{}\"></a>`{}` | {} | {} | {} |\n", path_of(path, key), key.name,
-                       values_text(key) + (kinds.empty() ? "" : "; " + escaped(kinds)), cell_of_default(key),
-                       escaped(key.sentence));
+    std::string takes = values_text(key);
+    for (const std::string& more : {kinds_text(key, table.selector), former_text(key)})
+      if (!more.empty()) takes += "; " + escaped(more);
+    out += fmt::format("| <a id=\"{}\"></a>`{}` | {} | {} | {} |\n", path_of(path, key), key.name, takes,
+                       cell_of_default(key), escaped(key.sentence));
   }
   out += "\n";
 }
@@ -94,10 +93,10 @@ void describe_table(std::string& out, const TableKeys& table, const std::string&
   for (const Key& key : table.keys)
     if (is_table(key) && !path.empty())
       below.push_back(link(header_of(key, path_of(path, key)), path_of(path, key)));
-  if (!below.empty()) out += wrapped(fmt::format("Tables of it: {}.", fmt::join(below, ", ")), kWidth) + "\n";
+  if (!below.empty()) out += wrapped(fmt::format("Tables in it: {}.", fmt::join(below, ", ")), kWidth) + "\n";
 }
 
-// Use: called with the key of each table, its path and its header, outer ones first.
+// Calls use(key, path, header) for each table, outer tables first.
 template <class Use>
 void for_each_table(const TableKeys& table, const std::string& path, const Use& use) {
   for (const Key& key : table.keys) {

@@ -8,14 +8,14 @@ const TableKeys& particle_keys() {
   using Kind = GroupKind;
   static constexpr auto spaced = {Kind::row, Kind::lattice};
   static const TableKeys keys{
-      "Groups of particles; their numbers count on from group to group in the deck's order.",
+      "Groups of particles; their indices continue from group to group in the deck's order.",
       {name_key().left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
        choice<Kind>("kind").required().about(
-           "List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: "
-           "random positions in a region, the part of the space that lies within all that is given of a box "
-           "(min, max), a cylinder, the inside of a mesh and that of a body. They overlap neither each other "
-           "nor the groups before, and keep clear of walls and of the shapes and meshes of bodies and walls. "
-           "File: read from a file."),
+           "List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: random "
+           "positions in a region, the part of the domain that is inside everything that is given of a box "
+           "(min, max), a cylinder, a mesh and a body. Random particles overlap neither each other nor "
+           "earlier groups, nor walls, nor the shapes and meshes of bodies and walls. File: read from a "
+           "file."),
        vectors("positions", "m").only_for({Kind::list}).required().about("Centres."),
        vector("origin", "m")
            .only_for(spaced)
@@ -23,27 +23,27 @@ const TableKeys& particle_keys() {
            .about("Centre of the first particle."),
        vector("center", "m")
            .only_for({Kind::lattice, Kind::random})
-           .left_out("origin is given; random: cylinder_radius is left out, or the space is 3D")
-           .about("Centre of the whole lattice, also if count leaves some of its places empty; in 2D also of "
+           .left_out("origin is given; random: cylinder_radius is left out, or the domain is 3D")
+           .about("Centre of the whole lattice, also if count leaves some of its sites empty; in 2D also of "
                   "the circle that a random group fills."),
        vector("spacing", "m")
            .only_for(spaced)
            .required()
-           .about("Row: from each particle to the next. Lattice: distance along each axis."),
+           .about("Row: vector from each particle to the next. Lattice: distance along each axis."),
        integers("size")
            .only_for({Kind::lattice})
            .at_least(1)
            .required()
-           .about("Places along each axis; filled along x first, then y, then z."),
+           .about("Number of lattice sites along each axis; filled along x first, then y, then z."),
        integer("count")
            .only_for({Kind::row, Kind::lattice, Kind::random})
            .within(1, 1000000000)
-           .left_out("lattice: all its places")
-           .about("Number of particles; a lattice fills the first count places."),
+           .left_out("lattice: all its sites")
+           .about("Number of particles; a lattice fills its first count sites."),
        vector("min", "m")
            .only_for({Kind::random})
            .left_out("another region is given")
-           .about("Lower corner of the box that holds the particles."),
+           .about("Lower corner of the box that contains the particles."),
        vector("max", "m")
            .only_for({Kind::random})
            .left_out("another region is given")
@@ -52,27 +52,25 @@ const TableKeys& particle_keys() {
            .only_for({Kind::random})
            .above(0)
            .left_out("no cylinder")
-           .about(
-               "Of a cylinder that holds the particles, between its ends; in 2D of a circle about center."),
+           .about("Radius of a cylinder that contains the particles, between its ends; in 2D of a circle "
+                  "about center."),
        vectors("ends", "m")
            .only_for({Kind::random})
            .entries(2)
-           .left_out("no cylinder, or the space is 2D")
+           .left_out("no cylinder, or the domain is 2D")
            .about("The two ends of the cylinder's axis."),
        text("mesh")
            .only_for({Kind::random})
            .left_out("no mesh")
-           .about(
-               "A closed mesh whose inside holds the particles: as it stands on the wall or the body that "
-               "has it, "
-               "else in the global frame. It must be a shell (of a file, sheet = true) or touch nothing: the "
-               "inside of other meshes is matter."),
+           .about("A closed mesh whose inside contains the particles, in its pose on the wall or the body "
+                  "that has it, otherwise in the global frame. It must be an open surface (a file with sheet "
+                  "= true) or not collide: the inside of other meshes is solid."),
        text("body")
            .only_for({Kind::random})
            .left_out("no body; with a mesh, the only one that has it")
-           .about("A body whose inside holds the particles: what is within the convex hull of its shapes and "
-                  "meshes and free of these, as in a bucket up to its brim. With mesh: the body that this "
-                  "mesh is on."),
+           .about("A body whose inside contains the particles: the part of the convex hull of its shapes and "
+                  "meshes that is not solid, as in a bucket filled to its brim. With mesh: the body that has "
+                  "this mesh."),
        real("gap", "m")
            .only_for({Kind::random})
            .at_least(0)
@@ -82,18 +80,17 @@ const TableKeys& particle_keys() {
            .only_for({Kind::random})
            .within(1, 1000000000)
            .otherwise("10000")
-           .about(
-               "Random positions in the region that are tried for one particle before the deck is refused."),
+           .about("Number of random positions in the region that are tried for one particle before the deck "
+                  "is refused."),
        file("file")
            .only_for({Kind::file})
            .required()
-           .about(
-               "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
-               "optional vx, vy, vz [m/s], wx, wy, wz [rad/s] (in 2D wz), radius [m], mass [kg], "
-               "inertia_factor."),
+           .about("CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) "
+                  "[m]; optional vx, vy, vz [m/s], wx, wy, wz [rad/s] (in 2D wz), radius [m], mass [kg], "
+                  "inertia_factor."),
        quantity("radius", "m", distribution_keys())
            .left_out("the file has a column radius")
-           .about("Radius, or a distribution to draw it from."),
+           .about("Radius, or a distribution from which it is drawn."),
        quantity("mass", "kg", distribution_keys())
            .left_out("the file's column mass, or from density")
            .about("Mass, or a distribution."),
@@ -107,20 +104,20 @@ const TableKeys& particle_keys() {
            .within(0, 1)
            .left_out("the file's column inertia_factor, or 2/5 (3D) and 1/2 (2D), solid spheres and discs")
            .about("Moment of inertia about the centre over m r^2, where particles rotate: 2/3 for a hollow "
-                  "sphere, 1 for a thin ring (2D), which has all mass at its radius."),
+                  "sphere, 1 for a thin ring (2D)."),
        text("material").left_out("the only material").about("Material."),
-       vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to a file's."),
+       vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to that of a file."),
        reals("angular_velocity", "rad/s")
            .otherwise("[]")
-           .about("Of each particle at t = 0, added to a file's, where particles rotate: a pair of materials "
-                  "has "
-                  "friction. Three numbers; in 2D one, about z. Empty: zero."),
+           .about("Angular velocity at t = 0, added to that of a file, where particles rotate: a pair of "
+                  "materials has friction. Three numbers; in 2D one, about z. Empty: zero."),
        real("random_velocity", "m/s")
            .at_least(0)
            .otherwise("0.0")
-           .about("Each component gets a random part, uniform between minus and plus this."),
+           .about("Half-width of the uniform distribution of a random part that is added to each velocity "
+                  "component."),
        integer("seed").at_least(0).otherwise("1").about(
-           "Of the group's random numbers; the same seed gives the same particles.")},
+           "Seed of the group's random numbers; the same seed gives the same particles.")},
       "kind"};
   return keys;
 }
@@ -131,15 +128,19 @@ const TableKeys& distribution_keys() {
       "A positive quantity per particle: a number, or a table such as { kind = \"uniform\", min = 0.01, max "
       "= 0.02 }.",
       {choice<Kind>("kind").required().about(
-           "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min "
-           "and max. Table: one of values, with probabilities in proportion to weights."),
+           "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min and "
+           "max. Table: one of values, with probabilities in proportion to weights."),
        real("value", kQuantityUnit).only_for({Kind::constant}).above(0).required().about("Value."),
-       real("mean", kQuantityUnit).only_for({Kind::normal}).above(0).required().about("Mean before the cut."),
+       real("mean", kQuantityUnit)
+           .only_for({Kind::normal})
+           .above(0)
+           .required()
+           .about("Mean before truncation."),
        real("sd", kQuantityUnit)
            .only_for({Kind::normal})
            .above(0)
            .required()
-           .about("Standard deviation before the cut."),
+           .about("Standard deviation before truncation."),
        real("min", kQuantityUnit)
            .only_for({Kind::uniform, Kind::normal})
            .above(0)

@@ -1,4 +1,4 @@
-// The keys as a JSON schema, printed by `scree keys --schema`: what editors complete and check decks with.
+// The keys as a JSON schema, printed by `scree keys --schema`, with which editors complete and check decks.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
@@ -30,7 +30,7 @@ toml::array array_of(const std::vector<std::string>& texts) {
   return array;
 }
 
-// A vector of the zeros that the space has dimensions for is no value that a schema could name.
+// The schema cannot name a vector of zeros, whose length is the dimension of the domain.
 bool has_default(const Key& key) { return !key.default_value.empty() && key.default_value != "zero"; }
 
 void insert_limit(Schema& schema, const char* name, Real limit, bool integral) {
@@ -59,7 +59,8 @@ Schema list(const Schema& entries, const Key& key) { return list(entries, key.le
 
 Schema vector(const Key& key) { return list(number(key), 2, 3); }
 
-// JSON counts characters, the reader bytes: the schema may take what the reader refuses, not the reverse.
+// JSON counts characters, the reader bytes: the schema may accept a longer name than the reader, not a
+// shorter.
 Schema name() {
   return Schema{{"type", "string"},
                 {"minLength", 1},
@@ -68,11 +69,20 @@ Schema name() {
                 {"not", Schema{{"enum", toml::array{".", ".."}}}}};
 }
 
-// The number stands for the table's `value`, and has its range.
+// A number is short for the table's `value`, and has its range.
 Schema quantity(const Key& key) {
   const auto value = std::ranges::find(key.table->keys, "value", &Key::name);
   const char* const table = key.table == &distribution_keys() ? kDistribution : kTimeFunction;
   return Schema{{"anyOf", toml::array{number(*value), Schema{{"$ref", fmt::format("#/$defs/{}", table)}}}}};
+}
+
+Schema words_of(const Key& key) {
+  const Schema words{{"enum", array_of(key.words)}};
+  if (key.former_words.empty()) return words;
+  toml::array either{words};
+  for (const FormerWord& former : key.former_words)
+    either.push_back(Schema{{"const", former.text}, {"deprecated", true}});
+  return Schema{{"anyOf", either}};
 }
 
 Schema values_of(const Key& key) {
@@ -87,7 +97,7 @@ Schema values_of(const Key& key) {
     case ValueType::file:
       return Schema{{"type", "string"}};
     case ValueType::choice:
-      return Schema{{"enum", array_of(key.words)}};
+      return words_of(key);
     case ValueType::name:
       return name();
     case ValueType::vector:
@@ -125,23 +135,39 @@ Schema schema_of(const Key& key, const std::string& selector) {
   return schema;
 }
 
-// What holds where the selector has this word: which keys must be given, and which ones do not exist.
-Schema rule_of(const TableKeys& table, const Key& selector, const std::string& word) {
+// The key under a name that it had in earlier versions.
+Schema schema_of(const Key& key, const FormerName& former) {
+  const char* const note = former.sense == FormerSense::negated ? ", which has the opposite value" : "";
+  Schema schema = values_of(key);
+  schema.insert("deprecated", true);
+  schema.insert("description",
+                fmt::format("Former name of {}{}.\n\n{}.", key.name, note, allowed_values(key, 0)));
+  return schema;
+}
+
+// What holds where the selector has the text, which is this word or a former one of it: which keys must be
+// given, and which ones do not exist. A key with a former name is not required: either name will do.
+Schema rule_of(const TableKeys& table, const Key& selector, const std::string& word,
+               const std::string& text) {
   Schema absent;
   toml::array required;
   for (const Key& key : table.keys) {
     const bool exists = key.kinds.empty() || is_of(key.kinds, word);
-    if (!exists) absent.insert(key.name, false);
-    if (exists && ((key.is_required && !key.kinds.empty()) || is_of(key.required_kinds, word)))
+    if (!exists) {
+      absent.insert(key.name, false);
+      for (const FormerName& former : key.former_names) absent.insert(former.text, false);
+    }
+    if (exists && key.former_names.empty() &&
+        ((key.is_required && !key.kinds.empty()) || is_of(key.required_kinds, word)))
       required.push_back(key.name);
   }
   Schema then;
   if (!absent.empty()) then.insert("properties", absent);
   if (!required.empty()) then.insert("required", required);
   if (then.empty()) return {};
-  Schema condition{{"properties", Schema{{selector.name, Schema{{"const", word}}}}}};
+  Schema condition{{"properties", Schema{{selector.name, Schema{{"const", text}}}}}};
   // Without `required` the condition holds where the selector is left out, too.
-  if (selector.where_key.empty() && selector.default_value == fmt::format("\"{}\"", word))
+  if (selector.where_key.empty() && selector.default_value == fmt::format("\"{}\"", text))
     return Schema{{"if", condition}, {"then", then}};
   condition.insert("required", toml::array{selector.name});
   return Schema{{"if", condition}, {"then", then}};
@@ -152,10 +178,14 @@ Schema schema_of(const TableKeys& table) {
   toml::array required, rules;
   for (const Key& key : table.keys) {
     properties.insert(key.name, schema_of(key, table.selector));
-    if (key.is_required && key.kinds.empty()) required.push_back(key.name);
+    for (const FormerName& former : key.former_names) properties.insert(former.text, schema_of(key, former));
+    if (key.is_required && key.kinds.empty() && key.former_names.empty()) required.push_back(key.name);
     if (key.name != table.selector) continue;
-    for (const std::string& word : key.words)
-      if (const Schema rule = rule_of(table, key, word); !rule.empty()) rules.push_back(rule);
+    const auto add_rule = [&](const std::string& word, const std::string& text) {
+      if (const Schema rule = rule_of(table, key, word, text); !rule.empty()) rules.push_back(rule);
+    };
+    for (const std::string& word : key.words) add_rule(word, word);
+    for (const FormerWord& former : key.former_words) add_rule(former.now, former.text);
   }
   Schema schema{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) schema.insert("required", required);

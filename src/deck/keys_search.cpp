@@ -19,7 +19,8 @@ namespace scree {
 namespace {
 
 constexpr std::size_t kWidth = 110;
-constexpr const char* kLimits = "input/limits.md, which scree keys begins with, says what there is not";
+constexpr const char* kLimits =
+    "for the limits of the model see input/limits.md, the beginning of scree keys";
 
 std::string small(std::string_view text) {
   std::string out(text);
@@ -27,7 +28,7 @@ std::string small(std::string_view text) {
   return out;
 }
 
-// Blanks and hyphens count as the low lines of keys; an s at the end does not.
+// The word in the form of keys: lower case, underscores for blanks and hyphens, singular.
 std::string plain(std::string_view text) {
   std::string out = small(text);
   if (const std::size_t of = out.find("'s"); of != out.npos) out.erase(of, 2);
@@ -38,7 +39,7 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-// Whether the word stands in the text, from the beginning of one of the text's words on.
+// Whether the word occurs in the text at the beginning of a word.
 bool has_word(std::string_view text, const std::string& word) {
   const std::string in = small(text);
   for (std::size_t at = in.find(word); at != in.npos; at = in.find(word, at + 1))
@@ -53,7 +54,7 @@ struct Found {
   int rank;  // below kNone
 };
 
-// Where the word is found: in the path, by words and synonyms, in the meaning.
+// Ranks of the match: in the path; in words, former names or synonyms; in the key's text.
 constexpr int kPath = 0, kMeant = 1, kMeaning = 2, kNone = 3;
 
 class Search {
@@ -86,7 +87,11 @@ class Search {
     const auto has = [&](const std::string& word) {
       return has_word(word, word_) || std::ranges::find(words_, word) != words_.end();
     };
-    if (std::ranges::find(meant_, path) != meant_.end() || std::ranges::any_of(key.words, has)) return kMeant;
+    const bool means = std::ranges::find(meant_, path) != meant_.end() ||
+                       std::ranges::any_of(key.words, has) ||
+                       std::ranges::any_of(key.former_names, has, &FormerName::text) ||
+                       std::ranges::any_of(key.former_words, has, &FormerWord::text);
+    if (means) return kMeant;
     return has_word(key.sentence, spoken_) ? kMeaning : kNone;
   }
   void look(const TableKeys& table, const std::string& path) {
@@ -99,7 +104,7 @@ class Search {
     }
   }
 
-  std::string word_, spoken_;  // as in keys, as in sentences
+  std::string word_, spoken_;  // in the form of keys, and in that of sentences
   std::vector<std::string> words_, meant_, paths_;
   std::vector<Found> found_;
 };
@@ -108,11 +113,11 @@ std::vector<std::string> words_of(const std::string& phrase) {
   std::vector<std::string> words;
   std::istringstream in(phrase);
   for (std::string word; in >> word;)
-    if (word.size() > 2) words.push_back(word);  // not of, in, at
+    if (word.size() > 2) words.push_back(word);  // without of, in, at
   return words;
 }
 
-// Keys that every word of the phrase is about.
+// Keys that are found for every word of the phrase.
 std::vector<Found> found_by_each(const std::vector<std::string>& words) {
   if (words.empty()) return {};
   std::vector<Found> found = Search(words.front()).found();
@@ -154,7 +159,7 @@ std::string keys_about(const std::string& word) {
                                  word_suggestion(search.word(), search.paths()), kLimits));
   std::string text;
   if (!absent.empty())
-    text = wrapped(fmt::format("{}: not there: {}. {}.", word, absent, kLimits), kWidth) + "\n";
+    text = wrapped(fmt::format("{}: not supported: {}; {}.", word, absent, kLimits), kWidth) + "\n";
   for (const Found& one : found) text += line_of(one);
   return text;
 }

@@ -1,13 +1,13 @@
-// `scree keys WORD`: the keys of a deck that a word is about.
+// `scree keys WORD`: finds keys of the deck by a word.
 #pragma once
 
 #include <string>
 
 namespace scree {
 
-// Keys whose path, meaning or words have `word` in them, and those that a synonym of it means, as lines for a
-// terminal; first what the deck does not have, where the word is of such a thing. Throws InputError where
-// there is nothing, with names that are spelled alike and the page of limits.
+// Lists, for a terminal, the keys whose path, text, words or former names contain `word`, and those of which
+// it is a synonym. Where the word names something that decks do not support, a line says so first. Throws
+// InputError where nothing is found, with similarly spelled names and the page of limits.
 std::string keys_about(const std::string& word);
 
 }  // namespace scree

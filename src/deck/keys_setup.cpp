@@ -9,7 +9,7 @@ namespace {
 Key boundary(const std::string& name, const std::string& side) {
   return choice<Boundary>(name)
       .otherwise_choice(Boundary::open)
-      .about("Boundary on the side of " + side + "; \"periodic\" must stand on both sides of an axis.");
+      .about("Boundary on the side of " + side + "; \"periodic\" must be on both sides of an axis.");
 }
 
 }  // namespace
@@ -22,11 +22,10 @@ const TableKeys& deck_keys() {
        vector("gravity", "m/s^2").otherwise("zero").about("Acceleration of gravity."),
        choice<StartVelocities>("velocities")
            .otherwise_choice(StartVelocities::given)
-           .about(
-               "Of the bodies at t = 0. Given: as the bodies' keys say; the run is refused where a joint or "
-               "driver contradicts them, and told which keys to set to what. Consistent: changed so that "
-               "they agree with all joints and drivers, by as little as possible in the kinetic energy of "
-               "the change."),
+           .about("Velocities of the bodies at t = 0. Given: as the bodies' keys say; the run is refused "
+                  "where they contradict a joint or driver, with a message that names the keys to set and "
+                  "their values. Consistent: corrected to agree with all joints and drivers; the correction "
+                  "has the least kinetic energy."),
        table("time", time_keys()).required(),
        table("integrator", integrator_keys()),
        table("contact", contact_keys()),
@@ -56,7 +55,7 @@ const TableKeys& deck_keys() {
 
 const TableKeys& space_keys() {
   static const TableKeys keys{
-      "The box that is simulated.",
+      "The simulation domain.",
       {integer("dimension").within(2, 3).required().about("2: discs in the x-y plane; 3: spheres."),
        vector("min", "m").required().about("Lower corner."),
        vector("max", "m").required().about("Upper corner."), boundary("x_min", "smallest x"),
@@ -65,8 +64,9 @@ const TableKeys& space_keys() {
        text("wall_material").left_out("the only material").about("Material of the sides that are walls."),
        choice<Leaving>("leaving")
            .otherwise_choice(Leaving::error)
-           .about("What happens to a particle whose centre leaves through an open side: the run fails; it is "
-                  "removed and counted; it is counted and drifts on under gravity alone.")},
+           .about("What happens to a particle whose centre leaves through an open side. error: the run "
+                  "fails. remove: the particle is removed and counted. ballistic: the particle is counted "
+                  "and moves under gravity alone, without contacts.")},
       ""};
   return keys;
 }
@@ -77,228 +77,234 @@ const TableKeys& time_keys() {
       {real("end", "s").above(0).required().about("The simulation runs from 0 to this time."),
        real("step", "s")
            .above(0)
-           .left_out("velocity-verlet: chosen from the deck's contacts, so that trial impacts rebound within "
-                     "2 % and the step is stable (input/choosing.md); hht, adaptive: 1/20 of the briefest "
-                     "contact or end / 1000, whichever is less; hht, fixed: must be given")
-           .about("Step size; the first one if control is \"adaptive\". A step that is chosen stands in the "
-                  "output of scree check, in the log and in the resolved deck."),
+           .left_out("velocity-verlet: chosen from the deck's contacts so that trial impacts rebound within "
+                     "2 % and the step is stable (input/choosing.md); hht, adaptive: the smaller of 1/20 of "
+                     "the shortest contact time and end / 1000; hht, fixed: must be given")
+           .about("Step size; the initial one with control = \"adaptive\". A chosen step is printed by scree "
+                  "check and in the log, and is part of the resolved deck."),
        choice<StepControl>("control")
            .otherwise_choice(StepControl::adaptive)
            .otherwise_where("integrator.particles", ParticleIntegrator::velocity_verlet, StepControl::fixed)
-           .about(
-               "Fixed step, or steps that keep the estimated local error within tolerance; velocity-verlet, "
-               "named or chosen, has no error estimate and fixed steps."),
+           .about("Fixed: all steps are equal. Adaptive: the estimated local error is kept within tolerance. "
+                  "velocity-verlet, given or chosen, has no error estimate and needs fixed steps."),
        real("min_step", "s")
            .above(0)
            .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
-           .about("The run fails where a step would have to be smaller, also when a step is retried."),
+           .about("The run fails where a smaller step would be needed, also when a step is retried."),
        real("max_step", "s")
            .only_for({StepControl::adaptive})
            .above(0)
-           .left_out("end / 100 or, if less, the time in which a particle that fell through the space "
-                     "would go half of the smallest radius; but at least step")
+           .left_out("the smaller of end / 100 and the time in which a particle falling across the domain "
+                     "would move by half of the smallest radius; but at least step")
            .about("Largest step."),
        real("tolerance", "")
            .only_for({StepControl::adaptive})
            .within(0, 1)
            .above(0)
            .otherwise("2e-8")
-           .about("Allowed local error of a position per step: a particle's over its radius, a body's over "
-                  "the length of the mechanism.")},
+           .about("Allowed local error of a position per step: for a particle relative to its radius, for a "
+                  "body relative to the length of the mechanism.")},
       "control"};
   return keys;
 }
 
 const TableKeys& integrator_keys() {
   static const TableKeys keys{
-      "Time integration and its Newton-like iteration.",
+      "Time integration and its Newton iteration.",
       {boolean("corrected_start")
            .otherwise("true")
-           .about("Of spatial bodies: the first step starts from accelerations and velocities that the "
-                  "method itself would have, so that the reactions within the steps, which load friction, "
-                  "are of second order from the start."),
+           .about("For spatial bodies: the first step starts from accelerations and velocities that are "
+                  "consistent with the integration scheme, so that the reactions within the steps, on which "
+                  "joint friction depends, are of second order from the start."),
        real("hht_alpha", "")
            .within(-1.0 / 3, 0)
            .otherwise("-0.05")
-           .about("HHT's numerical damping of bodies and particles. With adaptive steps it costs impacts no "
-                  "accuracy; with fixed ones far above a tenth of a contact 0, which has none, errs least at "
-                  "weak contact damping. Without it long runs of chains of joints fail."),
+           .about("Numerical damping of the HHT scheme, for bodies and particles. With adaptive steps it "
+                  "does not reduce the accuracy of impacts. With fixed steps far above a tenth of the "
+                  "contact time, 0 (no damping) has the smallest error at weak contact damping. Without "
+                  "numerical damping, long runs of chains of joints fail."),
        choice<RedundantRows>("redundant")
            .otherwise_choice(RedundantRows::error)
-           .about("Joints and drivers that fix the same motion more than once, as every planar loop of "
-                  "hinges in space does: refused by name, or they share the load. The motion is the same "
-                  "whichever of them carry it; the reactions are then the least ones, weighted by the "
-                  "bodies' mobility."),
+           .about("Redundant constraints of joints and drivers, as in every planar loop of revolute joints "
+                  "in space. error: the run is refused and the message names them. minimum-norm: the motion "
+                  "is unique, and the reactions are the minimum-norm solution, weighted with the bodies' "
+                  "mobility."),
        choice<ParticleIntegrator>("particles")
            .otherwise_automatic()
-           .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT. auto: explicit "
-                  "where contacts resist rolling or attract, and from 20 particles that may touch on with "
-                  "friction, or 50 without; else, and where the deck names what only implicit steps have "
-                  "(control = \"adaptive\", tolerance, max_step, contact_events) or a step too long for "
-                  "explicit ones, implicit; substeps above 1 and precision = \"mixed\" make it explicit. The "
-                  "choice stands in the output of scree check, in the log and in "
-                  "the resolved deck."),
+           .about("Integrator of the particles: implicit (hht) or explicit (velocity-verlet). Bodies always "
+                  "use HHT. auto: explicit where contacts have rolling resistance or adhesion, and from 20 "
+                  "particles in possible contact on with friction, or 50 without. Otherwise implicit; also "
+                  "where the deck has keys that only implicit steps use (control = \"adaptive\", tolerance, "
+                  "max_step, contact_events) or a step too long for explicit ones. substeps above 1 and "
+                  "precision = \"mixed\" make it explicit. The choice is printed by scree check and in the "
+                  "log, and is part of the resolved deck."),
        choice<ContactEvents>("contact_events")
            .otherwise_choice(ContactEvents::resolved)
-           .about("Hht: a contact that opens or closes within a step acts over its part of the step, or (the "
-                  "paper) with the force at the step's end over all of it."),
+           .about(
+               "For hht. resolved: a contact that opens or closes within a step acts over its part of the "
+               "step. end-of-step: the force at the end of the step acts over all of it, as in the paper."),
        integer("substeps")
            .within(1, 1000000)
            .otherwise("1")
            .about("Velocity-verlet steps of the particles per step of the bodies."),
        choice<Precision>("precision")
            .otherwise_choice(Precision::full)
-           .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
-                  "contact forces in single. All in double, and the run says so, where contacts attract or "
-                  "resist rolling, where bodies have shapes, and on the CPU."),
+           .about("GPU, velocity-verlet. mixed: state and sums at about double precision, contact forces in "
+                  "single. With adhesion, rolling resistance or shapes of bodies, and on the CPU, everything "
+                  "is computed in double, and the log says so."),
        real("residual_tolerance", "")
            .within(0, 1)
            .above(0)
            .otherwise("1e-8")
-           .about("Of the iteration: scaled residual."),
+           .about("Convergence tolerance of the Newton iteration: scaled residual."),
        real("correction_tolerance", "")
            .within(0, 1)
            .above(0)
            .otherwise("1e-8")
-           .about("Of the iteration: correction of a position over the particle's radius."),
-       integer("max_iterations").within(1, 10000).otherwise("50").about("Of a step, before it is retried.")},
+           .about("Convergence tolerance of the Newton iteration: correction of a position relative to the "
+                  "particle's radius."),
+       integer("max_iterations")
+           .within(1, 10000)
+           .otherwise("50")
+           .about("Largest number of Newton iterations of a step before it is retried with a smaller step.")},
       ""};
   return keys;
 }
 
 const TableKeys& contact_keys() {
   static const TableKeys pairs{
-      "The contact law of a pair of materials: F = K d^n + C d', d: overlap; or, where there is no stiffness "
-      "and both materials have a Young's modulus, Hertz's law of spheres, in 2D K = pi/4 E* L of discs of "
-      "thickness L.",
+      "The contact law of a pair of materials: F = K d^n + C d', d: overlap. Where there is no stiffness and "
+      "both materials have a Young's modulus: Hertz's law of spheres, or in 2D a linear law of discs of "
+      "thickness L with K = pi/4 E* L.",
       {texts("materials").entries(2).left_out("the only material").about("The two materials, in any order."),
        real("stiffness", "N/m^n")
            .at_least(0)
            .left_out("from the materials' moduli, or from largest_overlap")
-           .about("K; 0 with damping 0: the two do not interact."),
+           .about("K. 0 with damping 0: the two materials do not interact."),
        real("largest_overlap", "")
            .above(0)
            .within(0, 1)
            .left_out("the stiffness is given")
-           .about(
-               "In place of stiffness: overlap over the radius that an undamped impact at impact_speed may "
-               "reach, of the deck's heaviest particle and the pair's smallest radius d: K = (n+1)/2 m* "
-               "v^2 / d^(n+1), m* half that mass where particles meet particles alone."),
-       real("impact_speed", "m/s").above(0).left_out("none").about("With largest_overlap."),
+           .about("In place of stiffness: overlap over radius that an undamped impact at impact_speed "
+                  "reaches, for the heaviest particle of the deck and the pair's smallest radius. K = "
+                  "(n+1)/2 m* v^2 / d^(n+1), d: that overlap, m*: mass of the heaviest particle, or half of "
+                  "it where only particles meet particles."),
+       real("impact_speed", "m/s").above(0).left_out("none").about("Impact speed for largest_overlap."),
        real("damping", "N s/m").at_least(0).otherwise("0.0").about("C."),
        real("exponent", "").within(0.5, 4).otherwise("1.0").about("n."),
        real("restitution", "")
            .within(0, 1)
            .above(0)
            .left_out("no damping, as with 1")
+           .about("In place of damping: ratio of the speeds after and before a head-on impact, equal at all "
+                  "speeds and masses, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact with limit_damping "
+                  "and without; needs n >= 1. For surfaces with adhesion or attraction it holds for the law "
+                  "without these and with limit_damping = false. In m* a body counts as infinitely heavy in "
+                  "contacts with particles."),
+       boolean("limit_damping")
+           .formerly("tension", FormerSense::negated)
+           .otherwise("true")
            .about(
-               "In place of damping: speed after over speed before a head-on impact, the same at every speed "
-               "and mass, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact for either `tension`; needs n "
-               "of at least 1. Of surfaces that attract, that of the law without attraction, with tension. A "
-               "body that particles meet counts as unmovable in it."),
-       boolean("tension").otherwise("false").about(
-           "Whether the force may pull just before separation; false cuts it at zero."),
+               "Whether the damping force is limited so that the total normal force never becomes tensile. "
+               "false: the force F = K d^n + C d' may be tensile just before separation, as in the paper."),
        real("friction", "")
            .at_least(0)
-           .left_out("contacts do not rub")
-           .about("Coulomb's coefficient of friction between particles, and of particles on walls and on "
-                  "bodies, and of these on each other and on walls. Where a pair has one particles rotate."),
+           .left_out("no friction")
+           .about("Coulomb's coefficient of friction: between particles, of particles on walls and bodies, "
+                  "and of bodies on each other and on walls. If any pair has friction, particles rotate."),
        real("tangential_stiffness", "N/m")
            .above(0)
            .left_out("2/7 of a linear stiffness; for Hertz's law Mindlin's, from the shear moduli")
-           .about("Of the spring that holds a contact until it slides."),
+           .about("Stiffness of the tangential spring, which acts until the contact slides."),
        real("tangential_damping_ratio", "")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of the dashpot beside that spring, over the critical damping of a slip. It acts while the "
-                  "spring holds, with their sum within the limit of friction, and not while the contact "
-                  "slides."),
+           .about("Damping ratio of the dashpot in parallel with the tangential spring, relative to critical "
+                  "damping of the tangential motion. It acts while the contact sticks, and the sum of both "
+                  "forces is limited by friction; it does not act while the contact slides."),
        real("rolling_friction", "")
            .at_least(0)
-           .left_out("nothing resists rolling")
-           .about(
-               "mu_r: a spring resists rolling until its moment is mu_r R* F (Ai, Chen, Rotter, Ooi, 2011, "
-               "model C), R* the reduced radius: tan of the slope on which a sphere begins to roll. Needs "
-               "friction beside it; 0: as if left out."),
+           .left_out("no rolling resistance")
+           .about("mu_r: rolling resistance by a spring up to the moment mu_r R* F (Ai, Chen, Rotter, Ooi, "
+                  "2011, model C), R*: reduced radius. mu_r is the tangent of the slope on which a sphere "
+                  "begins to roll. Needs friction; 0: none."),
        real("rolling_stiffness", "N m")
            .above(0)
            .left_out("2.25 K mu_r^2 R*^2, in 2D 3 K mu_r^2 R*^2, K: dF/dd")
-           .about("Of that spring, per radian."),
+           .about("Stiffness of the rolling spring."),
        real("rolling_damping_ratio", "")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of the dashpot beside that spring, within its limit, over critical damping."),
+           .about("Damping ratio of the dashpot in parallel with the rolling spring, within the same limit, "
+                  "relative to critical damping."),
        real("rolling_damping", "N m s")
            .at_least(0)
            .left_out("none")
-           .about("A moment against the rate of rolling, C w, beside that spring or alone; nothing holds at "
-                  "rest by it. Needs friction beside it."),
+           .about("Coefficient C of a viscous rolling moment C w, w: rolling rate; with the rolling spring "
+                  "or without. It holds nothing at rest. Needs friction."),
        real("twisting_friction", "")
            .at_least(0)
-           .left_out("friction, where something resists rolling in 3D; else nothing resists twisting")
-           .about("mu of the spring against spinning about the normal, which slides at 2/3 a mu F, a: radius "
-                  "of contact, sqrt(R* d) (Marshall, 2009)."),
+           .left_out("friction, where there is rolling resistance in 3D; otherwise no twisting resistance")
+           .about("mu of the spring that resists twisting (relative rotation about the normal); it slides at "
+                  "the moment 2/3 a mu F, a: contact radius sqrt(R* d) (Marshall, 2009)."),
        real("wear_coefficient", "1/Pa")
            .within(0, 1)
-           .left_out("nothing wears")
-           .about("k/H of Archard's law (1953) for the output's wear_depth: the volume that a mesh loses is "
-                  "k/H F s, F: normal force, s: the way that slides, found as the work of friction over F's "
-                  "coefficient. No shape changes. Needs friction above 0 beside it."),
+           .left_out("no wear")
+           .about("k/H of Archard's law (1953) for the field wear_depth: a mesh loses the volume k/H F s, F: "
+                  "normal force, s: sliding distance, computed as the dissipation of friction over the "
+                  "coefficient of friction. Shapes do not change. Needs friction above 0."),
        real("work_of_adhesion", "J/m^2")
            .at_least(0)
-           .left_out("the two do not stick")
+           .left_out("no adhesion")
            .about(
-               "w, beside Hertz's law: what parting the two surfaces takes. What attracts may pull, whatever "
-               "`tension` says, and friction counts the pull as load. In explicit steps, double precision. "
-               "Particles are attracted by each other and by all that they touch; bodies attract neither "
-               "each other nor walls."),
+               "w, for Hertz's law: energy per area to separate the two surfaces. The normal force may then "
+               "be tensile with either value of limit_damping, and the friction limit includes the adhesive "
+               "force. Explicit steps in double precision only. Adhesion acts between particles and on "
+               "particles that touch walls or bodies, not between bodies or between bodies and walls."),
        real("surface_energy", "J/m^2")
            .at_least(0)
-           .left_out("work_of_adhesion is given, or none")
-           .about("In place of work_of_adhesion: w/2, of one of two surfaces that are alike."),
+           .left_out("work_of_adhesion is given, or no adhesion")
+           .about("In place of work_of_adhesion: w/2, of each of two equal surfaces."),
        choice<Adhesion>("adhesion")
            .left_out("jkr")
-           .about(
-               "With work_of_adhesion. Jkr: a neck that is made at touch and holds down to a pull of 3/2 pi "
-               "w R* (Johnson, Kendall, Roberts, 1971; soft, sticky, large). Dmt: a pull of 2 pi w R* while "
-               "they touch (Derjaguin, Muller, Toporov, 1975; hard, small). One of them in a deck."),
+           .about("With work_of_adhesion. jkr: the contact forms at touch, persists under tension and breaks "
+                  "at the pull-off force 3/2 pi w R* (Johnson, Kendall, Roberts, 1971; soft, sticky, large). "
+                  "dmt: a constant adhesive force 2 pi w R* while the surfaces touch (Derjaguin, Muller, "
+                  "Toporov, 1975; hard, small). All pairs of a deck have the same model."),
        real("attraction", "N")
            .at_least(0)
            .left_out("none")
-           .about("A constant pull beside a linear law, or Hertz's, while the two touch."),
+           .about("A constant attractive force in addition to a linear or Hertz's law, while the two touch."),
        real("attraction_range", "m")
            .above(0)
-           .left_out("the attraction ends with touch")
-           .about("Beyond touch the attraction falls evenly to zero over this distance.")},
+           .left_out("the attraction ends where the contact opens")
+           .about("Distance between the surfaces over which the attraction falls linearly to zero.")},
       ""};
   static const TableKeys keys{
-      "Contact laws and the pair search.",
+      "Contact laws and contact detection.",
       {real("skin", "m")
            .above(0)
            .left_out("0.2 x the smallest radius")
-           .about("The neighbour list reaches this far past touching."),
+           .about(
+               "Skin of the neighbour list: it contains pairs up to this distance between their surfaces."),
        boolean("connected_bodies_touch")
            .otherwise("false")
-           .about("Whether two bodies that a joint or force element connects collide with each other."),
+           .about(
+               "Whether two bodies that are connected by a joint or force element collide with each other."),
        real("max_start_overlap", "")
            .within(0, 1)
            .otherwise("0.05")
-           .about("Overlap at t = 0 over the smaller radius (of a body's mesh on a plane that of a sphere of "
-                  "the "
-                  "area of its convex hull): an error past this limit, a warning below it."),
+           .about("Limit of the overlap at t = 0 relative to the smaller radius (for a body's mesh on a "
+                  "plane, the radius of the sphere with the area of its convex hull). Above it the deck is "
+                  "refused; smaller overlaps give a warning."),
        choice<Mixing>("mixing")
            .otherwise_choice(Mixing::none)
-           .about(
-               "How a pair of materials that can meet and is not given follows from those of each with "
-               "itself: "
-               "none, it must be given. Else springs act in series (K = 2 K_a K_b / (K_a + K_b) of two "
-               "linear "
-               "ones; Hertz's law takes the materials' moduli: 1/E* = sum (1 - nu^2)/E), and damping, "
-               "damping "
-               "ratios, restitution, coefficients of friction, adhesion and attraction are the mean of the "
-               "two "
-               "that is named (geometric, arithmetic, harmonic), or the smaller or larger one. `scree check` "
-               "prints what was made."),
+           .about("How a pair of materials that can meet and is not given follows from the pairs of each "
+                  "material with itself. none: it must be given. Otherwise stiffnesses act in series (K = 2 "
+                  "K_a K_b / (K_a + K_b) for two linear laws; Hertz's law uses the materials' moduli: 1/E* = "
+                  "sum (1 - nu^2)/E), and damping, damping ratios, restitution, coefficients of friction, "
+                  "adhesion and attraction are the geometric, arithmetic or harmonic mean, or the smaller or "
+                  "larger value. `scree check` prints the resulting pairs."),
        tables("pairs", pairs)},
       ""};
   return keys;
@@ -306,30 +312,29 @@ const TableKeys& contact_keys() {
 
 const TableKeys& parallel_keys() {
   static const TableKeys keys{
-      "How the particles are spread over the ranks of mpirun; no result depends on it.",
+      "How particles are distributed over the MPI ranks. Results do not depend on it.",
       {real("imbalance", "")
            .at_least(0)
            .otherwise("0.2")
-           .about(
-               "The ranks' boxes are cut anew where the largest work of a rank is more than this share above "
-               "the mean."),
+           .about("The subdomains are balanced anew where the largest work of a rank exceeds the mean by "
+                  "more than this fraction."),
        choice<Transport>("transport")
            .otherwise_choice(Transport::automatic)
-           .about("How ghosts travel between GPUs: by an MPI library that takes device memory, by NCCL, or "
-                  "through host memory. auto: the first of these that works here; another that does not work "
-                  "here ends a run that would take GPUs on several ranks.")},
+           .about("How ghost data are sent between GPUs: by an MPI library that accepts device memory, by "
+                  "NCCL, or through host memory. auto: the first of these that works on this machine. A "
+                  "choice that does not work ends a run on the GPUs of several ranks.")},
       ""};
   return keys;
 }
 
 const TableKeys& material_keys() {
   static const TableKeys keys{
-      "Materials. Without any, there is one that is named \"default\".",
+      "Materials. Without any, there is one named \"default\".",
       {name_key().required().about("Name that bodies, particles, walls and contact pairs refer to."),
        real("density", "kg/m^3")
            .above(0)
            .left_out("none")
-           .about("For particles that give neither mass nor density."),
+           .about("For particles that have neither mass nor density."),
        real("young_modulus", "Pa")
            .above(0)
            .left_out("none")
@@ -342,13 +347,15 @@ const TableKeys& material_keys() {
 const TableKeys& wall_motion_keys() {
   using Kind = WallMotionKind;
   static const TableKeys keys{
-      "How a wall moves, whatever touches it: one motion after the other, each on what those before it "
-      "leave, "
-      "along directions and about axes that the global frame keeps. At t = 0 the wall is where the deck puts "
-      "it: of a function of time its change since then counts.",
+      "Prescribed motions of a wall, whatever touches it, applied one after the other, along directions and "
+      "about axes that are fixed in the global frame. At t = 0 the wall is where the deck places it: only "
+      "the change of a function of time since t = 0 counts.",
       {choice<Kind>("type").required().about(
            "Translation: by displacement along direction. Rotation: by angle about an axis."),
-       vector("direction", "").only_for({Kind::translation}).required().about("Of any length but 0."),
+       vector("direction", "")
+           .only_for({Kind::translation})
+           .required()
+           .about("Direction, of any length but 0."),
        quantity("displacement", "m", time_function_keys())
            .only_for({Kind::translation})
            .required()
@@ -356,7 +363,7 @@ const TableKeys& wall_motion_keys() {
        vector("axis", "")
            .only_for({Kind::rotation})
            .left_out("z in 2D; in 3D it must be given")
-           .about("Right-handed, of any length but 0."),
+           .about("Axis, right-handed, of any length but 0."),
        vector("point", "m").only_for({Kind::rotation}).required().about("Any point of the axis."),
        quantity("angle", "rad", time_function_keys())
            .only_for({Kind::rotation})
@@ -368,14 +375,13 @@ const TableKeys& wall_motion_keys() {
 
 const TableKeys& wall_keys() {
   static const TableKeys keys{
-      "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; "
-      "one "
-      "that is to respond is a body on a joint.",
+      "Walls inside the domain: planes with solid behind them, or meshes. Contacts do not move a wall; a "
+      "wall that responds to them is a body with a joint.",
       {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
        vector("normal", "")
            .left_out("mesh is given")
-           .about("Direction into the free side, of any length but 0, across no periodic axis."),
+           .about("Direction into the free side, of any length but 0, perpendicular to periodic axes."),
        text("mesh")
            .left_out("point and normal are given")
            .about("Name of one of the meshes, in place of a plane; its frame is the global one at t = 0."),
@@ -383,10 +389,10 @@ const TableKeys& wall_keys() {
        tables("motions", wall_motion_keys()),
        vector("surface_velocity", "m/s")
            .left_out("the surface moves as the wall")
-           .about(
-               "How fast the surface runs along itself while the wall stays, as a conveyor's belt does: of "
-               "this vector, fixed to the wall, the part along the surface at each contact; of a plane it "
-               "must be along the plane. It acts by friction alone.")},
+           .about("Tangential velocity of the surface while the wall itself does not move, as that of a "
+                  "conveyor belt. The vector is fixed to the wall; its part tangential to the surface at "
+                  "each contact counts, and for a plane it must be parallel to the plane. It acts by "
+                  "friction only.")},
       ""};
   return keys;
 }

@@ -97,9 +97,21 @@ std::string kinds_text(const Key& key, const std::string& selector) {
   return text;
 }
 
+std::string former_text(const Key& key) {
+  std::string text;
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "formerly " : ", ") + more; };
+  for (const FormerName& former : key.former_names)
+    add(former.text + (former.sense == FormerSense::negated ? ", with the opposite value" : ""));
+  for (const FormerWord& former : key.former_words)
+    add(fmt::format("\"{}\" for \"{}\"", former.text, former.now));
+  return text;
+}
+
 std::string key_facts(const Key& key, const std::string& selector) {
-  const std::string kinds = kinds_text(key, selector);
-  return allowed_values(key, 0) + "; " + default_text(key) + (kinds.empty() ? "" : "; " + kinds);
+  std::string facts = allowed_values(key, 0) + "; " + default_text(key);
+  for (const std::string& more : {kinds_text(key, selector), former_text(key)})
+    if (!more.empty()) facts += "; " + more;
+  return facts;
 }
 
 std::string keys_text() {

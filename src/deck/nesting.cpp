@@ -6,7 +6,8 @@ namespace scree {
 
 namespace {
 
-// Length of the string that a text begins with, quotes included; of an open one, all of its line or text.
+// Length of the string at the beginning of a text, quotes included; an unterminated string extends to the end
+// of its line, or of the text.
 std::size_t string_length(std::string_view text) {
   const char quote = text.front();
   const bool basic = quote == '"';

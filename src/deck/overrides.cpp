@@ -35,7 +35,7 @@ std::vector<std::string> split_path(const std::string& path, const std::string& 
   return parts;
 }
 
-// A table { value = ... } whose nodes name the override as their source.
+// A table { value = ... } whose nodes have the override as their source.
 toml::table parse_value(const std::string& text, const std::string& place) {
   if (line_of_deep_key(text) > 0)
     throw InputError(fmt::format("{}: a key of more than {} parts", place, kMostKeyParts));
@@ -50,7 +50,7 @@ toml::table parse_value(const std::string& text, const std::string& place) {
   return toml::parse(fmt::format("value = '{}'", text), std::string_view(place));
 }
 
-// Element of a list of tables by its key `name`, or by its number.
+// The element of a list of tables with this `name`, or with this number.
 toml::table& element(toml::array& list, const std::string& id, const std::string& place) {
   std::vector<std::string> names;
   for (toml::node& node : list) {

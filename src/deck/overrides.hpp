@@ -1,4 +1,4 @@
-// Values from the command line (--set) put into the deck's TOML tree before it is checked.
+// Inserts values from the command line (--set) into the deck's TOML tree before it is checked.
 #pragma once
 
 #include <toml++/toml.h>
@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// override_text: "key.path=value". Elements of lists of tables go by name or number; tables that are not
-// there yet are made. Throws InputError.
+// override_text: "key.path=value". Elements of lists of tables are addressed by name or number; missing
+// tables are created. Throws InputError.
 void apply_override(toml::table& deck, const std::string& override_text);
 
 }  // namespace scree

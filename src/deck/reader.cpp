@@ -24,12 +24,12 @@ class Reader {
   Reader(const toml::table& deck, const SourceText& source, std::string deck_path, int dimension)
       : deck_(deck), source_(source), deck_path_(std::move(deck_path)), dimension_(dimension) {}
 
-  // quantity_unit: where the table stands for a quantity.
+  // quantity_unit: of the quantity that the table represents.
   DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
                        const std::string& place, const std::string& quantity_unit = "") const;
 
  private:
-  // What a value is being read for.
+  // The key whose value is being read.
   struct Context {
     const Key& key;
     std::string path;                // of the key
@@ -42,7 +42,7 @@ class Reader {
   void read_key(const toml::table& source, const Key& key, DeckTable& table,
                 const std::string& quantity_unit) const;
   void fill_default(const Context& context, DeckTable& table) const;
-  // Whether its default is the one beside another key's value.
+  // Whether the default that depends on another key's value applies.
   bool follows_another_key(const Key& key) const;
   const std::string& default_value(const Key& key) const;
   [[noreturn]] void fail_missing(const Context& context, const DeckTable& table) const;
@@ -67,20 +67,16 @@ class Reader {
   int dimension_;
 };
 
-// Whether the table is of one of these kinds.
+// Whether the table's selector has one of these words.
 bool is_of(const DeckTable& table, const std::vector<std::string>& kinds) {
   return !kinds.empty() &&
          std::find(kinds.begin(), kinds.end(), table.text(table.keys().selector)) != kinds.end();
 }
 
-// What others refer to, and what results are called by: a part of a path in HDF5.
+// Whether the text can be a name: names are referred to, and are parts of paths in HDF5 files.
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= kLongestName && text != "." && text != ".." &&
          text.find('/') == std::string::npos && printable(text) == text;
-}
-
-std::string join_path(const std::string& table, const std::string& key) {
-  return table.empty() ? key : table + "." + key;
 }
 
 DeckTable Reader::read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
@@ -96,7 +92,7 @@ DeckTable Reader::read_table(const toml::table& source, const TableKeys& keys, c
   return table;
 }
 
-// Refuses keys that are not declared, or not for this kind of table.
+// Throws InputError for a key that is not declared, or not for this kind of table.
 void Reader::check_key(const toml::key& name, const toml::node& node, const TableKeys& keys,
                        const DeckTable& table) const {
   const std::string key_name(name.str());
@@ -229,8 +225,7 @@ std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context
     const std::string id = named ? name->as_string()->get() : std::to_string(tables.size());
     const std::string place = place_of(entry.source(), context.place);
     tables.push_back(read_table(*entry.as_table(), *context.key.table, join_path(context.path, id), place));
-    if (named && !names.insert(id).second)
-      tables.back().fail("name", "repeated; every name must be another one");
+    if (named && !names.insert(id).second) tables.back().fail("name", "repeated; names must be different");
   }
   return tables;
 }
@@ -280,7 +275,7 @@ std::string Reader::file(const std::string& value, const toml::node& node, const
   return path;
 }
 
-// A vector's z is 0 in 2D.
+// In 2D the vector's z is 0.
 Vec3 Reader::vector(const toml::node& node, const toml::node& whole, const Context& context) const {
   const toml::array* numbers = node.as_array();
   if (!numbers || numbers->size() != static_cast<std::size_t>(dimension_)) fail(whole, context);
@@ -328,6 +323,10 @@ DeckTable read_deck(const toml::table& source, const std::string& text, const st
   const int known = dimension && *dimension == 2 ? 2 : 3;
   const SourceText written(text, path);
   return Reader(source, written, path, known).read_table(source, deck_keys(), "", path);
+}
+
+std::string join_path(const std::string& table, const std::string& key) {
+  return table.empty() ? key : table + "." + key;
 }
 
 std::string place_of(const toml::source_region& source, const std::string& otherwise) {

@@ -1,4 +1,4 @@
-// From TOML nodes to checked values, driven by the keys' declarations.
+// Converts TOML nodes to checked values, according to the keys' declarations.
 #pragma once
 
 #include <toml++/toml.h>
@@ -9,12 +9,15 @@
 
 namespace scree {
 
-// text: what `source` was parsed from, but for overrides; path: of the deck; both for messages. Throws
-// InputError.
+// text: of the deck from which `source` was parsed, without overrides; path: of the deck; both for messages.
+// Throws InputError.
 DeckTable read_deck(const toml::table& source, const std::string& text, const std::string& path);
 
-// Position of a node: "deck.toml:12:8", or "--set key=value" where an override brought it, or `otherwise` for
-// a node that no text stands for.
+// "bodies.lid", "mass" -> "bodies.lid.mass"; the name alone at the top of the deck.
+std::string join_path(const std::string& table, const std::string& key);
+
+// Place of a node: "deck.toml:12:8", or "--set key=value" for a node of an override, or `otherwise` for a
+// node without a source.
 std::string place_of(const toml::source_region& source, const std::string& otherwise);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// The deck back as text, and its fingerprint.
+// The resolved deck as text, and its fingerprint.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,7 +18,8 @@ bool is_table(const Key& key) { return key.type == ValueType::table || key.type 
 
 class Writer {
  public:
-  // for_fingerprint: contents of files in place of their paths, and without what a restart may change.
+  // for_fingerprint: hashes of the contents of files in place of their paths, and without the keys that a
+  // restart may change.
   Writer(int dimension, bool for_fingerprint) : dimension_(dimension), for_fingerprint_(for_fingerprint) {}
 
   void write_table(const DeckTable& table, const std::string& name);
@@ -122,7 +123,8 @@ std::string Writer::value_text(const DeckTable& table, const Key& key) const {
   return "";
 }
 
-// name: of the table's header in the text, without indices. Values come before tables, as TOML wants.
+// name: of the table's header in the text, without indices. Values are written before tables, as TOML
+// requires.
 void Writer::write_table(const DeckTable& table, const std::string& name) {
   const std::vector<Key>& keys = table.keys().keys;
   for (const Key& key : keys) {

@@ -19,7 +19,7 @@ std::size_t bytes_of(std::string_view text, std::size_t count) {
 
 }  // namespace
 
-// A byte order mark is no character of the first line.
+// A byte order mark is not a character of the first line.
 SourceText::SourceText(std::string_view text, std::string_view path) : text_(text), path_(path) {
   lines_.push_back(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
   for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n', end + 1))
@@ -27,7 +27,7 @@ SourceText::SourceText(std::string_view text, std::string_view path) : text_(tex
 }
 
 std::string_view SourceText::at(const toml::source_region& region) const {
-  constexpr std::size_t kFarthest = 10000;  // the characters of a line are counted for every value in it
+  constexpr std::size_t kFarthest = 10000;  // counting is linear in the column, for every value of a line
   const toml::source_position &begin = region.begin, &end = region.end;
   const bool here = region.path && *region.path == path_ && begin && end && begin.line == end.line &&
                     begin.line <= lines_.size() && begin.column < end.column && end.column < kFarthest;

@@ -1,4 +1,4 @@
-// Values as messages show them: numbers as the deck's text has them.
+// Values as messages show them: numbers are quoted from the deck's text.
 #pragma once
 
 #include <toml++/toml.h>
@@ -18,8 +18,8 @@ class SourceText {
   SourceText() = default;
   SourceText(std::string_view text, std::string_view path);
 
-  // What stands there; empty where that is not in this text, goes over several lines or begins far out in
-  // one.
+  // The text of the region; empty where it is not in this text, spans several lines or begins far to the
+  // right in a line.
   std::string_view at(const toml::source_region& region) const;
 
  private:
@@ -29,7 +29,7 @@ class SourceText {
 
 // A number as TOML text: the shortest that reads back to the same.
 std::string number_text(Real x);
-// A value as TOML text, shortened to a line's length; numbers as they are written in `source`, if they are.
+// A value as TOML text, shortened to a line's length; numbers as written in `source`, where they are in it.
 std::string shown(const toml::node& node, const SourceText& source = {});
 
 }  // namespace scree

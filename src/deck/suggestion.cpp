@@ -20,7 +20,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Letters to insert, delete or replace, or two neighbours to exchange; capitals count as small letters.
+// Number of letters to insert, delete or replace, or of neighbours to exchange; case is ignored.
 std::size_t edit_distance(const std::string& one, const std::string& other) {
   const std::string a = lower(one), b = lower(other);
   std::vector<std::size_t> row(b.size() + 1), above(b.size() + 1), next(b.size() + 1);
@@ -37,13 +37,14 @@ std::size_t edit_distance(const std::string& one, const std::string& other) {
   return row[b.size()];
 }
 
-// "mesh" of "meshes".
+// Whether `one` is the singular of `several`: "mesh" and "meshes".
 bool is_singular_of(const std::string& one, const std::string& several) {
   constexpr std::size_t kShortest = 3;
   return one.size() >= kShortest && (lower(one) + "s" == several || lower(one) + "es" == several);
 }
 
-// A letter, or a quarter of them, or one for several; of two single letters neither is meant for the other.
+// Whether two names differ by one letter or a quarter of them, or are singular and plural. Two different
+// single letters are not close.
 bool is_close(const std::string& a, const std::string& b) {
   const std::size_t letters = std::max(a.size(), b.size()), edits = edit_distance(a, b);
   return is_singular_of(a, b) || (edits < letters && edits <= std::max<std::size_t>(1, letters / 4));
@@ -51,7 +52,7 @@ bool is_close(const std::string& a, const std::string& b) {
 
 std::string did_you_mean(std::string_view name) { return fmt::format("; did you mean \"{}\"?", name); }
 
-// Empty where none is close.
+// The closest name; empty where none is close.
 std::string nearest(const std::string& misspelt, const std::vector<std::string>& names) {
   const auto found = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return edit_distance(misspelt, a) < edit_distance(misspelt, b);
@@ -59,7 +60,7 @@ std::string nearest(const std::string& misspelt, const std::vector<std::string>&
   return found != names.end() && is_close(misspelt, *found) ? *found : "";
 }
 
-// That one of the names which others call so; empty where there is none.
+// The one of `names` for which `said` is a synonym; empty where there is none.
 std::string synonym(const std::string& said, const std::vector<std::string>& names,
                     std::span<const Synonym> synonyms) {
   for (const Synonym& each : synonyms) {
@@ -69,7 +70,7 @@ std::string synonym(const std::string& said, const std::vector<std::string>& nam
   return "";
 }
 
-// A key of another table; a single letter may mean too much.
+// Path of a key for which `said` is a synonym, in any table. Single letters are ambiguous and excluded.
 std::string_view path_of_synonym(const std::string& said) {
   for (const Synonym& each : kKeySynonyms)
     if (said.size() > 1 && each.said == lower(said)) return each.meant;

@@ -1,4 +1,4 @@
-// Words that others use for what the deck has under another name.
+// Synonyms: words that other programs use for keys, words and features of the deck.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ struct Synonym {
   std::string_view meant;
 };
 
-// Of a choice. Of several for one word the first that the choice has is meant.
+// Synonyms of words of choices. Where one word has several, the first that the choice has is meant.
 inline constexpr auto kWordSynonyms = std::to_array<Synonym>({
     {"slider", "translational"},
     {"prismatic", "translational"},
@@ -39,11 +39,13 @@ inline constexpr auto kWordSynonyms = std::to_array<Synonym>({
     {"cyclic", "periodic"},
     {"closed", "wall"},
     {"delete", "remove"},
+    {"ignore", "ballistic"},
+    {"dc", "torque-speed"},
     {"servo", "position"},
     {"servo", "length"},
 });
 
-// Of keys, by their paths; likewise for other tables that have a key of this name.
+// Synonyms of keys, which are given by their paths; valid also for other tables that have a key of this name.
 inline constexpr auto kKeySynonyms = std::to_array<Synonym>({
     {"mu", "contact.pairs.friction"},
     {"mu", "joint_frictions.friction_coefficient"},
@@ -95,8 +97,7 @@ inline constexpr auto kKeySynonyms = std::to_array<Synonym>({
     {"spin", "bodies.angular_velocity"},
 });
 
-// Of what a deck can do, for `scree keys WORD`: the path of a table or key. Words of the two lists above
-// count as well.
+// Subjects, for `scree keys WORD`, with the path of a table or key. The synonyms above count as well.
 inline constexpr auto kTopics = std::to_array<Synonym>({
     {"servo", "motors"},
     {"actuator", "motors"},
@@ -129,6 +130,8 @@ inline constexpr auto kTopics = std::to_array<Synonym>({
     {"psd", "particles.radius"},
     {"sieve", "particles.radius"},
     {"distribution", "particles.radius"},
+    {"lost", "space.leaving"},
+    {"escape", "space.leaving"},
     {"restart", "output.checkpoint_interval"},
     {"vtk", "output.snapshot_interval"},
     {"paraview", "output.snapshot_interval"},
@@ -138,15 +141,15 @@ inline constexpr auto kTopics = std::to_array<Synonym>({
     {"cuda", "integrator.precision"},
 });
 
-// What a deck cannot have. meant: what there is in its place.
+// Features that decks do not support. meant: the alternative.
 inline constexpr auto kAbsent = std::to_array<Synonym>({
-    {"inserter", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"insertion", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"insert", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"inflow", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"inlet", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"factory", "all particles are there at the start; random groups fill boxes (particles.kind)"},
-    {"pour", "all particles are there at the start; random groups fill boxes, and fall (particles.kind)"},
+    {"inserter", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"insertion", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"insert", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"inflow", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"inlet", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"factory", "all particles exist from the start; random groups fill regions (particles.kind)"},
+    {"pour", "all particles exist from the start; random groups fill boxes and fall (particles.kind)"},
     {"clump", "particles are single discs or spheres; a body has any number of shapes (bodies.shapes)"},
     {"multisphere", "particles are single discs or spheres; a body has any number of shapes (bodies.shapes)"},
     {"superquadric", "particles are discs or spheres; a body has any number of shapes (bodies.shapes)"},
@@ -154,19 +157,21 @@ inline constexpr auto kAbsent = std::to_array<Synonym>({
      "particles are discs or spheres; a body has shapes and meshes (bodies.shapes, bodies.meshes)"},
     {"polygon",
      "particles are discs or spheres; a body has shapes and meshes (bodies.shapes, bodies.meshes)"},
-    {"bond", "particles do not bond; they attract each other (contact.pairs.attraction, adhesion)"},
+    {"bond", "particles do not bond; they can attract each other (contact.pairs.attraction, adhesion)"},
     {"breakage", "particles do not break"},
     {"fluid", "there is no fluid"},
     {"cfd", "there is no fluid"},
-    {"drag", "there is no fluid, and so no drag; contacts alone act on particles, and gravity"},
-    {"liquid", "there is no fluid; dry attraction is in contact.pairs.attraction"},
-    {"heat", "there is no heat"},
-    {"temperature", "there is no heat"},
-    {"thermal", "there is no heat"},
-    {"flexible", "bodies are rigid; bushings give way between them (bushings)"},
-    {"beam", "bodies are rigid; bushings give way between them (bushings)"},
-    {"clearance", "joints have no play; stops and bushings give way (joint_limits, bushings)"},
-    {"backlash", "joints have no play; stops and bushings give way (joint_limits, bushings)"},
+    {"drag", "there is no fluid and no drag; only contacts and gravity act on particles"},
+    {"liquid", "there is no fluid; for dry attraction see contact.pairs.attraction"},
+    {"heat", "there is no heat transfer"},
+    {"temperature", "there is no heat transfer"},
+    {"thermal", "there is no heat transfer"},
+    {"flexible", "bodies are rigid; flexible connections are bushings (bushings)"},
+    {"beam", "bodies are rigid; flexible connections are bushings (bushings)"},
+    {"clearance",
+     "joints have no clearance; compliant elements are stops and bushings (joint_limits, bushings)"},
+    {"backlash",
+     "joints have no clearance; compliant elements are stops and bushings (joint_limits, bushings)"},
 });
 
 }  // namespace scree

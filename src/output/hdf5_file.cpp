@@ -335,6 +335,11 @@ void Hdf5File::link(const std::string& target, const std::string& name) {
   }
 }
 
+void Hdf5File::rename(const std::string& from, const std::string& to) {
+  if (H5Lmove(file_, from.c_str(), file_, to.c_str(), making_groups(), H5P_DEFAULT) < 0)
+    fail(fmt::format("rename {} to {}", from, to));
+}
+
 std::vector<std::string> Hdf5File::dataset_names(const std::string& group) const {
   std::vector<std::string> found;
   Hdf5Id id(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);

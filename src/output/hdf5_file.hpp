@@ -122,7 +122,9 @@ class Hdf5File {
   void create_group(const std::string& name);
   // Creates `name` as a second name of `target` (hard link).
   void link(const std::string& target, const std::string& name);
-  // Paths of all datasets below `group`, relative to it.
+  // Of a dataset; the new path must be free.
+  void rename(const std::string& from, const std::string& to);
+  // Paths below `group`, relative to it, of all datasets.
   std::vector<std::string> dataset_names(const std::string& group) const;
 
  private:

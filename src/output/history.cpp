@@ -32,7 +32,23 @@ std::string dataset_path(const HistoryColumn& column) {
   return column.group.empty() ? column.name : column.group + "/" + column.name;
 }
 
-// The deck key that selects the column.
+// A column that earlier versions wrote under another path.
+struct FormerColumn {
+  std::string former, now;
+};
+const std::vector<FormerColumn>& former_columns() {
+  static const std::vector<FormerColumn> all = {{"step/left", "step/particles_escaped"}};
+  return all;
+}
+
+std::vector<FormerColumn> former_columns_among(const std::vector<std::string>& names) {
+  std::vector<FormerColumn> found;
+  for (const FormerColumn& column : former_columns())
+    if (std::ranges::find(names, column.former) != names.end()) found.push_back(column);
+  return found;
+}
+
+// What in the deck chooses the column.
 std::string key_of(const std::string& column) {
   const std::string group = column.substr(0, column.find('/'));
   for (const char* const listed :
@@ -93,11 +109,15 @@ HistoryWriter::HistoryWriter(const std::string& directory, std::vector<HistoryCo
 
 void HistoryWriter::cut(std::int64_t keep) {
   bool longer = false;
+  std::vector<FormerColumn> renamed;
   {
     const Hdf5File file(file_.path(), Hdf5Access::read);
-    require_columns(file);
+    const std::vector<std::string> names = file.dataset_names("/");
+    renamed = former_columns_among(names);
+    require_columns(names);
     for (const HistoryColumn& column : columns_) {
-      const std::int64_t rows = file.rows(dataset_path(column));
+      const auto former = std::ranges::find(renamed, dataset_path(column), &FormerColumn::now);
+      const std::int64_t rows = file.rows(former == renamed.end() ? dataset_path(column) : former->former);
       if (rows < keep) {
         throw IoError(fmt::format("{}: {} holds {} rows, but the restarted run has written {}", file_.path(),
                                   dataset_path(column), rows, keep));
@@ -105,16 +125,18 @@ void HistoryWriter::cut(std::int64_t keep) {
       longer = longer || rows > keep;
     }
   }
-  if (!longer) return;
+  if (!longer && renamed.empty()) return;
   file_.update({[&](Hdf5File& file) {
+                  for (const FormerColumn& column : renamed) file.rename(column.former, column.now);
                   for (const HistoryColumn& column : columns_) file.resize_rows(dataset_path(column), keep);
                 },
                 {}});
 }
 
-// A restart with other columns must write a new file.
-void HistoryWriter::require_columns(const Hdf5File& file) const {
-  const std::vector<std::string> names = file.dataset_names("/");
+// A restart may ask for other columns: they begin a new file.
+void HistoryWriter::require_columns(std::vector<std::string> names) const {
+  for (const FormerColumn& column : former_columns_among(names))
+    std::ranges::replace(names, column.former, column.now);
   const std::set<std::string> held(names.begin(), names.end());
   std::set<std::string> wanted;
   for (const HistoryColumn& column : columns_) wanted.insert(dataset_path(column));

@@ -22,9 +22,10 @@ struct HistoryColumn {
 // during a write; history.csv may then end with an incomplete line.
 class HistoryWriter {
  public:
-  // keep: number of rows of existing files to keep for a restart (later rows are cut off); 0 replaces
-  // existing files. Throws IoError if the file has fewer rows or other columns. likely_rows: expected number
-  // of rows, which sizes a new file; 0: not known, many.
+  // keep: number of rows to keep when a restarted run continues an existing file (later ones are cut off); 0
+  // starts new files and removes old ones. Throws IoError where the file holds fewer rows or other columns;
+  // columns under the names of earlier versions get the present names.
+  // likely_rows: at the end, which sizes a new file; 0: not known, many.
   HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv, std::int64_t keep,
                 std::int64_t likely_rows = 0);
   // Appends one value per column. Throws SimulationError for another number of values.
@@ -34,7 +35,7 @@ class HistoryWriter {
 
  private:
   void cut(std::int64_t keep);
-  void require_columns(const Hdf5File& file) const;
+  void require_columns(std::vector<std::string> names) const;
   void write_rows(Hdf5File& file, std::int64_t rows_before) const;
   void rewrite_csv() const;
 

@@ -73,7 +73,7 @@ gravity = [0.0, 0.0, -9.8]
 dimension = 3
 min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 0.01
 [[contact.pairs]]
@@ -165,7 +165,7 @@ class MotionTest(BodiesTest):
 
 
 class RedundancyTest(BodiesTest):
-    SHARE = ("--set", "integrator.redundant=share", "--set", "output.history_csv=true")
+    SHARE = ("--set", "integrator.redundant=minimum-norm", "--set", "output.history_csv=true")
     NAMES = "joint 'o', joint 'a', joint 'b', joint 'd'"
 
     def test_a_loop_of_hinges_is_refused_or_shares_its_reactions(self):
@@ -194,7 +194,7 @@ class RedundancyTest(BodiesTest):
         self.use()
         text = self.expect(BAD_INPUT, "check", self.deck, "--set", "integrator.redundant=drop").stderr
         self.assertIn('"error"', text)
-        self.assertIn('"share"', text)
+        self.assertIn('"minimum-norm"', text)
 
 
 class CollidesTest(BodiesTest):

@@ -26,7 +26,7 @@ min = [-0.35, -1.0]
 max = [0.35, 1.0]
 x_min = "periodic"
 x_max = "periodic"
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 0.4
@@ -179,7 +179,7 @@ class UsageTest(CommandLineTest):
 
     def test_keys_are_the_manual(self):
         text = self.expect(DONE, "keys").stdout
-        for key in ("time", "step", "hht_alpha", "stiffness", "tension", "leaving", "history_csv", "max_start_overlap",
+        for key in ("time", "step", "hht_alpha", "stiffness", "limit_damping", "leaving", "history_csv", "max_start_overlap",
                     "spring_dampers", "drivers", "min_step", "precision"):
             self.assertIn(key, text)
         for word in ("[s]", "[N/m^n]", "default", "required"):
@@ -195,7 +195,7 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
-                     'particles that leave: "drift"', "\nsnapshots      2 of about ",
+                     'a particle that leaves: "ballistic"', "\nsnapshots      2 of about ",
                      "particles      6", "\nhistory        4001 rows of 48 columns, about ", "\ndisk           about ",
                      "\ncheckpoints    one at the end, about ", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
@@ -224,7 +224,7 @@ class DeckErrorTest(CommandLineTest):
                  ("step = 1e-4", "step = -1e-4", "time.step = -1e-4", "above 0"),
                  ("step = 1e-4", 'step = "fast"', 'time.step = "fast"', "number"),
                  ("dimension = 2", "dimension = 5", "space.dimension = 5", "from 2 to 3"),
-                 ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
+                 ('leaving = "ballistic"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
                  ("damping = 3.0", "damping = [3.0]", "contact.pairs.0.damping", "number"),
                  ("damping = 3.0", "restitution = 0.5\ndamping = 3.0", "contact.pairs.0.restitution = 0.5",
                   "stands beside a damping"),

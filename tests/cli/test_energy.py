@@ -38,7 +38,7 @@ max = [{1:.1f}, 5.0, 5.0]
 [time]
 end = 1.0
 [integrator]
-redundant = "share"
+redundant = "minimum-norm"
 [[bodies]]
 name = "beam"
 kind = "spatial"
@@ -179,7 +179,7 @@ class WarningTest(CommandLineTest):
     def test_particles_that_drift_are_measured_as_those_that_are_removed(self):
         for steps, settings in self.COARSE:
             (drift, a), (remove, b) = (self.run_text(FALL.format(**steps), f"space.leaving='{leaving}'", *settings)
-                                       for leaving in ("drift", "remove"))
+                                       for leaving in ("ballistic", "remove"))
             self.assertEqual(drift, remove)
             self.assertEqual(len(remove), 1)
             for name in ("energy_exchanged", "balance_error", "energy_taken_by_integrator"):
@@ -213,7 +213,7 @@ class WarningTest(CommandLineTest):
 
     def test_an_interrupted_run_says_what_a_whole_one_says(self):
         for steps, settings in self.COARSE:
-            text, settings = FALL.format(**steps), ("space.leaving='drift'", *settings)
+            text, settings = FALL.format(**steps), ("space.leaving='ballistic'", *settings)
             whole = self.run_text(text, *settings, output="whole")
             self.run_text(text, *settings, "time.end=0.4", output="part")
             going_on = ("--restart", self.folder / "part/checkpoint_end.h5")

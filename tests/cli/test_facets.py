@@ -14,7 +14,7 @@ DECK = """gravity = [0.0, 0.0, -9.81]
 dimension = 3
 min = [-0.5, -0.5, -0.5]
 max = [0.5, 0.5, 0.5]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 2e-3
 step = 1e-5

@@ -13,7 +13,7 @@ dimension = 3
 min = [0.0, 0.0, 0.0]
 max = [1.0, 1.0, 1.0]
 z_min = "wall"
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 0.2
 step = 1e-4

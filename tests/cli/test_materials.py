@@ -15,7 +15,7 @@ min = [0.0, 0.0, 0.0]
 max = [1.0, 1.0, 1.0]
 z_min = "wall"
 wall_material = "floor"
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 0.25
 step = 1e-4
@@ -120,8 +120,8 @@ class MaterialsTest(CommandLineTest):
             (MIXED.replace("friction = 0.8", "friction = 0.8\nrolling_friction = 0.1"), "rolling_friction",
              'contact.pairs.1.rolling_friction = 0.1: the pair ["glass", "glass"] has none',
              'contact.mixing cannot make the pair ["glass", "rubber"]; give it in [[contact.pairs]]'),
-            (MIXED.replace("friction = 0.5", "friction = 0.5\ntension = true"), "tension",
-             'tension = true: differs from the false of the pair ["glass", "glass"]', "give it in"))
+            (MIXED.replace("friction = 0.5", "friction = 0.5\nlimit_damping = false"), "limit_damping",
+             'limit_damping = false: differs from the true of the pair ["glass", "glass"]', "give it in"))
         for text, line, *parts in cases:
             with self.subTest(parts=parts):
                 message = self.expect(BAD_INPUT, "check", self.write("bad.toml", text)).stderr

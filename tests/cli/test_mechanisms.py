@@ -14,7 +14,7 @@ gravity = [0.0, 0.0, 0.0]
 dimension = 3
 min = [-3.0, -3.0, -3.0]
 max = [3.0, 3.0, 3.0]
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 1.0
@@ -73,7 +73,7 @@ gravity = [0.0, 0.0]
 dimension = 2
 min = [-3.0, -3.0]
 max = [3.0, 3.0]
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 1.0
@@ -121,7 +121,7 @@ class ContradictionTest(CommandLineTest):
                              ((0.0, 6.0), "velocities that they require at t = 0 differ by 0.283185 rad/s")):
             deck = FIRST + DRIVEN.format("second", RAMP.format(*second))
             place = f"{self.folder / 'bad.toml'}:{self.line(deck, 'second')}:1: drivers.second: "
-            for redundant in ("error", "share"):
+            for redundant in ("error", "minimum-norm"):
                 for text in self.refusals(deck, f"integrator.redundant={redundant}"):
                     self.assertEqual(text, f"{place}driver 'first', driver 'second' contradict each other: the {what}, "
                                            "and no motion satisfies them all. Change or remove one\n")
@@ -130,9 +130,9 @@ class ContradictionTest(CommandLineTest):
         deck = FIRST + DRIVEN.format("second", RAMP.format(0.0, TURN))
         for text in self.refusals(deck):
             self.assertIn(f"bad.toml:{self.line(deck, 'second')}:1: drivers.second: redundant constraints: ", text)
-            self.assertIn('set integrator.redundant = "share"', text)
+            self.assertIn('set integrator.redundant = "minimum-norm"', text)
             self.assertNotIn("singular", text)
-        self.expect(DONE, "check", self.write("good.toml", deck), "--set", "integrator.redundant=share")
+        self.expect(DONE, "check", self.write("good.toml", deck), "--set", "integrator.redundant=minimum-norm")
 
     def test_a_driver_of_a_joint_that_another_one_holds(self):
         weld = '\n[[joints]]\nname = "weld"\ntype = "fixed"\nbodies = ["ground", "crank"]\npoint = [0.0, 0.0, 0.0]\n'
@@ -155,8 +155,8 @@ class ContradictionTest(CommandLineTest):
     def test_a_linkage_that_lies_flat(self):
         deck = four_bar(0.0, 0.0)
         for text in self.refusals(deck):
-            self.assertIn("as in a flat linkage, the position is singular: permit it, or start elsewhere", text)
-        share = ("--set", "integrator.redundant=share")
+            self.assertIn("as a linkage that lies flat, it is singular: share, or start elsewhere", text)
+        share = ("--set", "integrator.redundant=minimum-norm")
         self.expect(DONE, "check", self.write("flat.toml", deck), *share)
         # The velocities with the least energy: the rocker's are not the crank's, and no motion goes on from there.
         resting = "".join(line for line in deck.splitlines(True) if "velocity" not in line)
@@ -167,9 +167,9 @@ class ContradictionTest(CommandLineTest):
         deck = self.write("flat.toml", four_bar(-0.5, -0.5))
         text = self.expect(FAILED, "run", deck, "--output", self.folder / "out").stderr
         self.assertIn("no convergence in 50 iterations", text)
-        self.assertIn('it is singular; integrator.redundant = "share" passes it', text)
-        self.assertIn("driver 'drive' are redundant in this position", text)
-        self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=share")
+        self.assertIn('it is singular; integrator.redundant = "minimum-norm" passes it', text)
+        self.assertIn("driver 'drive' repeat each other in this position", text)
+        self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=minimum-norm")
 
 
 SOLIDS = """
@@ -240,8 +240,8 @@ class DeadPointTest(CommandLineTest):
 
     def test_a_slider_that_is_driven_past_its_reach(self):
         deck, start = slider_crank(0.5, RAMP.format(0.0, 0.1))
-        for settings in ((), ("time.control=adaptive",), ("integrator.redundant=share",),
-                         ("time.control=adaptive", "integrator.redundant=share")):
+        for settings in ((), ("time.control=adaptive",), ("integrator.redundant=minimum-norm",),
+                         ("time.control=adaptive", "integrator.redundant=minimum-norm")):
             time = float(self.failure(deck, *settings).split("t = ")[1].split(" ")[0])
             self.assertAlmostEqual(time, (0.4 - start) / 0.1, 3)
 
@@ -260,9 +260,9 @@ class DeadPointTest(CommandLineTest):
         self.assertIn("drivers.push: driver 'push' asks for a motion that the mechanism cannot follow: its position at "
                       "t = 0 is a dead point, where joint 'pivot', joint 'pin', joint 'wrist', driver 'push' are "
                       "dependent", text)
-        self.assertIn('redundant = "share" does not pass it', text)
+        self.assertIn('redundant = "minimum-norm" does not pass it', text)
         result = self.expect(FAILED, "run", path, "--output", self.folder / "flat",
-                             "--set", "integrator.redundant=share", "--set", "time.control=adaptive")
+                             "--set", "integrator.redundant=minimum-norm", "--set", "time.control=adaptive")
         self.assertIn("driver 'push' asks for a motion that the mechanism cannot follow", result.stderr)
 
     def test_a_driver_that_turns_its_joint_too_far_in_a_step(self):

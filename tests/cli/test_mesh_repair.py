@@ -16,7 +16,7 @@ DECK = """gravity = [0.0, 0.0, -9.81]
 dimension = 3
 min = [-1000.0, -10.0, -10.0]
 max = [1000.0, 10.0, 10.0]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 1e-3
 step = 1e-4

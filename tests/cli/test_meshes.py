@@ -286,7 +286,7 @@ TRAY = """gravity = [0.0, 0.0, -9.8066]
 dimension = 3
 min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 1.0

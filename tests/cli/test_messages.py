@@ -16,7 +16,7 @@ HEAD = """gravity = [0.0, 0.0, -9.81]
 dimension = 3
 min = [-1e6, -1e6, -1e6]
 max = [1e6, 1e6, 1e6]
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 1e-3
@@ -148,7 +148,7 @@ def sharing(l, m, t):
 gravity = {at(0.0, -9.81 / t ** 2)}
 
 [integrator]
-redundant = "share"
+redundant = "minimum-norm"
 
 [space]
 dimension = 2

@@ -73,11 +73,11 @@ def write_scaled_deck(path, particles):
     lines = [
         f'title = "Table 4 scaled: {nets} nets and {particles} particles"', f"gravity = {paper['gravity']}",
         "[space]", "dimension = 2", f"min = [{left - side}, {paper['space']['min'][1]}]",
-        f"max = [{-left + side}, {max(3.0, low + rows * dy)}]", 'leaving = "drift"',
+        f"max = [{-left + side}, {max(3.0, low + rows * dy)}]", 'leaving = "ballistic"',
         "[time]", f"end = {paper['time']['end']}", f"step = {paper['time']['step']}", 'control = "fixed"',
         "[integrator]", 'particles = "hht"', f"hht_alpha = {paper['integrator']['hht_alpha']}",
         "[[contact.pairs]]", f"stiffness = {law['stiffness']}", f"damping = {law['damping']}",
-        f"tension = {str(law['tension']).lower()}",
+        f"limit_damping = {str(law['limit_damping']).lower()}",
     ]
     for k in range(nets):
         x = left + (k + 0.5) * block["size"][0] * dx - dx / 2 - (net["count"] - 1) * net["spacing"][0] / 2

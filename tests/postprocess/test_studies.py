@@ -39,7 +39,7 @@ class ListTest(FolderTest):
         path, study = self.folder / "list", self.folder / "study"
         deck = DECK.with_name("net_9.toml")
         count = scree.sweep.write_list(path, deck, {"time.step": [1e-3, np.float64(5e-4)],
-                                                    "space.leaving": ["drift", "remove"]})
+                                                    "space.leaving": ["ballistic", "remove"]})
         lines = path.read_text().splitlines()
         self.assertEqual((count, len(lines)), (4, 4))
         self.assertEqual(lines[1], f"{deck} --set time.step=0.001 --set space.leaving=remove")
@@ -159,7 +159,7 @@ class StudyTest(FolderTest):
         table = pandas.read_csv(csv)
         self.assertEqual(list(table["status"]), ["done"] * 6)
         self.assertEqual(sorted(set(table["contact.pairs.0.friction"])), [0.1, 0.3, 0.5])
-        self.assertTrue({"escaped", "belt force [N]", "belt work [J]"} <= set(table))
+        self.assertTrue({"escaped", "pull [N]", "work [J]"} <= set(table))
 
 
 if __name__ == "__main__":

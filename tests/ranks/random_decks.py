@@ -78,7 +78,7 @@ class DeckMaker:
     def space(self):
         space = {"dimension": self.axes, "min": [0.0] * self.axes, "max": list(SIZE[:self.axes]),
                  "wall_material": self.chance.choice(("rough", "slick")),
-                 "leaving": self.chance.choice(("remove", "drift"))}
+                 "leaving": self.chance.choice(("remove", "ballistic"))}
         for axis in "xyz"[:self.axes]:
             kind = self.chance.choice(("periodic", "walls", "open below", "walls"))
             if kind == "periodic":

@@ -26,7 +26,7 @@ control = "fixed"
 [[contact.pairs]]
 stiffness = {}
 damping = {}
-tension = {}
+limit_damping = {}
 exponent = {}
 [[particles]]
 name = "disc"
@@ -35,7 +35,7 @@ positions = [[0.0, 0.0]]
 radius = 0.05
 mass = 1.0
 )",
-                     stiffness, damping, tension, exponent);
+                     stiffness, damping, !tension, exponent);
 }
 
 // A linear Kelvin-Voigt impact in closed form (tests/reference/README.md): restitution and duration.

@@ -29,7 +29,7 @@ min = [-0.35, -1.0]
 max = [0.35, 1.0]
 x_min = "periodic"
 x_max = "periodic"
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 0.05
 control = "fixed"

@@ -10,7 +10,7 @@ gravity = [0.0, 0.0, -9.80665]
 dimension = 3
 min = [0.0, 0.0, 0.0]
 max = [0.0, 0.0, 0.0]
-leaving = "drift"
+leaving = "ballistic"
 
 [time]
 end = 1.0                           # adaptive steps; with many particles see input/choosing.md

@@ -58,7 +58,7 @@ KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int 
                           bool has_moduli) {
   const bool from_overlap = table.has("largest_overlap");
   KelvinVoigt law{from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
-                  table.real("damping"), table.real("exponent"), table.boolean("tension")};
+                  table.real("damping"), table.real("exponent"), !table.boolean("limit_damping")};
   const char* key = from_overlap ? "largest_overlap" : "stiffness";
   if (law.normal_stiffness != 0) check_normal(table, key, law.normal_stiffness);
   if (law.normal_stiffness == 0 && law.normal_damping > 0)
@@ -99,7 +99,7 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
   if (table.real("exponent") != 1)
     table.fail("exponent", "must be left out for Hertz's law, which has its own");
   KelvinVoigt law;
-  law.tension = table.boolean("tension");
+  law.tension = !table.boolean("limit_damping");
   law.effective_modulus = 1 / (1 / moduli[0] + 1 / moduli[1]);
   take_restitution(table, law);
   return law;

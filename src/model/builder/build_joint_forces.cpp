@@ -115,7 +115,7 @@ JointSpring build_spring(const DeckTable& table) {
   JointSpring spring;
   spring.stiffness = table.real("stiffness");
   spring.damping = table.real("damping");
-  if (table.has("free")) spring.free = table.real("free");
+  if (table.has("free_coordinate")) spring.free = table.real("free_coordinate");
   spring.elastic = build_curve(table, "coordinates", "elastic_efforts");
   spring.dissipative = build_curve(table, "rates", "damping_efforts");
   return spring;

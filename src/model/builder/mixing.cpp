@@ -116,7 +116,7 @@ void Combination::take_series(const char* key) {
 }
 
 void Combination::take_stiffness() {
-  take_same("exponent"), take_same("tension");
+  take_same("exponent"), take_same("limit_damping");
   take_same("largest_overlap"), take_same("impact_speed");
   if (both("stiffness"))
     set_series("stiffness", a_.real("stiffness"), b_.real("stiffness"), a_.real("exponent"));

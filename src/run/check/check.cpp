@@ -37,19 +37,15 @@ std::string range(Real smallest, Real largest, const char* unit) {
 }
 
 std::string sides_line(const Space& space) {
-  constexpr std::array<const char*, 3> kKinds = {"open", "wall", "periodic"},
-                                       kPolicies = {"error", "remove", "drift"};
-  const auto kind = [&](int side) { return kKinds[static_cast<std::size_t>(space.boundary[side])]; };
   std::string sides;
   bool open = false;
   for (int side = 0; side < 2 * space.dimension; ++side) {
-    sides += fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[as_size(side)], kind(side));
+    sides += fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[static_cast<std::size_t>(side)],
+                         word_of(space.boundary[side]));
     open = open || space.boundary[side] == Boundary::open;
   }
-  return fmt::format(
-      "sides          {}{}\n", sides,
-      open ? fmt::format("; particles that leave: \"{}\"", kPolicies[static_cast<std::size_t>(space.leaving)])
-           : "");
+  return fmt::format("sides          {}{}\n", sides,
+                     open ? fmt::format("; a particle that leaves: \"{}\"", word_of(space.leaving)) : "");
 }
 
 std::string gravity_line(Vec3 gravity) {

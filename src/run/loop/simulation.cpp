@@ -341,7 +341,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"migrated", migrated_},
                    {"particles", model_.particles.totals.count},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
-                   {"left", state_.carried_out.left},
+                   {"particles_escaped", state_.carried_out.left},
                    {"bodies_outside", bodies_outside(model_, state_.bodies).count},
                    {"history_rows", state_.history_rows},
                    {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};

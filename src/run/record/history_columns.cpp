@@ -50,9 +50,9 @@ void step_columns(Group step) {
                  [](const Sample& s) { return s.counts.rejected_newton; });
   step.add_count("contacts", "contacts, including those with walls and body shapes",
                  [](const Sample& s) { return s.particles.contacts; });
-  step.add_count("left", "particles that have escaped from the domain so far",
+  step.add_count("particles_escaped", "particles that have left the domain so far",
                  [](const Sample& s) { return s.left; });
-  step.add_count("bodies_outside", "bodies whose centre of mass is outside the domain",
+  step.add_count("bodies_outside", "bodies whose centre is outside the space",
                  [](const Sample& s) { return s.bodies_outside; });
 }
 

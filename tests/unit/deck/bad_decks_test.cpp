@@ -35,7 +35,7 @@ TEST_CASE("text that is not TOML") {
   CHECK(contains(message, "deck.toml:1:"));
   CHECK(contains(message, "not TOML"));
   for (const char* bare : {"wall", "fixed", "no"})
-    CHECK(contains(deck_error(with_line(8, fmt::format("control = {}", bare))), "; texts stand in quotes"));
+    CHECK(contains(deck_error(with_line(8, fmt::format("control = {}", bare))), "; texts need quotes"));
   CHECK_FALSE(contains(deck_error(with_line(8, "step = 1m")), "quotes"));
 }
 
@@ -147,7 +147,7 @@ TEST_CASE("a quantity is a number or a table") {
 TEST_CASE("repeated names") {
   const std::string body = "[[bodies]]\nname = \"a\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
   CHECK(deck_error(kSmallDeck + body + body) ==
-        "deck.toml:16:8: bodies.a.name = \"a\": repeated; every name must be another one");
+        "deck.toml:16:8: bodies.a.name = \"a\": repeated; names must be different");
 }
 
 TEST_CASE("a file that cannot be read") {

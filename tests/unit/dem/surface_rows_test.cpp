@@ -84,7 +84,7 @@ x_min = "periodic"
 x_max = "periodic"
 z_min = "periodic"
 z_max = "periodic"
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 1.0
 step = 1e-4

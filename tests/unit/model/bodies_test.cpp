@@ -184,7 +184,7 @@ materials = ["steel", "glass"]
 stiffness = 7.0
 damping = 0.5
 exponent = 1.5
-tension = true
+limit_damping = false
 [[walls]]
 name = "plane"
 point = [0.0, 0.0]

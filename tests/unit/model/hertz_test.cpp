@@ -66,7 +66,7 @@ std::string error_of(const std::string& text) { return model_error(kSpace + text
 TEST_CASE("a pair without a stiffness follows Hertz's law from the moduli of its materials") {
   const Model model =
       model_of(kSpace + kSteel + kRubber + kGrains + kLarge + steel_pair("restitution = 0.9\n") +
-               pair_of("rubber", "steel", "restitution = 0.5\ntension = true\n") +
+               pair_of("rubber", "steel", "restitution = 0.5\nlimit_damping = false\n") +
                pair_of("rubber", "rubber", "stiffness = 0.0\n"));
   const KelvinVoigt &steel = model.contact.law(0, 0), &mixed = model.contact.law(0, 1);
   CHECK(near(steel.effective_modulus, 2e11 / (2 * 0.91), {.relative = kRoundOff}));

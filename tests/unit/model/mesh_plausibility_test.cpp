@@ -21,7 +21,7 @@ const std::string kSpace = R"([space]
 dimension = 3
 min = [-1, -1, -1]
 max = [1, 1, 1]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 1.0
 step = 1e-5
@@ -56,7 +56,8 @@ std::vector<std::string> of(const std::string& text, const std::string& deck,
 std::string line(Real degrees) {
   const Real t = std::tan(degrees * M_PI / 360);
   return fmt::format(
-      "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\nleaving = \"drift\"\n[time]\nend = 1.0\nstep = "
+      "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\nleaving = \"ballistic\"\n[time]\nend = "
+      "1.0\nstep = "
       "1e-5\n"
       "[integrator]\nparticles = \"velocity-verlet\"\n[[contact.pairs]]\nstiffness = 1e4\n[[meshes]]\nname = "
       "\"m\"\n"

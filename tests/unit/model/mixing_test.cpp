@@ -102,8 +102,9 @@ TEST_CASE("a pair that is not given follows from the like ones, key by key") {
   check_becomes("geometric", soft + "damping = 2.0\n", hard + "damping = 8.0\n", both + "damping = 4.0\n");
   check_becomes("arithmetic", soft + "damping = 2.0\n", hard, both + "damping = 1.0\n");
   check_becomes("arithmetic", soft + "restitution = 0.5\n", hard, both + "restitution = 0.75\n");
-  check_becomes("minimum", soft + "restitution = 0.5\ntension = true\n",
-                hard + "restitution = 0.75\ntension = true\n", both + "restitution = 0.5\ntension = true\n");
+  check_becomes("minimum", soft + "restitution = 0.5\nlimit_damping = false\n",
+                hard + "restitution = 0.75\nlimit_damping = false\n",
+                both + "restitution = 0.5\nlimit_damping = false\n");
   check_becomes("maximum", "stiffness = 4e6\nexponent = 2.0\n", "stiffness = 4e6\nexponent = 2.0\n",
                 "stiffness = 4e6\nexponent = 2.0\n");
   check_becomes("maximum", "largest_overlap = 0.02\nimpact_speed = 2.0\n",
@@ -172,7 +173,7 @@ TEST_CASE("every key of a pair is mixed") {
                                           "damping",
                                           "exponent",
                                           "restitution",
-                                          "tension",
+                                          "limit_damping",
                                           "friction",
                                           "tangential_stiffness",
                                           "tangential_damping_ratio",
@@ -218,7 +219,7 @@ TEST_CASE("pairs that cannot be made are refused") {
       "[\"b\", \"b\"] in [[contact.pairs]], to be combined of; give that pair, or this one"));
   refused(soft, soft + "exponent = 1.5\n",
           "contact.pairs.1.exponent = 1.5: differs from the 1 of the pair [\"a\", \"a\"]" + end);
-  refused(soft, soft + "tension = true\n", "tension = true: differs from the false of the pair");
+  refused(soft, soft + "limit_damping = false\n", "limit_damping = false: differs from the true of the pair");
   refused("stiffness = 0.0\n", soft,
           "contact.pairs.0.stiffness = 0.0: is 0, and that of the pair [\"b\", \"b\"] is not" + end);
   refused(soft, soft + "friction = 0.5\n",

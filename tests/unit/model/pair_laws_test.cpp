@@ -34,7 +34,7 @@ const KelvinVoigt& law_of(const Model& model) { return model.contact.law(0, 0); 
 
 TEST_CASE("a restitution beside a stiffness becomes a damping ratio") {
   for (const bool tension : {false, true}) {
-    const std::string pulls = tension ? "tension = true\n" : "";
+    const std::string pulls = tension ? "limit_damping = false\n" : "";
     const Model linear = model_of(deck_of("stiffness = 1e5\nrestitution = 0.4\n" + pulls));
     CHECK(near(restitution_of(law_of(linear).damping_ratio, tension), 0.4, {.relative = kRoundOff}));
     CHECK(law_of(linear).normal_damping == 0);

@@ -25,7 +25,7 @@ const std::string kSpheres = R"(
 dimension = 3
 min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 0.5
 [integrator]

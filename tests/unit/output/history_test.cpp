@@ -84,6 +84,24 @@ TEST_CASE("a restarted history cuts off later rows and continues") {
   CHECK(lines_of(scratch / "history.csv").size() == 18);
 }
 
+TEST_CASE("a restarted history renames the columns of earlier versions") {
+  ScratchDirectory scratch;
+  std::vector<HistoryColumn> columns = kColumns;
+  columns[1] = {"step", "left", "1", "particles that have left"};
+  {
+    HistoryWriter first(scratch.path(), columns, false, 0);
+    append_rows(first, 5), first.flush();
+  }
+  columns[1].name = "particles_escaped";
+  HistoryWriter second(scratch.path(), columns, true, 4);
+  append_rows(second, 2), second.flush();
+  const Hdf5File file(scratch / "history.h5", Hdf5Access::read);
+  CHECK(file.dataset_names("/").size() == columns.size());
+  CHECK(file.read_array<Real>("/step/particles_escaped").size() == 6);
+  CHECK(file.read_array<Real>("/step/particles_escaped")[3] == 1);
+  CHECK(lines_of(scratch / "history.csv").size() == 7);
+}
+
 TEST_CASE("a history that does not fit is refused") {
   ScratchDirectory scratch;
   CHECK_THROWS_AS(HistoryWriter(scratch.path(), kColumns, false, 3), IoError);

@@ -294,7 +294,7 @@ TEST_CASE("--allow-changes continues with other steps, forces and integrators, a
       {"contact.pairs.0.stiffness=2e4"},
       {"bodies.arm.mass=2.0"},
       {"particles.discs.mass=2.0"},
-      {"space.leaving=drift"},
+      {"space.leaving=ballistic"},
       {"integrator.particles=velocity-verlet", "time.step=1e-4"}};
   for (std::vector<std::string> overrides : changes) {
     CAPTURE(overrides[0]);

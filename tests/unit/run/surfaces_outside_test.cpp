@@ -22,7 +22,7 @@ positions = [[-0.5, 0.0]]
 radius = 0.02
 mass = 1.0
 )";
-const std::string kDrift = "space.leaving=drift";
+const std::string kDrift = "space.leaving=ballistic";
 
 std::string at_start(const std::vector<std::string>& overrides, const std::string& leaving = kDrift) {
   std::vector<std::string> all = overrides;

@@ -24,7 +24,7 @@ gravity = [0.0, 0.0, -9.81]
 dimension = 3
 min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = {}
 step = {}
@@ -110,7 +110,7 @@ struct Load {
 
 constexpr const char* kRevolute =
     "type = \"revolute\"\naxis = [0.0, 1.0, 0.0]\n[[joint_springs]]\nname = \"damper\"\njoint = \"hinge\"\n"
-    "stiffness = 0.0\ndamping = 0.05\nfree = 0.0\n";
+    "stiffness = 0.0\ndamping = 0.05\nfree_coordinate = 0.0\n";
 
 }  // namespace
 
@@ -163,7 +163,7 @@ name = "spring"
 joint = "guide"
 stiffness = {}
 damping = {}
-free = 0.0
+free_coordinate = 0.0
 )",
                                             kBodyMass, 1e4 * mass, 700 * mass);
       SimulationRun run(model_of(head(1e-4, end, substeps, 0) + plate + grains(16, 4, 0.03, 0, mass)));

@@ -24,7 +24,8 @@ std::string start_of_deck(int dimension, const std::string& gravity, const std::
                           const std::string& floor) {
   return "velocities = \"consistent\"\ngravity = " + gravity +
          "\n[space]\ndimension = " + std::to_string(dimension) + "\n" + corners + floor +
-         " = \"wall\"\n[time]\nend = 0.6\n[integrator]\nredundant = \"share\"\n[[contact.pairs]]\nstiffness "
+         " = \"wall\"\n[time]\nend = 0.6\n[integrator]\nredundant = "
+         "\"minimum-norm\"\n[[contact.pairs]]\nstiffness "
          "= "
          "1e5\nrestitution = 0.7\n";
 }

@@ -157,7 +157,7 @@ angular_velocity = [10.0, 3.0, 5.0]
 [output]
 history_interval = 1e-2
 )";
-  for (const std::string leaving : {"remove", "drift"}) {
+  for (const std::string leaving : {"remove", "ballistic"}) {
     CAPTURE(leaving);
     const auto error_at = [&](const std::string& step) {
       SimulationRun run(model_of(deck, {"space.leaving=" + leaving, "time.step=" + step}));

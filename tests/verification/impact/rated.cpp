@@ -34,7 +34,7 @@ hht_alpha = 0.0
 stiffness = {}
 exponent = {}
 restitution = {}
-tension = {}
+limit_damping = {}
 [[particles]]
 name = "ball"
 kind = "list"
@@ -44,7 +44,7 @@ radius = 1.0
 mass = {}
 )",
                               1.2 * row["separation_time"], h, integrator, row["K"], row["n"], row["e"],
-                              row.word("variant") == "tension", 1 + 0.3 * h * v, -v, row["m"]));
+                              row.word("variant") != "tension", 1 + 0.3 * h * v, -v, row["m"]));
 }
 
 Errors rebound_errors(Real parts, Real exponent, const std::string& integrator) {

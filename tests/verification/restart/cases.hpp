@@ -66,7 +66,7 @@ x_max = "periodic"
 // have lost the quanta in which a period can be subtracted exactly; and one that continues to bounce.
 inline const std::string kFarDrifters = "gravity = [0.0, -9.8066]" + kPeriodicAlongX + R"(
 y_min = "wall"
-leaving = "drift"
+leaving = "ballistic"
 [time]
 end = 4.0
 step = 1e-3
@@ -252,7 +252,7 @@ inline std::vector<RestartCase> restart_cases() {
         {"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.42"})), false});
     cases.push_back({"valley" + how,
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
-    for (const std::string policy : {"remove", "drift"})
+    for (const std::string policy : {"remove", "ballistic"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
     cases.push_back({"rubbing shapes" + how, model_of(kRubbingShapes, with({})), false});
     cases.push_back({"crates" + how, model_of(kCrates, with({})), false});

@@ -78,7 +78,7 @@ const std::string kOtherMotors = R"(
 name = "line"
 joint = "slide"
 coordinate = "displacement"
-type = "line"
+type = "torque-speed"
 stall_effort = 12.0
 free_rate = 3.0
 [[motors]]
@@ -202,7 +202,7 @@ struct Case {
   Model model;
 };
 
-const std::string kShare = "integrator.redundant=share";
+const std::string kShare = "integrator.redundant=minimum-norm";
 
 Model everything(std::vector<std::string> overrides = {}) {
   overrides.push_back(kShare);

@@ -321,7 +321,7 @@ TEST_CASE("contacts between bodies and with walls are those without cohesion") {
     return motion;
   };
   const std::vector<BodyMotion> sticky = end_of(fmt::format("work_of_adhesion = {}\n", kWork)),
-                                clean = end_of("tension = true\nfriction = 0.0\n");
+                                clean = end_of("limit_damping = false\nfriction = 0.0\n");
   for (std::size_t b = 0; b < sticky.size(); ++b) {
     CHECK(same_bits(sticky[b].position, clean[b].position));
     CHECK(same_bits(sticky[b].velocity, clean[b].velocity));

@@ -26,7 +26,7 @@ struct PlateDeck {
 
   Model model(const std::vector<std::string>& settings) const {
     return model_of(
-        fmt::format("[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nleaving = \"drift\"\n"
+        fmt::format("[space]\ndimension = 3\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nleaving = \"ballistic\"\n"
                     "[time]\nend = 0.016\nstep = 1e-5\n[integrator]\nparticles = \"hht\"\n"
                     "[[contact.pairs]]\n{}[[meshes]]\nname = \"plate\"\nkind = \"box\"\n"
                     "size = [0.4, 0.4, {}]\n{}[[particles]]\nkind = \"list\"\nradius = 0.05\n"

@@ -34,7 +34,7 @@ std::string spinning_box(Real step, const std::string& law) {
 std::string swinging_line(const std::string& control, const std::string& law) {
   return fmt::format(
       "gravity = [0, -9.81]\n[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\nleaving = "
-      "\"drift\"\n[time]\nend = "
+      "\"ballistic\"\n[time]\nend = "
       "0.1\n{}[integrator]\nparticles = \"hht\"\n[[contact.pairs]]\nstiffness = 1e4\ndamping = "
       "1\n{}[[walls]]\nname = \"line\"\npoint = [0, 0]\nnormal = [0, 1]\nmotions = [{{ type = \"rotation\", "
       "point = [0, 0], angle = {{ kind = \"sine\", amplitude = 0.3, frequency = 20 }} "
