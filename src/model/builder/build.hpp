@@ -1,4 +1,4 @@
-// From the deck to the model.
+// Builds the model from the deck.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace scree {
 
-// Builds and checks the whole model. Warnings (overlaps at the start, steps far above a contact time,
-// files without particles) go to the log. Throws InputError on anything that contradicts itself, naming
-// place, key, value and what is allowed; IoError on files of particles that cannot be read. Collective where
-// there are several ranks: each has its part of the particles, and all else of the model, warnings and errors
-// are the same on all.
+// Builds and checks the whole model. Warnings (overlaps at the start, steps far above a contact time, files
+// without particles) go to the log. Throws InputError on contradictions, with place, key, value and the
+// allowed values, and IoError on particle files that cannot be read. Collective where there are several
+// ranks: each rank has its part of the particles; everything else, with warnings and errors, is equal on all
+// ranks.
 Model build_model(const Deck& deck, Log& log, const Share& share = Share());
-// The same; `chosen` gets the values that the deck leaves to the program, with their reasons.
+// build_model() that also returns, in `chosen`, the values that the deck leaves to the program, with their
+// reasons.
 Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<ChosenValue>& chosen);
 
 }  // namespace scree

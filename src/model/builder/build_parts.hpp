@@ -1,5 +1,5 @@
-// The parts of build_model(), in the order in which they run. Each fills its part of the model, adds its
-// names, and throws InputError naming place, key, value and what is allowed.
+// The parts of build_model(), in the order in which they run. Each builds its part of the model, adds its
+// names, and throws InputError with place, key, value and the allowed values.
 #pragma once
 
 #include "base/log.hpp"
@@ -12,41 +12,66 @@ namespace scree {
 
 void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
 void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& log);
-// After bodies and walls.
+// Called after bodies and walls are built.
 void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
-// dimension: of the space.
+// dimension: of the domain.
 Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& space);
 void build_time(const DeckTable& deck,
-                Model& model);  // control and end; also the integrator, as far as named
+                Model& model);  // control and end; also the integrator where the deck names it
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
-// Each becomes a joint whose length is free, a motor and, with a stroke, a stop; `names` gets the joint.
+// Each cylinder becomes a joint with a free length, a motor and, with a stroke, a stop. The joint is added to
+// `names`.
 void build_cylinders(const DeckTable& deck, Model& model, ModelNames& names);
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_bushings(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names);  // also couplers
-// Warns of files without particles. size: of the bodies; gets the number of particles before any is built.
+// Warns of files without particles. size: of the bodies; the number of particles is added to it before any is
+// built.
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
                      const Share& share, Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
-// The wear of a pair of these two materials.
+// Adds the wear of a pair of these two materials.
 void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact);
-// Of a spring across the normal that the deck leaves out beside a linear stiffness [N/m]: two solid spheres
-// that touch swing across it as fast as along it.
+// Default tangential stiffness for a linear stiffness [N/m]: two solid spheres in contact then have equal
+// normal and tangential periods.
 inline Real standard_slip_stiffness(Real stiffness) { return Real(2) / 7 * stiffness; }
-// After the contacts. integrator.particles = "auto" becomes one or the other, and time.control what goes with
-// it; `chosen` gets both.
+// Called after the contacts are built. Replaces integrator.particles = "auto" and sets time.control
+// accordingly; both are added to `chosen`.
 void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
                        std::vector<ChosenValue>& chosen);
-// Refuses what the integrator does not go with.
+// Throws InputError where the deck has keys that the integrator does not support.
 void check_integrator(const DeckTable& deck, const Model& model);
-// An explicit step that is left out is chosen; `chosen` gets it.
+// Chooses an explicit step that the deck leaves out, and adds it to `chosen`.
 void build_steps(const DeckTable& deck, Model& model, const Share& share, std::vector<ChosenValue>& chosen);
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
+
+// The time function of a quantity of the deck: build_motion for drivers, build_force for forces and torques.
+TimeFunction build_motion(const DeckTable& table);
+TimeFunction build_force(const DeckTable& table);
+// Checks all tables over time below `table`. Throws InputError where one does not cover the run up to `end`
+// [s]; warns where a spline overshoots its points noticeably.
+void check_time_tables(const DeckTable& table, Real end, Log& log);
+
+// Whether this shape or mesh of the body takes part in contact.
+bool collides(const DeckTable& body, const DeckTable& surface);
+// Transforms a vector from the frame of this body to the global frame at t = 0.
+Vec3 turned_at_start(const DeckTable& body, Vec3 local);
+// Throws InputError where the centre of a body's shape is outside the domain. Works from the deck, before any
+// body is built.
+void check_bodies_inside(const DeckTable& deck, const Space& space);
+// Throws InputError where a particle is outside the domain or an overlap exceeds the deck's limit. Warns of
+// smaller overlaps.
+void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
+// Warns of steps in which particles move by more than their radius. Throws InputError for explicit steps
+// beyond the stability limit.
+void check_steps(const DeckTable& deck, const Model& model, Log& log);
+// Warns of drivers, and of cylinders of type length, that prescribe a distance of two points of 0 or less.
+void check_driven_lengths(const Model& model, Log& log);
 
 }  // namespace scree

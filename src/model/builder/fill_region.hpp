@@ -1,4 +1,4 @@
-// Which part of the space a random group of particles fills.
+// The region of the domain that a random group of particles fills.
 #pragma once
 
 #include <functional>
@@ -14,21 +14,22 @@
 
 namespace scree {
 
-// What lies within all that the group's table gives of a box, a cylinder, the inside of a mesh and that of a
-// body, at t = 0. Lives no longer than the model.
+// The intersection of the box, the cylinder, the inside of a mesh and the inside of a body that the group's
+// table gives, at t = 0. Must not outlive the model.
 class FillRegion {
  public:
-  // Throws InputError where nothing is given, or what is given has no inside.
+  // Throws InputError where no region is given, or where it has no inside.
   FillRegion(const DeckTable& table, const Model& model, const ModelNames& names);
 
-  // Whether a box alone is given.
+  // Whether only a box is given.
   bool is_box() const { return parts_.empty(); }
-  // Whether a sphere lies in the region; of a box alone nothing is asked.
+  // Whether a sphere is inside the region; not evaluated for a plain box.
   bool holds(Vec3 p, Real radius) const;
-  // The box around all of it, within the space unless a box alone is given, and where positions are drawn.
+  // The bounding box, within the domain unless the region is a plain box, and the region for drawing
+  // positions.
   PackingBox packing(Real gap, std::int64_t tries) const;
-  // The part of what positions are drawn from that is of the region and free, by random points; 0: none was
-  // found.
+  // The fraction of the drawing region that is inside the region and free, estimated with random points; 0:
+  // none found.
   Real share(const IsFree& is_free) const;
   // For messages: "the box (min, max)", "the region (cylinder_radius, mesh)".
   const std::string& name() const { return name_; }
@@ -50,7 +51,7 @@ class FillRegion {
   std::string name_;
 };
 
-// Whether spheres keep off the planes of the model, but for round-off.
+// Whether spheres do not overlap the planes of the model, except for round-off.
 bool is_clear_of_planes(const Model& model, Vec3 p, Real radius);
 
 }  // namespace scree

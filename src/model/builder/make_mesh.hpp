@@ -1,4 +1,4 @@
-// The triangles that a table of [[meshes]] stands for.
+// Triangles of a table of [[meshes]].
 #pragma once
 
 #include <optional>
@@ -9,22 +9,22 @@
 
 namespace scree {
 
-// deviation: facet_deviation() of a shape made from a few numbers [m]; of files and lines nothing is known.
+// deviation: facet_deviation() of a parametric shape [m]; not known for files and lines.
 struct MadeMesh {
   TriangleMesh triangles;
   std::optional<Real> deviation;
 };
 
-// In the frame of what carries the mesh. Lines are drawn along z to half_depth at least [m], without ends.
-// Throws InputError with place, key and value, or with the text alone that is wrong with a file; IoError
-// where it cannot be read.
+// In the frame of the mesh's owner. Lines are extruded along z to half_depth at least [m], without end caps.
+// Throws InputError with place, key and value, or with the text alone for an error in a file; IoError where
+// the file cannot be read.
 MadeMesh make_mesh(const DeckTable& table, Real half_depth);
-// What a solid of a line is made of: its points as they are given, drawn to some depth; a closed one has
-// ends. Throws InputError, also where a closed line crosses itself.
+// The solid of a line: its points as given, extruded along z, with end caps where it is closed. Throws
+// InputError, also where a closed line intersects itself.
 TriangleMesh make_line_solid(const DeckTable& table);
-// Throws InputError where the axes of `table`, a line or a solid of one, leave the x-y plane.
+// Throws InputError where the orientation of `table`, a line or a solid of one, leaves the x-y plane.
 void check_turned_about_z(const DeckTable& table, const Mat3& axes);
-// Whether it has two sides.
+// Whether the mesh is an open (two-sided) surface.
 bool is_sheet(const DeckTable& table);
 
 }  // namespace scree

@@ -10,16 +10,16 @@
 
 namespace scree {
 
-// Columns by name, all of one length: x, y [m] and, in 3D, z always; vx, vy, vz [m/s], wx, wy, wz [rad/s] (in
-// 2D wz alone), radius [m], mass [kg], inertia_factor where the file has them. vx and vy (and vz in 3D) come
-// together, and so do wx, wy and wz.
+// Columns by name, of equal length: x, y [m] and, in 3D, z; optional vx, vy, vz [m/s], wx, wy, wz [rad/s] (in
+// 2D wz alone), radius [m], mass [kg], inertia_factor. vx and vy (and vz in 3D) come together, and so do wx,
+// wy and wz.
 using ParticleColumns = std::map<std::string, std::vector<Real>>;
 
-// CSV: a header line with the columns' names, then one line per particle; commas between, cells may stand in
-// quotes, blanks around them, empty lines and lines that start with # are skipped. HDF5 (by its contents, or
-// names that end in .h5 or .hdf5): one dataset of numbers per column. Throws InputError naming file, line,
-// column and value on contents that are no such table; IoError where the file cannot be read. A CSV is looked
-// through as a whole whichever rows are wanted, HDF5 is not.
+// CSV: a header line with the columns' names, then one line per particle, separated by commas. Cells may be
+// quoted; blanks around cells, empty lines and lines that begin with # are skipped. HDF5 (by its contents, or
+// names that end in .h5 or .hdf5): one dataset of numbers per column. Throws InputError with file, line,
+// column and value for invalid contents; IoError where the file cannot be read. A CSV is read as a whole for
+// any range of rows, an HDF5 file is not.
 class ParticleFile {
  public:
   ParticleFile(const std::string& path, int dimension);
@@ -34,7 +34,7 @@ class ParticleFile {
   std::int64_t count_ = 0;
 };
 
-// All of a file.
+// All rows of a file.
 ParticleColumns read_particle_file(const std::string& path, int dimension);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// Angles of a deck that look like degrees.
+// Finds angles of a deck that look like degrees.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace scree {
 
-// One text for each of the first few keys whose value [rad] is more than a turn, where it says how something
-// stands: such as are angles alone, of bodies, meshes, markers, springs and phases. Joint limits and free
-// coordinates, which may be many turns, count where they are whole numbers, as degrees mostly are. What
-// functions of time prescribe does not count.
+// One text for each of the first few suspicious keys. Angles of bodies, meshes, markers, springs and phases
+// are suspicious above one revolution [rad]. Joint limits and free coordinates may be many revolutions and
+// are suspicious where they are whole numbers, as degrees usually are. Values of functions of time are not
+// checked.
 std::vector<std::string> angles_in_degrees(const DeckTable& deck);
 
 }  // namespace scree

@@ -1,5 +1,5 @@
-// Bodies beside explicit particles: how stiff the contacts with particles are that may press on a body at a
-// time, and which steps of the body are short enough for them.
+// Bodies in contact with explicit particles: the stiffness of the contacts that can act on a body at one
+// time, and the step of the body that they allow.
 #pragma once
 
 #include <cstdint>
@@ -10,38 +10,40 @@
 
 namespace scree {
 
-// The contacts that particles can have with one body, and the body under them.
+// A body, and the contacts that particles can have with it.
 struct PressedBody {
-  Real stiffness = 0;   // of its stiffest contact with a particle [N/m], an estimate; 0: none can touch it
-  Real damping = 0;     // of its contact with the largest damping [N s/m], likewise
-  Real mass = 0;        // [kg]
-  Real least_mass = 0;  // that a push with the longest arm meets, 1 / (1/m + arm^2 / inertia) [kg]
-  Real reach = 0;       // of its surfaces from its centre of mass [m]
+  Real stiffness =
+      0;  // of the stiffest contact with a particle, an estimate; 0: no particle can touch the body [N/m]
+  Real damping = 0;  // of the contact with the largest damping, an estimate [N s/m]
+  Real mass = 0;     // [kg]
+  Real least_mass =
+      0;  // smallest effective mass at the surface, 1 / (1/m + arm^2 / inertia) with the longest arm [kg]
+  Real reach = 0;  // largest distance of its surfaces from its centre of mass [m]
 
-  // Phase by which the body on this many contacts oscillates in a step of length h [s].
+  // Phase of the body's oscillation on this number of contacts in a step of length h [s].
   Real phase(std::int64_t contacts, Real h) const;
-  // h^2 K / M + h C / M with the stiffness K and the damping C of so many contacts, and the least M: joints
-  // make it only larger.
+  // h^2 K / M + h C / M with the stiffness K and the damping C of this number of contacts and the smallest
+  // effective mass M. Joints only increase M.
   Real load(std::int64_t contacts, Real h) const;
 };
 
 // One entry per body.
 std::vector<PressedBody> pressed_bodies(const Model& model);
 
-// Largest phase at which a body that explicit particles press on is known to be stable, whatever the ratio
-// of the masses and the damping, and the one that steps are chosen for: with the particles themselves at a
-// third of their limit (src/coupling/README.md).
+// kMostLoadedPhase: largest phase at which a body under explicit particles is known to be stable, for any
+// mass ratio and damping. kGoodLoadedPhase: the phase for which steps are chosen. Both with the particles at
+// a third of their own limit (src/coupling/README.md).
 inline constexpr Real kMostLoadedPhase = 2, kGoodLoadedPhase = 1;
 
-// Number of particles that can touch the body at a time: all of them, or as many of the smallest as cover its
-// surfaces.
+// Number of particles that can touch the body at one time: all of them, or the number of the smallest that
+// covers its surfaces.
 std::int64_t most_contacts(const Model& model, int body);
 
-// The body whose step must be the shortest under all contacts that it can have.
+// The body that needs the shortest step, with the largest number of contacts that each body can have.
 struct LoadedStep {
   int body = 0;
   std::int64_t contacts = 0;
-  Real step = 0;  // of a body, with kGoodLoadedPhase [s]
+  Real step = 0;  // step of the body with kGoodLoadedPhase [s]
 };
 // Empty where no particle can touch a body.
 std::optional<LoadedStep> shortest_loaded_step(const Model& model);

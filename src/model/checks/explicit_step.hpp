@@ -1,5 +1,4 @@
-// The rule of explicit steps: the one that is chosen where the deck leaves its step out, and that warnings
-// and refusals name.
+// The explicit step: chosen where the deck leaves it out, and named in warnings and refusals.
 #pragma once
 
 #include <string>
@@ -9,25 +8,26 @@
 namespace scree {
 
 struct ExplicitStep {
-  Real step = kInfinity;  // time.step, whatever the deck says [s]; infinite where nothing bounds it
-  std::string reason;     // what bounds it, for people
+  Real step = kInfinity;  // time.step, independent of the deck's value [s]; infinite where nothing bounds it
+  std::string reason;     // the bound, for the user
 };
 
-// The longest step with which velocity-verlet, in integrator.substeps of it,
-// - keeps the trial rebounds of all pairs of materials within kGoodRebound (model/checks/impact_trials.hpp),
-// - is at most kStableShare of what is stable in dense contact, with springs and dashpots along the normal,
-//   across it and against rolling, and kNeckShare of a contact that a neck holds,
-// - resolves the bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and under as many
-//   particles as can touch them (shortest_loaded_step),
-// - and lets nothing go farther than half of the smallest radius (unnoticed_step);
-// to two digits, rounded down: the deck that names it is the same deck.
+// The longest step for which velocity-verlet, with integrator.substeps substeps per step,
+// - keeps the trial rebounds of all pairs of materials within kGoodRebound (model/impact_trials.hpp),
+// - uses at most kStableShare of the stability limit in dense contact, with springs and dashpots along the
+//   normal, tangential and against rolling, and at most kNeckShare of that of a JKR contact,
+// - resolves the oscillation of bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and
+// with
+//   the largest number of particles that can touch them (shortest_loaded_step),
+// - and moves nothing by more than half of the smallest radius (unnoticed_step).
+// Rounded down to two digits, so that a deck that gives the printed step has the same step.
 ExplicitStep longest_explicit_step(const Model& model);
 
-// Whether steps of this length [s] suit the contacts: stability, trial rebounds, bodies on single contacts
-// and on the corners of their meshes.
+// Whether steps of this length [s] satisfy the limits of the contacts: stability, trial rebounds, and bodies
+// on single contacts and on the vertices of their meshes.
 bool suits_explicit(const Model& model, Real step);
 
-// "; left out, it is 1.2e-05 s: ...": the remedy of a refusal or warning.
+// "; left out, it is 1.2e-05 s: ...": advice for a refusal or warning.
 std::string left_out_step(const Model& model);
 
 // Rounded down to two digits; x > 0.

@@ -1,4 +1,4 @@
-// How fast things may meet.
+// Estimates of impact speeds.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace scree {
 
-// How far something can fall within the space [m].
+// Largest height of a fall within the domain [m].
 Real fall_height(const Model& model);
-// Mass of the relative motion of the lightest pair [kg].
+// Reduced mass of the lightest pair [kg].
 Real lightest_mass(const PairLimit& limit);
 
 // Impact speeds of one model. The constructor reads all its meshes once.
@@ -18,24 +18,23 @@ class ImpactSpeeds {
  public:
   explicit ImpactSpeeds(const Model& model);
 
-  // Speed at which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the
-  // space where there is something to fall on; and with the speed of the surfaces that the deck moves, at
-  // which particles are thrown, too.
+  // Impact speed of a pair [m/s]: from the speeds at t = 0, a fall through the domain where there is a
+  // surface below, and the speed of surfaces that the deck moves, which may also throw particles.
   Real of(const PairLimit& limit) const;
-  // Fastest of the surfaces that the deck moves, along their normals [m/s].
+  // Largest normal speed of the surfaces that the deck moves [m/s].
   Real fastest_surface() const { return fastest_; }
 
  private:
   const Model& model_;
   std::vector<MaterialUse> uses_;
-  std::vector<Real> surfaces_;  // of each material
-  Real fastest_ = 0;            // of all
+  std::vector<Real> surfaces_;  // for each material
+  Real fastest_ = 0;            // of all materials
   bool floor_ = false;          // whether there is a surface to fall on
 };
 
-// The time in which a particle as fast as at t = 0 that then fell through the space, or a surface that the
-// deck moves, goes half of the smallest radius [s]: in longer steps they might pass through others unnoticed,
-// and no error estimate says so. Infinite where nothing moves by itself.
+// The time in which a particle with its initial speed and the speed of a fall through the domain, or a
+// surface that the deck moves, travels half of the smallest radius [s]. In longer steps particles may pass
+// through others, and no error estimate detects it. Infinite where nothing moves by itself.
 Real unnoticed_step(const Model& model);
 
 }  // namespace scree

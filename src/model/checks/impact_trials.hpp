@@ -1,4 +1,4 @@
-// Trial impacts of the deck's own materials: each pair's lightest partners meet in the steps that a run takes
+// Trial impacts of the deck's materials: the lightest partners of each pair collide in the steps of a run
 // (physics/trial_impact.hpp).
 #pragma once
 
@@ -13,41 +13,41 @@ namespace scree {
 // Trial impact of one pair of materials.
 struct StepTrial {
   PairLimit limit;
-  Real speed;  // of approach [m/s]; nothing depends on it where the force is linear in the overlap
-  Real step;   // tried: that of the particles, or the one that adaptive steps come to [s]
+  Real speed;  // impact speed [m/s]; without effect where the force is linear in the overlap
+  Real step;   // the particles' step, or the step that adaptive control arrives at [s]
   bool is_adaptive;
-  bool rubs;       // with friction: an impact without spin at `incidence`, else head-on
-  Real incidence;  // from the normal [rad]
+  bool rubs;       // with friction: an impact without spin at `incidence`; otherwise head-on
+  Real incidence;  // angle from the normal [rad]
   TrialResult result;
-  Real good_step;       // up to which errors stay below kGoodRebound [s]
-  bool any_step_good;   // good_step is the longest that was tried
-  Real adaptive_step;   // that implicit steps would come to [s]; 0: they adapt already, or are explicit
-  Real adaptive_error;  // of rebounds in such steps
+  Real good_step;      // largest step with errors below kGoodRebound [s]
+  bool any_step_good;  // good_step is the longest step that was tried
+  Real adaptive_step;  // step that adaptive implicit control would choose; 0: control is adaptive already, or
+                       // explicit [s]
+  Real adaptive_error;  // error of rebounds in such steps
 };
 
-// Errors of rebounds: what is good, which is what steps that are chosen keep to, and from where on there is a
-// warning.
+// Errors of rebound speeds: the limit for chosen steps, and the limit for a warning.
 inline constexpr Real kGoodRebound = 0.02, kBadRebound = 0.05;
 
-// One per pair of materials that can meet and interact; of its lightest partners, two particles if such can
-// meet, else a particle and a body or a wall, else bodies. Empty for what is not in these steps: bodies among
-// themselves beside explicit particles.
+// One trial per pair of materials that can meet and interact, with its lightest partners: two particles if
+// possible, otherwise a particle and a body or a wall, otherwise bodies. Empty for contacts that are not
+// integrated in these steps: those between bodies beside explicit particles.
 std::vector<StepTrial> try_steps(const Model& model);
 
-// The pairs of materials whose contacts velocity-verlet takes. These need no step and no integrator of the
-// model yet.
+// The pairs of materials whose contacts velocity-verlet integrates. The model needs no step and no integrator
+// yet.
 std::vector<PairLimit> explicit_pairs(const Model& model);
 
-// Trials of such pairs. Pairs that are alike in their law and their partners are tried once.
+// Trials of such pairs. Pairs with equal laws and partners are tried once.
 class ExplicitTrials {
  public:
   // `model` must outlive the trials.
   explicit ExplicitTrials(const Model& model);
   ~ExplicitTrials();
 
-  // The longest step of the particles up to which a pair's trial is within kGoodRebound [s].
+  // The longest step of the particles for which the error of the pair's trial is within kGoodRebound [s].
   Real good_step(const PairLimit& limit);
-  // The error of its rebound in steps of `step` [s].
+  // The error of the pair's rebound in steps of `step` [s].
   Real error(const PairLimit& limit, Real step);
 
  private:

@@ -9,22 +9,22 @@
 
 namespace scree {
 
-// How far a mesh reaches from the point that its frame is `offset` from [m]; in 2D without z, along
-// which lines are deeper than the space.
+// Largest distance of a mesh from the point relative to which its frame has this `offset` [m]; in 2D without
+// z, along which lines extend beyond the domain.
 Real farthest(const ModelMesh& mesh, Vec3 offset, int dimension);
 
-// Extremes of what one material is used for; radius and mass are 0 where it is not used.
+// Extreme values of the objects of one material; radius and mass are 0 where there are none.
 struct MaterialUse {
   std::int64_t particles = 0;
   int shapes = 0, meshes = 0, walls = 0;  // meshes: of bodies and walls; walls: planes
-  int sheets = 0;                         // of the meshes, those with two sides
-  int corners = 0;                        // of the bodies' meshes, those that have corners for planes
-  Real smallest_radius = 0;               // [m]
-  Real smallest_corner_radius = 0;        // effective, HullCorners::radius [m]
-  Real smallest_particle_mass = 0;        // [kg]
-  Real smallest_inertia_factor = 0;       // of particles, I / (m R^2)
-  // [kg] At a shape: 1 / (1/m + arm^2 / inertia), the arm being the offset where the body is pushed at the
-  // shape's centre, and reaching to its far side where its surface is rubbed.
+  int sheets = 0;                         // number of the meshes that are open surfaces
+  int corners = 0;                   // number of the bodies' meshes with vertices for contact with planes
+  Real smallest_radius = 0;          // [m]
+  Real smallest_corner_radius = 0;   // effective radius, HullCorners::radius [m]
+  Real smallest_particle_mass = 0;   // [kg]
+  Real smallest_inertia_factor = 0;  // of particles, I / (m R^2)
+  // Smallest effective mass at a shape, 1 / (1/m + arm^2 / inertia) [kg]. The arm is the offset of the shape
+  // for a normal force at its centre, and extends to its far side for friction at its surface.
   Real smallest_body_mass = 0, smallest_rubbed_mass = 0;
 
   bool is_of_surfaces() const { return shapes + meshes + walls > 0; }
@@ -32,37 +32,38 @@ struct MaterialUse {
 };
 
 std::vector<MaterialUse> material_uses(const Model& model);
-// Whether something of material a can touch something of material b; shapes of bodies that are all connected
-// with each other cannot.
+// Whether objects of materials a and b can touch. Shapes of bodies that are all connected with each other
+// cannot.
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
-// Whether the deck must have a law for the two: they can meet, but not as meshes of bodies on planes alone,
-// which touch only where the deck has a law for them.
+// Whether the deck must have a law for the two materials: they can meet, and not only as meshes of bodies on
+// planes, which touch only where the deck has a law.
 bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
-// Whether bodies can that have something of a and of b.
+// Whether bodies with material a and bodies with material b can touch.
 bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
-// Whether, of these that can meet, spheres meet sheets and nothing else.
+// Whether the only contacts of these two materials are those of spheres with open surfaces.
 bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b);
-// The smallest and the lightest of each material; infinite where it has walls alone. Where neither has
-// spheres the radius is that of meshes on planes.
+// The smallest and lightest objects of each material; infinite where it has only walls. Where neither has
+// spheres, the radius is that of meshes on planes.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
 struct PairLimit {
   int material[2] = {0, 0};
-  KelvinVoigt law;             // of its smallest partners
-  Real stiffness = 0;          // of these [N/m], typical_stiffness()
-  Real slip_stiffness = 0;     // of the tangential spring [N/m], typical_slip_stiffness()
-  Real rolling_stiffness = 0;  // against rolling, over the radius squared [N/m], typical_rolling_stiffness()
-  Real contact_time = 0;       // shortest, undamped and head-on [s]
-  Real explicit_step = 0;      // stability limit of velocity-verlet in dense contact [s]; 0: no particles
+  KelvinVoigt law;          // law of its smallest partners
+  Real stiffness = 0;       // of these partners [N/m], typical_stiffness()
+  Real slip_stiffness = 0;  // of the tangential spring [N/m], typical_slip_stiffness()
+  Real rolling_stiffness =
+      0;                   // of the rolling spring over the radius squared [N/m], typical_rolling_stiffness()
+  Real contact_time = 0;   // shortest, undamped and head-on [s]
+  Real explicit_step = 0;  // stability limit of velocity-verlet in dense contact [s]; 0: no particles
 };
 
-// Limits of the bodies' steps beside velocity-verlet particles: how fast a body on its contacts oscillates,
-// and which steps follow. Frequencies are 0 where bodies touch nothing.
+// Limits of the bodies' steps beside velocity-verlet particles, from the oscillation of bodies on their
+// contacts. Frequencies are 0 where bodies touch nothing.
 struct BodyStepLimit {
-  Real frequency = 0;       // of the contact that bounds the step most [rad/s]
-  Real most_phase = 0;      // that a step may have of it [rad]
-  Real good_frequency = 0;  // the fastest, whose phase a good step keeps below kGoodBodyPhase [rad/s]
-  bool is_exact = true;     // not estimated, as it is for exponents other than 1
+  Real frequency = 0;       // of the contact with the smallest step limit [rad/s]
+  Real most_phase = 0;      // largest phase of this contact per step [rad]
+  Real good_frequency = 0;  // highest frequency; a good step keeps its phase below kGoodBodyPhase [rad/s]
+  bool is_exact = true;     // false: estimated, for exponents other than 1
 
   Real most_step() const { return frequency > 0 ? most_phase / frequency : kInfinity; }                // [s]
   Real good_step() const { return good_frequency > 0 ? kGoodBodyPhase / good_frequency : kInfinity; }  // [s]
@@ -71,7 +72,8 @@ BodyStepLimit body_step_limit(const Model& model);
 
 // One entry per pair of materials that can meet and interact.
 std::vector<PairLimit> pair_limits(const Model& model);
-// The pair with the shortest contact time; the one with the smallest explicit step.
+// shortest_contact: the pair with the shortest contact time. The other: the pair with the smallest explicit
+// step.
 std::optional<PairLimit> shortest_contact(const std::vector<PairLimit>& limits);
 std::optional<PairLimit> smallest_explicit_step(const std::vector<PairLimit>& limits);
 

@@ -1,4 +1,4 @@
-// Bodies of meshes that nothing stops: what they pass through.
+// Finds meshes of bodies that pass through other objects without contact.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace scree {
 
-// One text for each finding, empty ones among them: nothing in the deck touches the meshes; bodies that no
-// joint holds pass through walls that are meshes, or through planes for which no pair has a law.
+// One text for each finding, some of them empty: nothing in the deck touches the meshes; bodies without a
+// joint pass through walls that are meshes, or through planes for which no pair has a law.
 std::vector<std::string> loose_meshes(const DeckTable& deck, const Model& model);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// What meshes stand for and how finely, against the particles that touch them.
+// Warnings about meshes and their resolution, relative to the particles that touch them.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace scree {
 
-// How many triangles are within the list's reach of a sphere that touches a mesh somewhere, on average; in 2D
-// segments of a line.
+// Average number of triangles within the list's range of a sphere that touches a mesh; in 2D of segments of a
+// line.
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius);
-// How many triangles side by side are as wide as such a sphere, on average; in 2D segments.
+// Average number of triangles across the width of such a sphere; in 2D of segments.
 Real triangles_wide(const Model& model, const SurfaceMesh& mesh, Real radius);
 
-// Warnings about the meshes, one text for each finding: nobody uses or touches them, their shells cut through
-// each other, particles are too large for their curves, their facets too coarse for the overlaps, or too fine
-// for the particles, contacts too soft for their folds, their surfaces run across themselves.
+// Warnings about the meshes, one text for each finding: unused meshes, meshes without contacts, intersecting
+// shells, particles too large for the curvature, facets too coarse for the overlaps or too fine for the
+// particles, contacts too soft for the folds, and surfaces that intersect themselves.
 std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model);
 
 }  // namespace scree

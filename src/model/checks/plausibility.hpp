@@ -1,4 +1,4 @@
-// Warnings of models that can be computed but can hardly be meant.
+// Warnings for models that can be computed but are unlikely to be intended.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace scree {
 
-// What seems wrong with the whole model, one text for each finding. Costs no pass over the particles.
+// Findings about the whole model, one text each. Does not visit the particles.
 std::vector<std::string> implausible(const DeckTable& deck, const Model& model);
 
-// Weight of the particles above one at the bottom, which all lie on the base of the space [N]; 0 without
-// gravity.
+// Weight on a particle at the bottom of the bed that all particles form on the base of the domain [N]; 0
+// without gravity.
 Real weight_at_bottom(const Model& model);
 
-// Refuses contacts whose duration or step limit is 0 or infinite. Throws InputError.
+// Throws InputError for contacts whose duration or step limit is 0 or infinite.
 void check_step_limits(const DeckTable& deck, const Model& model);
-// Refuses a positive value that is smaller than any normal number: products with it lose their digits.
+// Throws InputError for a positive value below the normal numbers: products with it lose digits.
 void check_normal(const DeckTable& table, const std::string& key, Real value);
 
 }  // namespace scree

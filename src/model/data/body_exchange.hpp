@@ -1,4 +1,4 @@
-// What crosses between the multibody side and the particle side.
+// Data exchanged between the multibody side and the particle side.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace scree {
 
-// Motion of one body at one instant, global frame. angle, angular_velocity: of a planar body; orientation,
-// spin: of a spatial one.
+// Motion of one body at one instant, in the global frame. Planar bodies have angle and angular_velocity,
+// spatial bodies orientation and spin.
 struct BodyMotion {
   Vec3 position;              // of the centre of mass [m]
   Vec3 velocity;              // [m/s]
@@ -35,14 +35,14 @@ struct PointMotion {
   Vec3 position, velocity;
 };
 
-// An offset in the body's frame, in the global one [m].
+// Offset in the body's frame, transformed to the global frame [m].
 inline Vec3 body_arm(const BodyMotion& body, Vec3 offset) {
   if (body.kind == BodyKind::spatial) return rotation_matrix(body.orientation) * offset;
-  if (offset.x == 0 && offset.y == 0) return offset;  // most shapes
+  if (offset.x == 0 && offset.y == 0) return offset;  // true for most shapes
   return Rotation(body.angle).turn(offset);
 }
 
-// Of the body's frame, of either kind.
+// Orientation of the body's frame, for either kind of body.
 inline Quaternion orientation(const BodyMotion& body) {
   return body.kind == BodyKind::spatial ? body.orientation : exponential({0, 0, body.angle});
 }
@@ -53,7 +53,8 @@ inline Vec3 global_spin(const BodyMotion& body) {
   return {0, 0, body.angular_velocity};
 }
 
-// Rotation from one instant to a later one, less than half a turn in space, in the global frame [rad].
+// Rotation from one instant to a later one, in the global frame; less than half a revolution for spatial
+// bodies [rad].
 inline Vec3 turn_between(const BodyMotion& before, const BodyMotion& after) {
   if (after.kind == BodyKind::planar) return {0, 0, after.angle - before.angle};
   return rotation_matrix(before.orientation) *
@@ -67,11 +68,11 @@ inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
   return {body.position + arm, body.velocity + turning_velocity(body.angular_velocity, arm)};
 }
 
-// Contact wrench on one body, or on a wall that is placed.
+// Contact wrench on one body, or on a wall with a pose.
 struct BodyWrench {
   Vec3 force;            // [N]
   Vec3 torque;           // about the centre of mass [N m]
-  Real slide_power = 0;  // of friction on a wall's surface that runs along itself [W]
+  Real slide_power = 0;  // power of friction on a wall with a tangential surface velocity [W]
 
   BodyWrench& operator+=(const BodyWrench& other) {
     force += other.force, torque += other.torque, slide_power += other.slide_power;
@@ -79,30 +80,31 @@ struct BodyWrench {
   }
 };
 
-// Minus the derivatives of the contact wrench on a body with respect to its own motion. Symmetric 6x6 blocks,
-// rows and columns (x, y, z, rx, ry, rz), upper triangle row by row: -d(force, torque)/d(position, rotation)
-// and -d(force, torque)/d(velocity, angular velocity).
+// Negative derivatives of the contact wrench on a body with respect to its own motion: -d(force,
+// torque)/d(position, rotation) and -d(force, torque)/d(velocity, angular velocity). Symmetric 6x6 blocks
+// with rows and columns (x, y, z, rx, ry, rz), upper triangle row by row.
 struct WrenchStiffness {
   int body = 0;
   std::array<Real, 21> stiffness{};  // [N/m, N/rad, N m/rad]
-  std::array<Real, 21> damping{};    // the same times [s]
+  std::array<Real, 21> damping{};    // units of stiffness times [s]
 };
 
-// The same of two bodies that touch each other, of the wrench on the first one by the motion of the second:
-// 6x6 blocks, row by row. Of that on the second one by the motion of the first they are the transposed ones.
+// Coupling of two bodies in contact: the negative derivatives of the wrench on the first body with respect to
+// the motion of the second, 6x6 blocks, row by row. Those of the wrench on the second body are the transposed
+// blocks.
 struct PairStiffness {
   int first = 0, second = 0;
   std::array<Real, 36> stiffness{}, damping{};
 };
 
-// What a Newton iteration of the bodies needs of their contacts.
+// Contact wrenches and their derivatives, for one Newton iteration of the bodies.
 struct ContactWrenches {
   std::vector<BodyWrench> wrench;          // per body
-  std::vector<WrenchStiffness> stiffness;  // of bodies that are touched, no body twice
-  std::vector<PairStiffness> pairs{};      // of bodies that touch each other, no two of them twice
+  std::vector<WrenchStiffness> stiffness;  // for bodies with contacts, each body once
+  std::vector<PairStiffness> pairs{};      // for pairs of bodies in contact, each pair once
 };
 
-// Slot of (row, column), row <= column, in the packed upper triangle of a 6x6 block.
+// Index of (row, column), row <= column, in the packed upper triangle of a 6x6 block.
 constexpr int packed6(int row, int column) { return row * 6 - row * (row - 1) / 2 + (column - row); }
 
 }  // namespace scree

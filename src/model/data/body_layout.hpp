@@ -1,4 +1,4 @@
-// Where a body's coordinates stand in the vectors of all bodies.
+// Layout of the bodies' coordinates in the vectors of all bodies.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class BodyLayout {
   int bodies() const { return static_cast<int>(places_.size()); }
   int positions() const { return positions_; }
   int columns() const { return columns_; }
-  // The first one of a body.
+  // Index of the body's first coordinate.
   int position(int body) const { return places_[static_cast<std::size_t>(body)].position; }
   int column(int body) const { return places_[static_cast<std::size_t>(body)].column; }
   int body_of_column(int column) const {

@@ -19,12 +19,12 @@ using NameMap = std::map<std::string, int>;
 
 // A marker of the deck: on a body, on each body of a row, or on the ground.
 struct NamedMarker {
-  std::vector<int> bodies;  // the ground: kGround alone
+  std::vector<int> bodies;  // only kGround for the ground
   bool row = false;
   Marker marker;
 };
 
-// Triangles that a solid may be made of; of lines with the ends of closed ones.
+// Triangles of which a solid may be made; closed lines have end caps.
 struct NamedMesh {
   TriangleMesh mesh;
   bool sheet = false;
@@ -34,7 +34,8 @@ struct NamedMesh {
 
 struct ModelNames {
   NameMap materials, meshes, bodies, joints;
-  std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
+  std::map<std::string, std::vector<int>>
+      rows;  // bodies of a row in order; a single body is a row of one body
   std::map<std::string, NamedMarker> markers;
   std::vector<Real> densities;       // of the materials [kg/m^3], 0 where not given
   std::vector<NamedMesh> triangles;  // of the meshes
@@ -43,21 +44,21 @@ struct ModelNames {
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError
 // with the known names.
 int find_name(const NameMap& names, const DeckTable& table, const std::string& key, const std::string& what);
-// The same for a name that stands in a list.
+// find_name() for a name in a list.
 int find_name(const NameMap& names, const std::string& name, const DeckTable& table, const std::string& key,
               const std::string& what);
-// The same of a body, or kGround for "ground".
+// find_name() for a body; kGround for "ground".
 int find_body(const ModelNames& names, const std::string& name, const DeckTable& table,
               const std::string& key);
-// Bodies of the row that `name` means. known: names that would do, too. Throws InputError.
+// Bodies of the row `name`. known: names that are valid as well, for the message. Throws InputError.
 const std::vector<int>& find_row(const ModelNames& names, const std::string& name, const DeckTable& table,
                                  const std::string& key, std::vector<std::string> known = {});
-// Throws InputError.
+// The marker `name`. Throws InputError.
 const NamedMarker& find_marker(const ModelNames& names, const std::string& name, const DeckTable& table,
                                const std::string& key);
-// Material that `table.key` names; where the key is left out, the only material. Throws InputError.
+// Material that `table.key` names; left out: the only material. Throws InputError.
 int find_material(const ModelNames& names, const DeckTable& table, const std::string& key);
-// Adds one entry of the list `table.key`, the name or number `shown`. Throws InputError where it is there.
+// Adds one entry of the list `table.key`, the name or number `shown`. Throws InputError where it is repeated.
 template <class T>
 void add_once(std::vector<T>& list, T value, const DeckTable& table, const std::string& key,
               const std::string& shown) {
@@ -65,7 +66,7 @@ void add_once(std::vector<T>& list, T value, const DeckTable& table, const std::
     table.fail(key, shown + " is repeated; every entry must be another one");
   list.push_back(value);
 }
-// Adds a name. Throws InputError where it exists already.
+// Adds a name. Throws InputError where it exists.
 void add_name(NameMap& names, const std::string& name, int index, const DeckTable& table);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// Start state of the particles.
+// Initial state of the particles.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace scree {
 
-// Of all ranks' particles; lengths and masses are 0 where there are none.
+// Totals over the particles of all ranks; lengths and masses are 0 where there are none.
 struct ParticleTotals {
   struct OfMaterial {
     std::int64_t count = 0;
@@ -24,27 +24,27 @@ struct ParticleTotals {
   Real smallest_mass = 0, largest_mass = 0;        // [kg]
   Real smallest_density = 0, largest_density = 0;  // of spheres with these radii and masses [kg/m^3]
   Real most_radii_per_second = 0;                  // speed over the particle's own radius [1/s]
-  Vec3 lowest, highest;                            // corners of the box around all centres at the start [m]
+  Vec3 lowest, highest;                            // corners of the box around all centres at t = 0 [m]
   std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 
-// One of the deck's; its particles' ids go on to where the next one begins.
+// A group of the deck; its ids extend to the first id of the next group.
 struct ParticleGroup {
-  std::string name;       // its number where the deck gives none
-  GlobalId first_id = 0;  // where it has particles
+  std::string name;       // its number where the deck gives no name
+  GlobalId first_id = 0;  // of its first particle
 };
 // Number of the group of each particle. ids: in ascending order.
 std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids);
 
-// Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from
-// 0; these are the particles from first_id on.
+// Structure of arrays with one entry per particle of this rank: global ids from first_id on. The global id is
+// the particle's index in the deck's order, from 0.
 struct ParticleSet {
   std::vector<Vec3> position;          // [m]
   std::vector<Vec3> velocity;          // [m/s]
   std::vector<Vec3> angular_velocity;  // [rad/s]; empty: zero
   std::vector<Real> radius;            // [m]
   std::vector<Real> mass;              // [kg]
-  std::vector<Real> inertia_factor;    // I / (m R^2); empty: of solid spheres, or discs
+  std::vector<Real> inertia_factor;    // I / (m R^2); empty: solid spheres or discs
   std::vector<int> material;           // index into Contact::material_names
   int dimension = 3;                   // 2: discs
   GlobalId first_id = 0;
@@ -58,7 +58,7 @@ struct ParticleSet {
   IdRange ids() const { return {first_id, first_id + static_cast<GlobalId>(size())}; }
 };
 
-// Counts the particles anew, after they were changed. materials: their number. Collective.
+// Recomputes the totals after particles were changed. materials: their number. Collective.
 void count_particles(ParticleSet& particles, int materials, const Share& share = Share());
 
 }  // namespace scree

@@ -1,5 +1,6 @@
-// How the ranks that build one model divide the particles among them, and agree on what concerns all. This is
-// one rank alone; partition/shared_model.hpp has many. All functions but rank() and size() are collective.
+// Distribution of the particles over the ranks that build a model, and their joint decisions. This class is
+// for a single rank; partition/shared_model.hpp has the one for many. All functions but rank() and size() are
+// collective.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,9 @@ struct Space;
 struct StartItem {
   Vec3 position;            // [m]
   Real radius = 0;          // [m]
-  std::int64_t number = 0;  // a particle's global id; shapes count on
+  std::int64_t number = 0;  // a particle's global id; shapes have the numbers after them
   int material = 0;
-  bool is_own = true;  // of this rank, and of no other one
+  bool is_own = true;  // owned by this rank; every item has one owner
 };
 
 class Share {
@@ -28,21 +29,21 @@ class Share {
   virtual ~Share() = default;
   virtual int rank() const { return 0; }
   virtual int size() const { return 1; }
-  // This rank's part of `count` particles.
+  // This rank's range of `count` particles.
   IdRange part(std::int64_t count) const { return id_range(count, rank(), size()); }
 
-  // Runs an action; what it throws on one rank, all throw.
+  // Runs an action; an exception on one rank is thrown on all ranks.
   virtual void together(const std::function<void()>& action) const { action(); }
   virtual std::int64_t sum(std::int64_t value) const { return value; }
   virtual std::int64_t min(std::int64_t value) const { return value; }
   // Largest of values >= 0.
   virtual Real max(Real value) const { return value; }
-  // Of the ranks on this rank's host.
+  // Sum over the ranks on this rank's host.
   virtual Real sum_on_host(Real value) const { return value; }
   // The items of all ranks, on every rank.
   virtual std::vector<StartItem> everywhere(std::vector<StartItem> own) const { return own; }
-  // Deals the items out, some of them to several ranks, so that any two that come within `reach` [m] of each
-  // other, across periodic sides included, meet on the ranks that own them then.
+  // Distributes the items, some of them to several ranks, so that any two within `reach` [m] of each other,
+  // also across periodic sides, are on a rank that owns one of them.
   virtual std::vector<StartItem> near_each_other(std::vector<StartItem> own, const Space&,
                                                  Real /*reach*/) const {
     return own;

@@ -1,4 +1,4 @@
-// The choice of the contact law, once per run: what is made for its type is monomorphic.
+// The contact law, chosen once per run: the code for its type is monomorphic.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace scree {
 
-// What goes with a normal law.
+// Tangential and rolling laws that are combined with a normal law.
 template <class Normal>
 struct Beside {
   using Slider = LinearSlider;
@@ -35,7 +35,7 @@ struct Beside<AttractedLaw<Repulsion>> {
   static constexpr bool attracts = true;
 };
 
-// Of all pairs of materials, in the order of Contact::laws, which `Law` accepts.
+// The laws of all pairs of materials, in the order of Contact::laws. `Law` accepts them all.
 template <class Law>
 std::vector<Law> laws_of(const Contact& contact) {
   std::vector<Law> laws;
@@ -49,14 +49,15 @@ std::vector<Law> laws_of(const Contact& contact) {
   return laws;
 }
 
-// Laws with rolling resistance are those of all linear springs: one with and without a damping ratio.
+// Whether the normal law has a form with rolling resistance. LinearLaw has none: the law of all linear
+// springs, with or without a damping ratio, takes its place.
 template <class Normal>
 inline constexpr bool kRolls = !std::is_same_v<Normal, LinearLaw>;
 
-// Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>: of the first of
-// NormalLaws that accepts them all, with friction where contacts rub, and with all that resists rolling where
-// some does. Laws that attract have one form where contacts rub, with what resists rolling, and a neck has no
-// other. Returns what use returns, the same type for every law.
+// Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>. The normal law
+// is the first of NormalLaws that accepts all pairs; friction is included where contacts have it, and all
+// kinds of rolling resistance where some contact has one. Adhesive laws with friction always include rolling
+// resistance, and so do all JKR laws. Returns the result of use, which has one type for all laws.
 template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
   using Normal = std::tuple_element_t<kFirst, NormalLaws>;
@@ -81,9 +82,8 @@ auto with_contact_laws(const Contact& contact, const Use& use) {
   }
 }
 
-// The law of one pair of materials after another, each of the type that with_contact_laws() makes of all:
-// that of the first normal law that accepts them, and so with one pair that each of the others refuses beside
-// the one that is wanted.
+// The laws of the pairs of materials one by one, with the types that with_contact_laws() selects for all of
+// them together.
 class PairLaws {
  public:
   explicit PairLaws(const Contact& contact) : contact_(contact) { find_deciding(); }
@@ -116,7 +116,7 @@ class PairLaws {
   std::vector<std::size_t> deciding_;
 };
 
-// How many numbers the law remembers of a contact.
+// Number of values in the history of one contact.
 inline int history_of(const Contact& contact) {
   return with_contact_laws(contact, []<class Law>(const std::vector<Law>&) { return Law::kHistory; });
 }

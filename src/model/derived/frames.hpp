@@ -1,4 +1,4 @@
-// Orientations as the deck gives them.
+// Orientations in the deck.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace scree {
 
-// From the orientation_keys() of this prefix; none of them: no rotation. Throws InputError.
+// Reads the orientation_keys() with this prefix; without them: no rotation. Throws InputError.
 Quaternion read_orientation(const DeckTable& table, const std::string& prefix = "");
-// Of length 1. Throws InputError where the vector is 0.
+// Reads a direction, normalized. Throws InputError where the vector is 0.
 Vec3 read_direction(const DeckTable& table, const std::string& key);
 
 // The vector `local` of the frame of the body of this table, in the global frame at t = 0.
@@ -20,9 +20,9 @@ Vec3 turned_at_start(const DeckTable& body, Vec3 local);
 // Axes of a frame: rows x, y, z.
 // z = axis, of length 1; x the global axis that is most nearly across.
 Mat3 frame_about(Vec3 axis);
-// The frame turned by the shortest way that turns `from` to `to`, both of length 1 and not opposite.
+// The frame after the shortest rotation that takes `from` to `to`, unit vectors that are not opposite.
 Mat3 turned_frame(const Mat3& frame, Vec3 from, Vec3 to);
-// The smaller one between two directions of any length but 0 [rad].
+// The angle between two directions of any length but 0, at most pi [rad].
 Real angle_between(Vec3 a, Vec3 b);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// Points sorted into cells, to find those near a place.
+// Points sorted into cells, for neighbour searches.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace scree {
 
-// A box cut into cells. Points outside count to the nearest cell.
+// A box divided into cells. Points outside belong to the nearest cell.
 class PointCells {
  public:
-  // min, max: box of the points [m]. reach: two points at most this far from each other are in the same cell
-  // or in neighbouring ones [m]. expected: about how many points there will be; bounds the number of cells.
+  // min, max: box of the points [m]. reach: two points at most this far apart are in the same cell or in
+  // neighbouring cells [m]. expected: approximate number of points, which bounds the number of cells.
   PointCells(Vec3 min, Vec3 max, Real reach, std::size_t expected) : min_(min) {
     const Vec3 extent = max - min;
     const Real most = 4 * static_cast<Real>(expected) + 64;
@@ -33,8 +33,8 @@ class PointCells {
     return slot(c[0], c[1], c[2]);
   }
 
-  // Calls visit(first, last) for the rows of cells around a point, as ranges [first, last) of slots, the
-  // point's own row first; stops where it returns false, and then returns false.
+  // Calls visit(first, last) for the rows of cells around a point, as ranges [first, last) of cells, the
+  // point's own row first. Stops and returns false where visit does.
   template <class Visit>
   bool for_rows(Vec3 p, const Visit& visit) const {
     const std::array<int, 3> c = cell_of(p);
@@ -51,7 +51,7 @@ class PointCells {
 
  private:
   Real cells_along(Real length) const { return std::max(Real(1), std::floor(length / size_)); }
-  // Clamping never moves two points further apart, so neighbours stay in neighbouring cells.
+  // Clamping never increases the distance of two points, so neighbours stay in neighbouring cells.
   int clamped(Real offset, int cells) const {
     return static_cast<int>(std::clamp(std::floor(offset / size_), Real(0), static_cast<Real>(cells - 1)));
   }
@@ -68,7 +68,7 @@ class PointCells {
   std::array<int, 3> cells_{1, 1, 1};
 };
 
-// Items in cells, to which more can be added at any time.
+// Points in cells, to which more can be added at any time.
 class GrowingBins {
  public:
   GrowingBins(const PointCells& cells, std::size_t expected) : cells_(cells), head_(cells.count(), -1) {
@@ -81,7 +81,7 @@ class GrowingBins {
     head = static_cast<int>(entries_.size()) - 1;
   }
 
-  // Whether a sphere at `point` keeps `gap` from the surfaces of all.
+  // Whether a sphere at `point` has a distance of at least `gap` to the surfaces of all.
   bool is_clear(Vec3 point, Real radius, Real gap) const {
     return cells_.for_rows(point, [&](std::size_t first, std::size_t last) {
       for (std::size_t slot = first; slot < last; ++slot) {
@@ -99,7 +99,7 @@ class GrowingBins {
   struct Entry {
     Vec3 position;  // [m]
     Real radius;    // [m]
-    int next;       // the one before it in its cell; -1: none
+    int next;       // the previous entry of the same cell; -1: none
   };
 
   PointCells cells_;
@@ -107,7 +107,7 @@ class GrowingBins {
   std::vector<Entry> entries_;
 };
 
-// Items in cells, all of them known: those of a row of cells stand side by side.
+// Points in cells, all known from the start; those of a row of cells are contiguous.
 class SortedBins {
  public:
   SortedBins(const PointCells& cells, const std::vector<StartItem>& items)
@@ -118,7 +118,7 @@ class SortedBins {
     for (const StartItem& item : items) items_[next[cells_.slot_of(item.position)]++] = item;
   }
 
-  // Cell by cell.
+  // Sorted by cell.
   const std::vector<StartItem>& items() const { return items_; }
 
   template <class Visit>

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every platform: the standard fixes std::mt19937_64 itself, but not the
+// Random numbers that are equal on every platform: the standard specifies std::mt19937_64, but not the
 // distributions of <random>.
 #pragma once
 
@@ -18,8 +18,8 @@ class RandomNumbers {
   Real uniform() { return static_cast<Real>(generator_() >> 11) * 0x1p-53; }
   Real uniform(Real low, Real high) { return low + (high - low) * uniform(); }
 
-  // Mean 0, standard deviation 1: polar method (Marsaglia, Bray, SIAM Review 6, 1964), one of its two
-  // numbers.
+  // Mean 0, standard deviation 1: polar method (Marsaglia, Bray, SIAM Review 6, 1964); only one of its two
+  // numbers is used.
   Real normal() {
     for (;;) {
       const Real u = uniform(-1, 1), v = uniform(-1, 1), s = u * u + v * v;

@@ -1,4 +1,4 @@
-// A TimeFunction of the model, ready to be evaluated.
+// Evaluation of a TimeFunction of the model.
 #pragma once
 
 #include <string>
@@ -9,35 +9,37 @@
 
 namespace scree {
 
-// How far a function leaves what its points say.
+// Largest overshoot of a spline beyond its points.
 struct Overshoot {
   std::size_t segment = 0;  // between points `segment` and the next
-  Real t = 0, value = 0;    // where it is farthest out
-  Real beyond = 0;          // of the range between the two points: above it > 0, below it < 0
+  Real t = 0, value = 0;    // where the overshoot is largest
+  Real beyond = 0;          // overshoot of the range of the two points: above it > 0, below it < 0
 };
 
 class ScalarFunction {
  public:
-  // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
-  // InputError naming the owner where a table has fewer than two points, unequal columns, times that do not
-  // increase, or does not cover [0, end].
+  // owner: the owner of the function, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
+  // InputError with the owner where a table has fewer than two points, columns of unequal length or times
+  // that do not increase, or does not cover [0, end].
   ScalarFunction(const TimeFunction& function, const std::string& owner, Real end);
-  // A curve over something else than time. Throws InputError on its points as above; it need not cover
-  // anything.
+  // A curve over a variable other than time. Throws InputError on invalid points; it need not cover a range.
   ScalarFunction(const Curve& curve, const std::string& owner);
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }
 
-  // Whether the other has the same values, bit for bit, at all instants from 0 to `t` [s], though not after.
+  // Whether the other function has the same values, bit for bit, at all times from 0 to `t` [s]; later values
+  // may differ.
   bool same_until(const ScalarFunction& other, Real t) const;
 
-  // The farthest that a spline through a table's points leaves the values at the ends of one of its pieces;
-  // nothing of what is not such a spline.
+  // The largest overshoot of a spline through a table's points beyond the values at the ends of a segment;
+  // zero for other functions.
   Overshoot overshoot() const;
 
-  // t [s]; round-off past a table's ends follows the end tangent, which keeps both derivatives continuous.
+  // t [s]. Beyond the ends of a table, which round-off may reach, the end tangent continues it, so both
+  // derivatives are continuous.
   TimeValue operator()(Real t) const {
-    if (function_.kind == TimeFunction::Kind::constant) return {function_.value, 0, 0};  // most of them
+    if (function_.kind == TimeFunction::Kind::constant)
+      return {function_.value, 0, 0};  // the most frequent kind
     return moving_value(t);
   }
 
@@ -55,7 +57,7 @@ class ScalarFunction {
   TimeValue segment_value(std::size_t segment, Real t) const;
 
   TimeFunction function_;
-  // At the table's times: rates (monotone), second derivatives (0 where it is read linearly).
+  // At the table's times: rates (monotone), or second derivatives (0 for linear interpolation).
   std::vector<Real> rates_, second_derivatives_;
 };
 

@@ -1,4 +1,5 @@
-// Where the shapes are that one entry of a body's shapes makes: one, a row, or an array and its sides.
+// Positions of the shapes of one entry of a body's shapes: a single shape, a row, or an array or some of its
+// sides.
 #pragma once
 
 #include <array>
@@ -12,14 +13,14 @@
 
 namespace scree {
 
-// Places in the body's frame, from its origin [m]; along x first, then y, then z.
+// Positions in the body's frame from its origin [m], along x first, then y, then z.
 class ShapePlaces {
  public:
-  // Throws InputError for keys that do not go together.
+  // Throws InputError for inconsistent keys.
   ShapePlaces(const DeckTable& shape, int dimension);
-  // How many there are.
+  // Number of positions.
   std::int64_t count() const;
-  // Calls visit(place) for each.
+  // Calls visit(position) for each.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (std::int64_t k = 0; k < size_[2]; ++k)
@@ -27,7 +28,7 @@ class ShapePlaces {
         for (std::int64_t i = 0; i < size_[0]; ++i)
           if (is_kept({i, j, k})) visit(place({i, j, k}));
   }
-  // The outermost ones, between which all others lie.
+  // The outermost positions, whose bounding box contains all others.
   std::vector<Vec3> corners() const;
 
  private:
@@ -40,8 +41,8 @@ class ShapePlaces {
 
   Number size_{1, 1, 1};
   Vec3 first_;
-  std::array<Vec3, 3> step_{};  // from each to the next along an axis of the array [m]
-  bool all_ = true;             // else those on these sides alone
+  std::array<Vec3, 3> step_{};  // from each shape to the next along an axis of the array [m]
+  bool all_ = true;             // all positions of the array, otherwise only those on these sides
   std::array<bool, kSides> sides_{};
 };
 

@@ -1,4 +1,4 @@
-// The space as boxes: what lies inside it, and what beyond which of its sides.
+// The domain as boxes: tests of positions against its sides.
 #pragma once
 
 #include "base/box.hpp"
@@ -12,8 +12,8 @@ Box open_box(const Space& space);
 Box periodic_box(const Space& space);
 // The sides that are walls; the others are at infinity.
 Box wall_box(const Space& space);
-// Where something may be at t = 0: as open_box, but with periodic sides so many periods away as a place in
-// the periodic space can be told.
+// The allowed positions at t = 0: open_box, extended across periodic sides by the number of periods for which
+// a position can be wrapped exactly.
 Box start_box(const Space& space);
 
 }  // namespace scree

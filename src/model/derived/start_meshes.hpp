@@ -1,4 +1,4 @@
-// The meshes of walls and bodies where they are at t = 0, and how far spheres overlap them.
+// The meshes of walls and bodies in their poses at t = 0, and the overlaps of spheres with them.
 #pragma once
 
 #include <vector>
@@ -11,35 +11,35 @@ namespace scree {
 
 struct StartMesh {
   MeshView mesh;
-  int body = kGround, wall = -1;  // what carries it: index into Model::bodies or Model::walls
+  int body = kGround, wall = -1;  // its owner: index into Model::bodies or Model::walls
   int material = 0;
-  Vec3 point;  // of its origin, in the periodic box [m]
+  Vec3 point;  // of the mesh's origin, in the periodic box [m]
   Mat3 axes;   // rows: its axes in the global frame
-  // As in a run: along an axis on which it is as long as the periodic space it goes on for ever, and a sphere
-  // is where it lies beside its middle; along others it has images.
-  Vec3 middle, spanned;      // [m], the latter 0 along the other axes
-  std::vector<Vec3> shifts;  // of its images, itself included [m]
+  // As in a run: along an axis on which the mesh is as long as the periodic domain it continues without end,
+  // and spheres are taken relative to its middle; along other axes it has images.
+  Vec3 middle, spanned;      // [m]; spanned is 0 along the other axes
+  std::vector<Vec3> shifts;  // displacements of its images, zero for itself included [m]
 
-  // Of a sphere at p in the periodic box, with the images of either [m]; 0: none. Where the centre is inside,
-  // the radius and its depth, which is not looked for beyond a radius: at most the diameter.
+  // Overlap with a sphere at p in the periodic box, images included [m]; 0: none. Where the centre is inside,
+  // the radius plus its depth, which is searched up to one radius: at most the diameter.
   Real overlap(Vec3 p, Real radius) const;
 };
 
-// A point many periods outside the space at its place in the periodic box.
+// Wraps a point any number of periods outside the domain into the periodic box.
 Vec3 in_periodic_box(const Space& space, Vec3 p);
-// Periods of the space; 0 along axes without [m].
+// Periods of the domain; 0 along axes without a period [m].
 Vec3 periods_of(const Space& space);
-// Displacements of the images, that of the thing itself included [m].
+// Displacements of the images, zero for the object itself included [m].
 std::vector<Vec3> image_shifts(Vec3 periods);
 
-// Lives no longer than the model that it is made of.
+// Must not outlive its model.
 class StartMeshes {
  public:
   explicit StartMeshes(const Model& model);
 
-  // Those of bodies in their order, then those of walls.
+  // Meshes of bodies in their order, then meshes of walls.
   const std::vector<StartMesh>& all() const { return meshes_; }
-  // Whether a sphere keeps `gap` from all.
+  // Whether a sphere has a distance of at least `gap` to all meshes.
   bool is_clear(Vec3 p, Real radius, Real gap) const;
 
  private:
