@@ -17,7 +17,7 @@ namespace scree {
 
 namespace {
 
-// More cannot be meant, and counts of them must stay exact.
+// Larger numbers are mistakes; below this limit counts are exact.
 constexpr Real kMostOutputs = 1e9;
 
 void build_boundaries(const DeckTable& table, Space& space) {
@@ -36,7 +36,7 @@ void build_boundaries(const DeckTable& table, Space& space) {
   }
 }
 
-// The plane of a side of the space.
+// The plane of a side of the domain.
 Wall side_wall(const Space& space, int side) {
   Wall wall{kSideNames[side], side % 2 == 0 ? space.min : space.max, {}, space.wall_material};
   const Real sign = side % 2 == 0 ? 1 : -1;

@@ -26,9 +26,9 @@ namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 1e-9;  // of the triangle rule
+constexpr Real kRoundOff = 1e-9;  // tolerance of the triangle inequality
 
-// What follows from solids must not be given beside them.
+// Throws InputError where keys that solids determine are given beside solids.
 void check_mass_keys(const DeckTable& table, bool spatial) {
   const bool solid = !table.tables("solids").empty();
   const std::string moment = spatial ? "inertia_tensor" : "inertia";
@@ -95,7 +95,7 @@ Real density_of(const DeckTable& table, const ModelNames& names) {
   return density;
 }
 
-// About its own centre, along the axes of the body's frame.
+// Mass properties about the solid's own centre, along the axes of the body's frame.
 MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
   const Real density = density_of(table, names);
   const auto own = [&]() -> MassProperties {
@@ -123,7 +123,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
   return {own.mass, table.vector("offset") + axes * own.center, turned_tensor(axes, own.inertia)};
 }
 
-// Positive definite, and no principal moment above the sum of the other two: as of any body with mass.
+// Throws InputError unless the tensor is positive definite and no principal moment exceeds the sum of the
+// other two.
 Real check_inertia(const DeckTable& table, const std::string& key, const Sym3& tensor) {
   const std::array<Real, 3> principal = principal_values(tensor);
   const std::string found = fmt::format("the principal moments are {:.6g}, {:.6g} and {:.6g} kg m^2",
@@ -141,7 +142,7 @@ Sym3 read_inertia(const DeckTable& table) {
   return axes.w == 1 ? given : turned_tensor(rotation_matrix(axes), given);
 }
 
-// Mass, centre of mass and inertia.
+// Reads mass, centre of mass and inertia.
 void read_mass(const DeckTable& table, const ModelNames& names, Body& body) {
   const bool spatial = body.kind == BodyKind::spatial;
   check_mass_keys(table, spatial);
@@ -184,14 +185,14 @@ void read_spatial(const DeckTable& table, Body& body) {
     body.spin = transposed_times(rotation_matrix(body.orientation), table.vector("global_angular_velocity"));
 }
 
-// From the origin of the body's frame to the centre of mass.
+// Moves the body's points from the origin of its frame to the centre of mass.
 void move_to_center(Body& body) {
   if (body.center_of_mass == Vec3{}) return;
   const PointMotion center = point_motion(start_motion(body), body.center_of_mass);
   body.position = center.position, body.velocity = center.velocity;
 }
 
-// Of a shape or mesh of a body. What touches nothing needs none.
+// Material of a shape or mesh of a body; not needed where it takes no part in contact.
 int surface_material(const ModelNames& names, const DeckTable& surface, bool collides) {
   const bool needed = collides || surface.has("material") || names.materials.size() == 1;
   return needed ? find_material(names, surface, "material") : kNoMaterial;
@@ -241,7 +242,7 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
   return body;
 }
 
-// For the report.
+// Records the mass of solids that are meshes, for the report.
 void note_mesh_solids(const DeckTable& body, const ModelNames& names, Model& model) {
   for (const DeckTable& solid : body.tables("solids")) {
     if (solid.choice<SolidKind>("kind") != SolidKind::mesh) continue;

@@ -12,10 +12,10 @@ namespace scree {
 namespace {
 
 constexpr Real kSquare = 1e-9;  // cosine of axes that must be perpendicular
-// Round-off that a matrix may have in its symmetry and below the energy 0, over the roots of its diagonal.
+// Tolerance for the symmetry of a matrix and for negative energies, relative to the roots of its diagonal.
 constexpr Real kRounding = 1e-9;
 
-// Rows x, y, z at t = 0.
+// Frame of the bushing at t = 0, rows x, y, z.
 Mat3 start_frame(const DeckTable& table) {
   if (table.has("axis") != table.has("second_axis"))
     table.fail(table.has("axis") ? "axis" : "second_axis",
@@ -34,7 +34,7 @@ Mat3 start_frame(const DeckTable& table) {
   return {x, cross(z, x), z};
 }
 
-// Of the deck's markers, or of its point and axes.
+// Sets the ends from the deck's markers, or from its point and axes.
 void place_ends(const DeckTable& table, const Model& model, const Connection& connection, Bushing& bushing) {
   check_without_markers(table, {"point", "local_points", "axis", "second_axis"});
   if (!connection.markers && table.has("point") == table.has("local_points"))
@@ -45,9 +45,10 @@ void place_ends(const DeckTable& table, const Model& model, const Connection& co
     bushing.point[side] = ends[side].point, bushing.marker[side] = ends[side].orientation;
 }
 
-// Over the roots of the diagonal, with a unit diagonal: so that units do not matter.
+// Throws InputError where a deflection has a negative energy. The matrix is scaled to a unit diagonal and so
+// independent of units.
 void check_no_gain(const DeckTable& table, const std::string& key, const Matrix6& a) {
-  Matrix6 l{};  // Cholesky's factor of that and a little more
+  Matrix6 l{};  // Cholesky factor of the scaled matrix plus a small multiple of the unit matrix
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const Real scale = std::sqrt(a[i][i] * a[j][j]);
@@ -89,7 +90,7 @@ Matrix6 read_matrix(const DeckTable& table, const std::string& key) {
   return a;
 }
 
-// Only markers can be turned against each other at t = 0.
+// Checks the rotation at t = 0 between the frames, which only markers can give.
 void check_start_turn(const DeckTable& table, const Model& model, const Bushing& bushing) {
   Quaternion frame[2];
   for (int side = 0; side < 2; ++side)

@@ -19,10 +19,10 @@ namespace scree {
 
 namespace {
 
-// Whether a key is given with an effect: where 0 means that there is none, it is as if it were left out.
+// Whether a key is given with a value above 0: for these keys 0 is equal to leaving the key out.
 bool is_positive(const DeckTable& table, const char* key) { return table.has(key) && table.real(key) > 0; }
 
-// The damping ratio of a restitution, beside a law's K, n and tension.
+// Sets the damping ratio for the restitution, which depends on the law's K, n and tension.
 void take_restitution(const DeckTable& table, KelvinVoigt& law) {
   if (!table.has("restitution")) return;
   if (table.real("damping") > 0) table.fail("restitution", "stands beside a damping; give one of the two");
@@ -32,8 +32,8 @@ void take_restitution(const DeckTable& table, KelvinVoigt& law) {
   law.damping_ratio = damping_ratio_of(table.real("restitution"), law.tension);
 }
 
-// K at which an undamped head-on impact at the speed reaches the overlap: K d^(n+1) / (n+1) = m* v^2 / 2,
-// of the pair's partners with the heaviest reduced mass and the smallest radius [N/m^n].
+// Stiffness K for which an undamped head-on impact at the given speed reaches the given overlap: K d^(n+1) /
+// (n+1) = m* v^2 / 2, with the largest reduced mass and the smallest radius of the pair's partners [N/m^n].
 Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int (&material)[2]) {
   if (table.has("stiffness")) table.fail("largest_overlap", "stands beside a stiffness; give one of the two");
   if (table.real("damping") > 0)
@@ -53,7 +53,7 @@ Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int 
   return (n + 1) / 2 * mass * speed * speed / std::pow(overlap, n + 1);
 }
 
-// F = K d^n + C d_dot, K given, or following from a largest overlap.
+// F = K d^n + C d_dot, with K given or derived from a largest overlap.
 KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int (&material)[2],
                           bool has_moduli) {
   const bool from_overlap = table.has("largest_overlap");
@@ -105,7 +105,7 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
   return law;
 }
 
-// Discs along a line: F = pi/4 E* L d, L their thickness (V. L. Popov, Contact Mechanics and Friction, 2010,
+// Discs in line contact: F = pi/4 E* L d, L: thickness (V. L. Popov, Contact Mechanics and Friction, 2010,
 // section 5.2, without the logarithm of the exact law), in place of Hertz's law of spheres.
 KelvinVoigt line_contact(const DeckTable& table, const Model& model, KelvinVoigt law) {
   const DiscThickness& discs = model.disc_thickness;
@@ -168,8 +168,8 @@ Friction build_friction(const DeckTable& deck, const DeckTable& table, const Kel
 
 constexpr std::array kRollingKeys{"rolling_friction", "rolling_damping", "twisting_friction"};
 
-// Spring: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the plane, where none is given
-// (ElasticPlasticRolling).
+// Rolling resistance of the pair. Default stiffness: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the
+// plane (ElasticPlasticRolling).
 RollingResistance build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
   const bool springs = is_positive(table, "rolling_friction"),
              acts = springs || is_positive(table, "rolling_damping");
@@ -199,12 +199,12 @@ RollingResistance build_rolling(const DeckTable& table, const Friction& friction
   return rolling;
 }
 
-// Whether the pair asks for moments against rolling or twisting.
+// Whether the pair has rolling or twisting resistance.
 bool resists_rolling(const DeckTable& table) {
   return std::ranges::any_of(kRollingKeys, [&](const char* key) { return is_positive(table, key); });
 }
 
-// Turning particles that nothing turns.
+// Throws InputError where particles are given an angular velocity without any friction.
 void check_rotation(const DeckTable& deck, const Model& model) {
   if (model.rotates()) return;
   const std::string still = "no particle rotates: no pair in contact.pairs has friction";
@@ -218,9 +218,9 @@ void check_rotation(const DeckTable& deck, const Model& model) {
 bool has_neck(const KelvinVoigt& law) { return law.neck && law.adhesion_work > 0; }
 bool pulls(const KelvinVoigt& law) { return law.attracts() && (!has_neck(law) || law.attraction > 0); }
 
-// The pairs that have a law by now, and what some of them have.
+// The pairs that have a law so far, and features that some of them have.
 struct GivenPairs {
-  std::vector<bool> slots;  // as Contact::laws
+  std::vector<bool> slots;  // indexed as Contact::laws
   bool hertz = false, stiff = false, necks = false, pull = false;
 
   void add(const KelvinVoigt& law) {
@@ -229,7 +229,7 @@ struct GivenPairs {
   }
 };
 
-// A run has one form of law.
+// Throws InputError where pairs have different kinds of laws: a run has one.
 void check_mixing(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
   const bool hertz = law.effective_modulus > 0;
   if (!law.acts() || !(hertz ? before.stiff : before.hertz)) return;
@@ -239,7 +239,7 @@ void check_mixing(const DeckTable& table, const GivenPairs& before, const Kelvin
                          hertz ? "missing" : "given", hertz ? "one" : "none"));
 }
 
-// What surfaces that attract each other add to a pair's law.
+// Adds adhesion and attraction to a pair's law.
 void take_attraction(const DeckTable& table, KelvinVoigt& law) {
   if (table.has("surface_energy") && table.has("work_of_adhesion"))
     table.fail("surface_energy", "stands beside work_of_adhesion; give one of the two");
@@ -264,12 +264,13 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
     if (!table.has("attraction")) table.fail("attraction_range", "needs attraction beside it");
     law.range = law.attraction > 0 ? table.real("attraction_range") : 0;
   }
-  // What attracts is not cut: its damper acts to the end.
+  // The damping force of adhesive laws is not limited.
   if (law.attracts() && table.has("restitution"))
     law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
 }
 
-// A run has one form of law: necks, or pulls that are added.
+// Throws InputError where pairs have different kinds of adhesion: a run has JKR contacts, or added adhesive
+// forces.
 void check_attraction_beside(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
   if (!law.attracts() || !(has_neck(law) || before.necks) || !(pulls(law) || before.pull)) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
@@ -293,7 +294,7 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   check_attraction_beside(table, given, law);
   const Friction friction = build_friction(deck, table, law, material);
   const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
-  // A neck turns with its partners: its law is one of contacts that rub.
+  // JKR laws exist only with friction: the contact rotates with its partners.
   if (table.has("friction") || (law.neck && law.attracts())) contact.friction.resize(contact.laws.size());
   if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
   take_wear(table, friction.friction, material, contact);
@@ -310,8 +311,8 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   given.add(law);
 }
 
-// Every pair that can meet needs a law: what is not given is made, where the deck says how. Meshes on planes
-// may do without.
+// Combines the pairs that can meet and are not given, where the deck has a rule. Pairs of meshes and planes
+// alone need no law.
 void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, GivenPairs& given) {
   const DeckTable& table = deck.table("contact");
   const LikePairs like = like_pairs(table);
@@ -338,7 +339,7 @@ void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names
   }
 }
 
-// Two items must not meet through both sides of a periodic axis at once.
+// Throws InputError where two objects could touch through both sides of a periodic axis at once.
 void check_periods(const DeckTable& deck, const Model& model, Real largest_radius) {
   const Space& space = model.space;
   const Vec3 extent = space.max - space.min;
@@ -381,7 +382,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   complete_pairs(deck, model, names, given);
   const auto [of_spheres, largest] = radius_range(model);
   const Real smallest = of_spheres > 0 ? of_spheres : largest_corner_radius(model);
-  // With nothing to search for, any positive length serves.
+  // Any positive length is valid without particles and shapes.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;
   for (const KelvinVoigt& law : contact.laws)

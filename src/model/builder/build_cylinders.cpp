@@ -1,4 +1,4 @@
-// Cylinders: each is a joint whose length is free, a motor on this length and, with a stroke, a stop.
+// Cylinders: each becomes a joint with a free length, a motor on this length and, with a stroke, a stop.
 #include <fmt/format.h>
 
 #include "model/builder/build_parts.hpp"
@@ -17,7 +17,7 @@ Joint build_line(const DeckTable& table, const Model& model, const Connection& c
   check_same_kind(table, model, connection);
   find_end_points(table, model, connection, line.point);
   line.distance = start_distance(model, line.body, line.point);
-  // Points that differ by round-off alone give the line no direction.
+  // The direction between two points that differ by round-off is undefined.
   constexpr Real kRoundOff = 1e-12;
   const Real size = norm(to_global_point(model, line.body[0], line.point[0]));
   if (line.distance <= kRoundOff * size)

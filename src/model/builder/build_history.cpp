@@ -1,4 +1,4 @@
-// What the history records the contacts of.
+// Objects whose contacts the history records.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -37,7 +37,7 @@ std::vector<int> walls_named(const Model& model, const std::string& name) {
                 name, suggestion(name, known)));
 }
 
-// "bucket.teeth": a mesh of a body, every time that the body has it.
+// "bucket.teeth": a mesh of a body, for every use of it by the body.
 std::vector<ContactTarget> meshes_named(const ModelNames& names, const Model& model,
                                         const std::string& name) {
   std::vector<ContactTarget> found;
@@ -52,7 +52,7 @@ std::vector<ContactTarget> meshes_named(const ModelNames& names, const Model& mo
   return found;
 }
 
-// What a target is, for messages: "row of bodies \"net\"", "mesh \"teeth\" of body \"bucket\"".
+// Description of a target for messages: "row of bodies \"net\"", "mesh \"teeth\" of body \"bucket\"".
 std::string described(const Model& model, const ContactTarget& target) {
   if (target.wall >= 0) return fmt::format("wall \"{}\"", target.name);
   if (target.row) return fmt::format("row of bodies \"{}\"", target.name);

@@ -17,7 +17,8 @@ namespace {
 
 const Joint& joint_at(const Model& model, int joint) { return model.joints[static_cast<std::size_t>(joint)]; }
 
-// "revolute, translational, cylindrical or screw": joints of these bodies with this coordinate, or with any.
+// "revolute, translational, cylindrical or screw": the kinds of joints between these bodies with this
+// coordinate, or with any.
 std::string kinds_with(const Model& model, int joint, std::optional<JointCoordinate> coordinate) {
   const bool spatial = between(model, joint_at(model, joint).body) == BodyKind::spatial;
   const std::string both = spatial ? ", cylindrical or screw" : "";
@@ -37,7 +38,7 @@ int moving_joint(const DeckTable& table, const Model& model, const ModelNames& n
   return joint;
 }
 
-// The joint that the table names, or all of a row of joints.
+// The joint that the table names, or all joints of the row that it names.
 std::vector<int> moving_joints(const DeckTable& table, const Model& model, const ModelNames& names) {
   const std::string& name = table.text("joint");
   const auto of_row = [&](std::size_t i) { return fmt::format("{}.{}", name, i); };
@@ -49,7 +50,7 @@ std::vector<int> moving_joints(const DeckTable& table, const Model& model, const
   return joints;
 }
 
-// Adds element(joint) for every joint of the table; of a row's as NAME.0, NAME.1, ...
+// Adds element(joint) for every joint of the table; for a row of joints they are named NAME.0, NAME.1, ...
 template <class Element, class Build>
 void add_elements(const DeckTable& table, const Model& model, const ModelNames& names, NameMap& taken,
                   std::vector<Element>& out, const Build& build) {
@@ -148,7 +149,7 @@ JointFriction build_friction(const DeckTable& table) {
   return friction;
 }
 
-// A pin has a radius, a slide has none.
+// Checks the radius: an angle needs one, a displacement has none.
 void check_radius(const DeckTable& table, const Joint& joint) {
   const bool turns = is_angle(read_coordinate(table, joint)), rubs = table.real("friction_coefficient") > 0;
   if (joint.telescopes && rubs)
@@ -177,7 +178,7 @@ void take_coordinates(const DeckTable& table, const Model& model, Coupler& coupl
   coupler.coordinates = wanted;
 }
 
-// Of a sum, which takes any.
+// Reads the coordinates of a sum, which may be any.
 void read_coordinates(const DeckTable& table, const Model& model, Coupler& coupler) {
   if (coupler.joints.size() < 2 || coupler.joints.size() > 3)
     table.fail("joints", "must have 2 or 3 entries");
@@ -215,7 +216,7 @@ Real ratio_of(const DeckTable& table) {
   return radii[1] / radii[0];
 }
 
-// Also the coordinates.
+// Coefficients of the coupler; also sets the coordinates.
 std::vector<Real> coefficients_of(const DeckTable& table, const Model& model, Coupler& coupler) {
   constexpr JointCoordinate turns = JointCoordinate::angle, slides = JointCoordinate::displacement;
   switch (table.choice<CouplerKind>("type")) {
@@ -257,8 +258,8 @@ Coupler build_coupler(const DeckTable& table, const Model& model, const ModelNam
 }  // namespace
 
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names) {
-  NameMap efforts, reactions = names.joints;  // as they stand side by side in the history
-  for (const Motor& motor : model.motors) efforts.emplace(motor.name, 0);  // of cylinders
+  NameMap efforts, reactions = names.joints;  // the history has them in one group of datasets
+  for (const Motor& motor : model.motors) efforts.emplace(motor.name, 0);  // those of cylinders
   for (const JointLimit& limit : model.joint_limits) efforts.emplace(limit.name, 0);
   for (const DeckTable& table : deck.tables("motors"))
     add_elements(table, model, names, efforts, model.motors, build_motor);

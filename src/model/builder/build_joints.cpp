@@ -36,7 +36,7 @@ void check_square(const DeckTable& table, Vec3 axis, Vec3 second) {
                                           dot(axis, second), kSquare));
 }
 
-// The frames of the joint on either body at t = 0, rows x, y, z; see Joint::marker.
+// Sets the frames of the joint on either body at t = 0, rows x, y, z; see Joint::marker.
 void place_frames(const DeckTable& table, const Joint& joint, Mat3 (&frame)[2]) {
   frame[0] = frame[1] = identity3();
   switch (joint.kind) {
@@ -73,7 +73,7 @@ void place_frames(const DeckTable& table, const Joint& joint, Mat3 (&frame)[2]) 
 constexpr Real kAligned = 1e-6;  // [rad]
 constexpr Real kDegrees = 180 / std::numbers::pi_v<Real>;
 
-// `wrong`: how far the markers are from it [rad].
+// Throws InputError where the markers are misaligned. `wrong`: their misalignment [rad].
 void check_aligned(const DeckTable& table, const std::string& must, Real wrong) {
   if (wrong <= kAligned) return;
   const std::string against =
@@ -83,7 +83,7 @@ void check_aligned(const DeckTable& table, const std::string& must, Real wrong) 
                          wrong * kDegrees, kAligned * kDegrees, against));
 }
 
-// The second frame, turned to what the joint keeps.
+// The second frame, rotated to satisfy the joint's constraints exactly.
 Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3& two) {
   const auto square = [&](Vec3 a, Vec3 b, const char* must) {
     check_aligned(table, must, std::abs(angle_between(a, b) - std::numbers::pi_v<Real> / 2));
@@ -123,8 +123,8 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
   return two;
 }
 
-// What markers must keep of each other at t = 0 they keep to kAligned, and then the second one is turned to
-// keep it exactly.
+// Markers must satisfy the joint's constraints at t = 0 to kAligned; the second marker is then rotated to
+// satisfy them exactly.
 Ends spatial_ends(const DeckTable& table, const Model& model, const Connection& connection,
                   const Joint& joint) {
   Mat3 frame[2];
@@ -140,7 +140,7 @@ Ends spatial_ends(const DeckTable& table, const Model& model, const Connection& 
   return ends;
 }
 
-// What planar bodies cannot have.
+// Throws InputError for joints that planar bodies do not support.
 void check_planar(const DeckTable& table, const Joint& joint) {
   switch (joint.kind) {
     case JointKind::revolute:
@@ -186,7 +186,7 @@ bool has_common_point(JointKind kind) {
          kind != JointKind::orientation;
 }
 
-// Markers may begin turned and apart: the start is on the screw.
+// Markers may start rotated and displaced: the initial state defines the screw's offset.
 void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
   joint.lead = table.real("lead");
   if (joint.lead == 0) table.fail("lead", "must not be 0; a revolute joint has no advance");
@@ -241,7 +241,7 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
       model.joints.push_back(build_joint(table, model, connection));
     }
   }
-  NameMap taken = names.joints;  // the reactions of drivers and joints stand side by side in the history
+  NameMap taken = names.joints;  // the history has reactions of drivers and joints in one group of datasets
   for (const DeckTable& table : deck.tables("drivers")) {
     add_name(taken, table.text("name"), 0, table);
     const int joint = find_name(names.joints, table, "joint", "joint");

@@ -21,7 +21,7 @@ void build_markers(const DeckTable& deck, const Model& model, ModelNames& names)
     if (first != kGround && !is_spatial(model, first))
       table.fail("body", "must be spatial (bodies.kind) or \"ground\"");
     marker.marker = {from_center(model, first, table.vector("local_point")), read_orientation(table)};
-    names.markers[table.text("name")] = std::move(marker);  // the reader refuses a name twice
+    names.markers[table.text("name")] = std::move(marker);  // the reader refuses repeated names
   }
 }
 

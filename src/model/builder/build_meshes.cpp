@@ -1,4 +1,4 @@
-// Meshes: made or read, checked, prepared for contacts.
+// Meshes: generated or read, checked, prepared for contacts.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -24,7 +24,7 @@
 namespace scree {
 namespace {
 
-// The key that troubles are about.
+// The key to name in messages about the mesh.
 std::string source_key(const DeckTable& table) { return table.has("file") ? "file" : "kind"; }
 
 [[noreturn]] void fail(const DeckTable& table, const std::vector<std::string>& troubles,
@@ -33,14 +33,14 @@ std::string source_key(const DeckTable& table) { return table.has("file") ? "fil
              fmt::format("the mesh is no surface: {}{}", fmt::join(troubles, "; "), remedy));
 }
 
-// A closed line is open where it ends along z.
+// A closed line has free edges at its ends along z.
 void check(const DeckTable& table, const TriangleMesh& mesh) {
   const bool open = is_sheet(table) || table.choice<MeshKind>("kind") == MeshKind::line;
   const std::vector<std::string> troubles = mesh_troubles(mesh, open);
   if (!troubles.empty()) fail(table, troubles);
 }
 
-// No triangle with edges up to L is larger than the equilateral one, sqrt(3) / 4 L^2.
+// A triangle with edges up to L has at most the area of the equilateral one, sqrt(3) / 4 L^2.
 void check_room(const DeckTable& table, const TriangleMesh& mesh) {
   const Real longest = table.real("refine"),
              least = mesh_area(mesh) / (std::sqrt(Real(3)) / 4 * longest * longest);
@@ -65,7 +65,7 @@ CoarseMesh coarser(const DeckTable& table, const TriangleMesh& mesh, Real distan
   return coarsened(mesh, distance, table.real("feature_angle"));
 }
 
-// The largest of some smaller distances that keeps parts of the mesh apart, for a message; or "".
+// The largest of some smaller distances at which parts of the mesh stay apart, for a message; or "".
 std::string fitting_distance(const DeckTable& table, const TriangleMesh& mesh) {
   constexpr int kMostTries = 6;
   Real distance = table.real("coarsen");
@@ -77,7 +77,8 @@ std::string fitting_distance(const DeckTable& table, const TriangleMesh& mesh) {
   return "";
 }
 
-// Surfaces that come close to each other may meet in the coarser mesh.
+// The coarsened mesh. Surfaces that are close to each other may intersect after coarsening, which is an
+// error.
 TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
   CoarseMesh coarse = coarser(table, mesh, table.real("coarsen"));
   const std::vector<std::string> troubles = mesh_troubles(coarse.mesh, is_sheet(table));
@@ -95,13 +96,14 @@ TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, Mode
   return std::move(coarse.mesh);
 }
 
-// What a file that is no solid can be, or "".
+// Advice for a file that is not a solid, or "".
 std::string sheet_remedy(const NumberedMesh& mesh) {
   if (!mesh_troubles(repaired(mesh, true).mesh.mesh, true).empty()) return "";
   return "; sheet = true takes it as a surface that is touched from both sides and encloses nothing";
 }
 
-// A file's, with what is put right, of which the log is told. note: gets where its shells cross.
+// Checks the mesh of a file and repairs it; the log names the repairs. note: receives the place where its
+// shells intersect.
 TriangleMesh checked_file(const DeckTable& table, const NumberedMesh& welded, ModelMesh& note, Log& log) {
   const bool sheet = is_sheet(table);
   MeshRepair repair = repaired(welded, sheet);
@@ -115,9 +117,9 @@ TriangleMesh checked_file(const DeckTable& table, const NumberedMesh& welded, Mo
   return std::move(mesh.mesh);
 }
 
-// Welded and checked.
+// The mesh after welding and checks.
 TriangleMesh checked(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note, Log& log) {
-  if (table.has("weld"))  // a file's
+  if (table.has("weld"))  // from a file
     return checked_file(table, welded_within(mesh, table.real("weld")), note, log);
   TriangleMesh joined = welded(mesh);
   if (table.has("file")) return checked_file(table, numbered(std::move(joined)), note, log);
@@ -125,7 +127,7 @@ TriangleMesh checked(const DeckTable& table, const TriangleMesh& mesh, ModelMesh
   return joined;
 }
 
-// Made coarser and finer, too. note: gets what became of the triangles, too.
+// The mesh after checks, coarsening and refinement. note: receives the changes.
 TriangleMesh checked_and_resized(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note,
                                  Log& log) {
   TriangleMesh surface = checked(table, mesh, note, log);
@@ -142,8 +144,8 @@ void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
                            features, most));
 }
 
-// The table with what it leaves out of how finely it is cut. note: gets what fits particles of radius
-// `grain` [m], and whether the mesh has it.
+// The table with its missing segments or levels. note: receives the value that fits particles of radius
+// `grain` [m], and whether it is used.
 DeckTable with_fitting_segments(DeckTable table, Real grain, ModelMesh& note) {
   const FittingSegments fitting = fitting_segments_of(table, grain);
   if (fitting.key.empty()) return table;
@@ -169,7 +171,7 @@ void check_surface_count(const DeckTable& deck, const Model& model) {
 void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& log) {
   const DeckTable& space = deck.table("space");
   const bool planar = space.integer("dimension") == 2;
-  // No particle is near the ends of a line along z.
+  // Particles stay away from the ends of a line along z.
   const Real half_depth = norm(space.vector("max") - space.vector("min"));
   const Real grain = any_round(deck) ? smallest_grain(deck) : kInfinity;
   for (const DeckTable& given : deck.tables("meshes")) {
@@ -181,7 +183,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& l
     add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
     const TriangleMesh line_solid = planar ? make_line_solid(table) : TriangleMesh{};
     const MadeMesh drawn = make_mesh(table, half_depth);
-    // A line was refined when it was drawn.
+    // A line was refined when it was generated.
     const TriangleMesh mesh = planar ? checked(table, drawn.triangles, made, log)
                                      : checked_and_resized(table, drawn.triangles, made, log);
     made.surface = std::make_shared<const SurfaceMesh>(

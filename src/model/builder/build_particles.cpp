@@ -1,4 +1,4 @@
-// Groups of particles: where they stand, how large, heavy and fast they are.
+// Groups of particles: positions, sizes, masses and velocities.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ namespace scree {
 
 namespace {
 
-// One group while it is built: the part of it that this rank has. Random numbers are drawn in the order
-// radius, mass, position, velocity, those of all its particles on every rank, so that a particle does not
-// depend on who has it.
+// One group while it is built: this rank's part of it. Random numbers are drawn in the order radius, mass,
+// position, velocity, for all particles of the group on every rank, so that a particle does not depend on its
+// owner.
 class Group {
  public:
   Group(const DeckTable& table, const ModelNames& names, const Model& model)
@@ -42,8 +42,7 @@ class Group {
   bool is_random() const { return kind_ == GroupKind::random; }
   void note_thickness(DiscThickness& discs) const;
   void warn_if_empty(Log& log) const;
-  // Adds the particles of `part`, counted in the group. placed: what stands there already, for a random
-  // group.
+  // Adds the particles of `part`, indices within the group. placed: the items that a random group must avoid.
   void append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed);
 
  private:
@@ -78,11 +77,11 @@ class Group {
   std::optional<ParticleFile> file_;
   std::int64_t count_;
   IdRange part_;
-  ParticleColumns columns_;  // of the file's part
+  ParticleColumns columns_;  // this rank's part of the file
   std::vector<Vec3> position_;
 };
 
-// Of the whole group.
+// Number of particles in the whole group.
 std::int64_t Group::count_of() {
   switch (kind_) {
     case GroupKind::list:
@@ -186,7 +185,7 @@ void Group::place_regular() {
       position_ = vectors_of("");
       return;
     case GroupKind::random:
-      break;  // place_random
+      break;  // done by place_random
   }
   throw std::logic_error("a group of particles without an order");
 }
@@ -207,7 +206,7 @@ void Group::place_lattice() {
     position_.push_back(lattice_position(origin, spacing, size, i));
 }
 
-// Each position depends on all before it: every rank finds all, and keeps its part of them.
+// Each position depends on all earlier ones: every rank computes all of them and keeps its part.
 void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
   const FillRegion region(table_, model_, names_);
   PackingBox box = region.packing(table_.real("gap"), table_.integer("tries"));
@@ -233,7 +232,7 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
   position_.assign(places.begin() + part_.first, places.begin() + part_.last);
 }
 
-// Components PREFIXx, PREFIXy, PREFIXz of the file.
+// Components PREFIXx, PREFIXy, PREFIXz from the file.
 std::vector<Vec3> Group::vectors_of(const std::string& prefix) const {
   const std::vector<Real>&x = columns_.at(prefix + "x"), &y = columns_.at(prefix + "y");
   std::vector<Vec3> vectors(x.size());
@@ -291,7 +290,7 @@ std::vector<Vec3> Group::velocities() {
   return velocity;
 }
 
-// [rad/s], of the part; empty: zero.
+// Angular velocities of this rank's part [rad/s]; empty: zero.
 std::vector<Vec3> Group::angular_velocities() const {
   const Vec3 common = common_angular_velocity();
   const auto count = static_cast<std::size_t>(part_.size());
@@ -304,7 +303,7 @@ std::vector<Vec3> Group::angular_velocities() const {
   return spin;
 }
 
-// [rad/s], of all particles of the group.
+// Angular velocity of all particles of the group [rad/s].
 Vec3 Group::common_angular_velocity() const {
   const std::vector<Real>& given = table_.reals("angular_velocity");
   if (given.empty()) return {};
@@ -315,7 +314,7 @@ Vec3 Group::common_angular_velocity() const {
   return axes == 1 ? Vec3{0, 0, given[0]} : Vec3{given[0], given[1], given[2]};
 }
 
-// I / (m R^2); empty: of solid spheres, or discs.
+// I / (m R^2); empty: solid spheres or discs.
 std::vector<Real> Group::inertia_factors() const {
   if (has_column("inertia_factor")) {
     if (table_.has("inertia_factor"))
@@ -326,7 +325,7 @@ std::vector<Real> Group::inertia_factors() const {
   return std::vector<Real>(static_cast<std::size_t>(part_.size()), table_.real("inertia_factor"));
 }
 
-// What stands already where a random group is placed: all ranks' particles and the bodies' shapes.
+// The items that a random group must avoid: all ranks' particles and the bodies' shapes.
 std::vector<StartItem> placed_items(const Model& model, const Share& share) {
   std::vector<StartItem> items;
   for (std::size_t i = 0; i < model.particles.size(); ++i)
@@ -338,13 +337,13 @@ std::vector<StartItem> placed_items(const Model& model, const Share& share) {
   return items;
 }
 
-// The ids of `range` that are in a group whose first particle has the id `first`, counted in the group.
+// The part of `range` in a group whose first particle has the id `first`, as indices within the group.
 IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
   const auto within = [&](GlobalId id) { return std::clamp<GlobalId>(id - first, 0, count); };
   return {within(range.first), within(range.last)};
 }
 
-// Those of random groups and all that stand before the last of them, which they keep clear of.
+// Number of particles of random groups and of all groups before the last of them, which they must avoid.
 std::int64_t places_found(const std::vector<Group>& groups) {
   std::int64_t before = 0, places = 0;
   for (const Group& group : groups) {
@@ -354,7 +353,7 @@ std::int64_t places_found(const std::vector<Group>& groups) {
   return places;
 }
 
-// A group without a name goes by its number in outputs: no other may have that for a name.
+// A group without a name has its number as name in outputs, which no other group may have.
 void check_group_names(const std::vector<DeckTable>& tables) {
   std::set<std::string> numbers;
   for (std::size_t k = 0; k < tables.size(); ++k)
@@ -369,7 +368,7 @@ void check_group_names(const std::vector<DeckTable>& tables) {
 
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
                      const Share& share, Log& log) {
-  // Counts of 10^9 a group are far from overflow, whatever number of groups a deck can have.
+  // Counts of 10^9 per group cannot overflow for any number of groups that a deck can have.
   std::vector<Group> groups;
   std::int64_t count = 0;
   share.together([&] {

@@ -1,4 +1,4 @@
-// The integrator and the steps: what the deck names, and what is chosen where it leaves that out.
+// The integrator and the steps: as given in the deck, otherwise chosen.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace scree {
 
 namespace {
 
-// More cannot be meant, and counts of them must stay exact.
+// Larger numbers are mistakes; below this limit counts are exact.
 constexpr Real kMostSteps = 1e12;
-// From so many particles that may touch on, explicit steps cost less than implicit ones that adapt: something
-// is in contact at all times then, and friction makes an implicit step cost more.
+// From this number of particles that may touch on, explicit steps cost less than adaptive implicit ones: some
+// contact is closed at all times, and friction makes implicit steps more expensive.
 constexpr std::int64_t kManyParticles = 50, kManyWithFriction = 20;
 
-// Short enough for any contact; from there on the step control goes by the error [s].
+// Short enough for any contact; afterwards the error controls the step [s].
 Real first_step(const Model& model) {
   constexpr Real kShareOfContact = 0.05, kShareOfRun = 1e-3;
   const std::optional<PairLimit> shortest = shortest_contact(pair_limits(model));
@@ -29,13 +29,13 @@ Real first_step(const Model& model) {
   return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
 }
 
-// Longest of steps that adapt [s].
+// Largest adaptive step [s].
 Real longest_step(const Model& model) {
   constexpr Real kShareOfRun = 1e-2;
   return std::min(kShareOfRun * model.time.end, unnoticed_step(model));
 }
 
-// Particles of materials that interact with something that they can meet.
+// Number of particles whose material interacts with another that it can meet.
 std::int64_t touching_particles(const Model& model) {
   std::vector<bool> touches(static_cast<std::size_t>(model.contact.materials()), false);
   for (const PairLimit& limit : pair_limits(model))
@@ -51,7 +51,7 @@ struct IntegratorChoice {
   std::string reason;
 };
 
-// The integrator that follows from given keys which one of the two has alone; nothing without such keys.
+// The integrator that follows from keys that only one of the two supports; empty without such keys.
 std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Model& model) {
   const DeckTable &time = deck.table("time"), &method = deck.table("integrator");
   const auto with = [](ParticleIntegrator integrator, const std::string& key) {
@@ -70,7 +70,7 @@ std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Mod
 }
 
 IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
-  if (model.particles.totals.count == 0) return {};  // no reason without particles
+  if (model.particles.totals.count == 0) return {};  // without particles there is no reason
   if (const auto named = named_otherwise(deck, model)) return *named;
   const std::int64_t touching = touching_particles(model);
   if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
@@ -121,7 +121,7 @@ void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
                        std::vector<ChosenValue>& chosen) {
   if (!deck.table("integrator").is_automatic("particles")) return;
   IntegratorChoice choice = fitting_integrator(deck, model);
-  // Trials may round otherwise on other hosts.
+  // Trials may round differently on other hosts.
   const bool is_explicit = share.max(choice.integrator == ParticleIntegrator::velocity_verlet ? 1 : 0) > 0;
   if (is_explicit) choice.integrator = ParticleIntegrator::velocity_verlet;
   model.integrator.particles = choice.integrator;
@@ -164,7 +164,7 @@ Real chosen_step(const Model& model, const Share& share, std::vector<ChosenValue
   if (longest.step == kInfinity)
     longest = {two_digits_below(kShareOfRun * model.time.end),
                "a thousandth of the run, as nothing bounds it"};
-  // Trials may round otherwise on other hosts. A run shorter than a step is one step.
+  // Trials may round differently on other hosts. A run shorter than a step is one step.
   longest.step = std::min(share.max(longest.step), model.time.end);
   chosen.push_back({"time", "step", longest.step, longest.reason});
   return longest.step;

@@ -1,4 +1,4 @@
-// What snapshots tell of the triangles of meshes, and what wears there.
+// Fields of the triangles of meshes in snapshots, and wear.
 #include <fmt/format.h>
 
 #include <algorithm>

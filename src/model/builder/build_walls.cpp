@@ -1,4 +1,4 @@
-// Walls inside the space, and how they move.
+// Walls inside the domain, and their motions.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace scree {
 
 namespace {
 
-// Of any length but 0 in the deck.
+// Normalizes a vector that may have any length but 0 in the deck.
 Vec3 unit_vector(const DeckTable& table, const std::string& key) {
   const Vec3 a = table.vector(key);
   if (norm(a) == 0) table.fail(key, "must not be 0");
@@ -36,8 +36,8 @@ WallMotion build_wall_motion(const DeckTable& table, int dimension) {
           build_motion(table.table("angle"))};
 }
 
-// A plane that is not parallel to a periodic axis would not go on where particles do that go through a side:
-// they would be behind it, or no longer at it, at once.
+// Throws InputError for a plane that is not parallel to a periodic axis: it would not continue across the
+// periodic side, and a particle that crosses the side would be behind it or away from it at once.
 void check_periodic_axes(const DeckTable& table, const Wall& wall, const Space& space) {
   constexpr Real kRoundOff = 1e-12;
   for (int k = 0; k < space.dimension; ++k) {
@@ -59,7 +59,7 @@ void check_periodic_axes(const DeckTable& table, const Wall& wall, const Space& 
   }
 }
 
-// A surface runs along itself: what its velocity has across a plane would act on nothing.
+// Throws InputError where the surface velocity of a plane has a normal component, which would have no effect.
 void check_runs_along(const DeckTable& table, const Wall& wall) {
   constexpr Real kRoundOff = 1e-9;
   const Vec3 v = wall.surface_velocity;

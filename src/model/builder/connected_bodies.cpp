@@ -1,4 +1,4 @@
-// Which bodies joints and force elements connect, hold and prescribe.
+// Bodies that joints and force elements connect, hold or prescribe.
 #include <algorithm>
 #include <array>
 
@@ -22,7 +22,7 @@ std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
 
 namespace {
 
-// Which bodies chains of these links connect with the ground.
+// Whether each body is connected to the ground through these pairs.
 std::vector<bool> reached_from_ground(const Model& model, const std::vector<std::array<int, 2>>& links) {
   std::vector<bool> held(model.bodies.size());
   const auto is_held = [&](int body) { return body == kGround || held[static_cast<std::size_t>(body)]; };
@@ -38,7 +38,7 @@ std::vector<bool> reached_from_ground(const Model& model, const std::vector<std:
 
 }  // namespace
 
-// A torsional spring holds no body where it is.
+// A torsional spring does not hold a body's position.
 std::vector<bool> held_bodies(const Model& model) {
   std::vector<std::array<int, 2>> links;
   const auto add = [&](const auto& elements) {

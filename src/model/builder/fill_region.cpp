@@ -20,8 +20,8 @@ namespace {
 Vec3 smaller(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3 larger(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-// Whether every edge has an even number of triangles: a ray then crosses the surface as often as it enters
-// and leaves what it encloses.
+// Whether every edge has an even number of triangles, so that the parity of a ray's crossings tells inside
+// from outside.
 bool is_closed(const TriangleMesh& mesh) {
   std::vector<std::pair<Index, Index>> edges;
   for (const std::array<Index, 3>& v : mesh.triangles)
@@ -35,13 +35,13 @@ bool is_closed(const TriangleMesh& mesh) {
   return true;
 }
 
-// A body that a mesh is on, or the ground, and the mesh's origin in the body's frame [m].
+// A body with the mesh, or the ground, and the mesh's origin in the body's frame [m].
 struct MeshPlace {
   int body = kGround;
   Vec3 offset;
 };
 
-// Where the mesh is on this body; its frame, if the body does not have the mesh.
+// Origin of the mesh on this body; that of the body's frame where the body does not have the mesh.
 Vec3 offset_on(const Model& model, int body, int mesh) {
   const Body& of = model.bodies[static_cast<std::size_t>(body)];
   for (const auto* meshes : {&of.meshes, &of.drawn_meshes})
@@ -69,7 +69,8 @@ MeshPlace place_of(const DeckTable& table, const Model& model, const ModelNames&
   return {bodies.front(), offset_on(model, bodies.front(), mesh)};
 }
 
-// Whether its inside is matter for particles, being a solid on a wall or a body that collides.
+// Whether the mesh's inside is solid for particles: it is a closed surface on a wall or on a body that
+// collides.
 bool is_matter(const Model& model, int mesh) {
   const auto has_mesh = [&](const auto& of) { return of.mesh == mesh; };
   return !model.meshes[static_cast<std::size_t>(mesh)].surface->sheet &&
@@ -78,7 +79,7 @@ bool is_matter(const Model& model, int mesh) {
                               [&](const Body& body) { return std::ranges::any_of(body.meshes, has_mesh); }));
 }
 
-// Whether a sphere at p, in the frame of the mesh, is inside and reaches no triangle.
+// Whether a sphere at p, in the frame of the mesh, is inside and touches no triangle.
 bool lies_inside(const MeshView& mesh, Vec3 p, Real radius) {
   bool reaches = false;
   for_each_triangle_near(mesh, p, radius, [&](Index t) {
@@ -89,8 +90,8 @@ bool lies_inside(const MeshView& mesh, Vec3 p, Real radius) {
   return !reaches && is_inside(mesh, p);
 }
 
-// The points that a body's inside is between, in its frame [m]: the centres of its shapes and the vertices of
-// its meshes.
+// The points whose convex hull bounds a body's inside, in its frame [m]: the centres of its shapes and the
+// vertices of its meshes.
 std::vector<Vec3> points_of(const Model& model, const Body& body) {
   std::vector<Vec3> points;
   for (const Shape& shape : body.shapes) points.push_back(shape.offset);
@@ -100,7 +101,7 @@ std::vector<Vec3> points_of(const Model& model, const Body& body) {
   return points;
 }
 
-// In 2D the hull is upright.
+// In 2D the hull is a prism along z.
 std::vector<Vec3> standing(const std::vector<Vec3>& points) {
   std::vector<Vec3> upright;
   for (const Vec3 p : points) upright.push_back({p.x, p.y, -1}), upright.push_back({p.x, p.y, 1});
@@ -108,7 +109,7 @@ std::vector<Vec3> standing(const std::vector<Vec3>& points) {
 }
 
 struct Plane {
-  Vec3 point, normal;  // unit, outward
+  Vec3 point, normal;  // normal: unit vector, outward
 };
 
 std::vector<Plane> planes_of(const TriangleMesh& hull, int dimension) {
@@ -123,7 +124,7 @@ std::vector<Plane> planes_of(const TriangleMesh& hull, int dimension) {
   return planes;
 }
 
-// A unit vector across a unit vector.
+// A unit vector perpendicular to a unit vector.
 Vec3 perpendicular_to(Vec3 axis) {
   const Vec3 a{std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)};
   const Vec3 least = a.x <= a.y && a.x <= a.z ? Vec3{1, 0, 0} : a.y <= a.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
@@ -150,7 +151,7 @@ FillRegion::FillRegion(const DeckTable& table, const Model& model, const ModelNa
   if (mesh) add_mesh(table, model, names);
   if (body && !mesh) add_body(table, model, names);
   add_box(table);
-  // A box that cuts off most of an oblique cylinder is the smaller one.
+  // A box that contains little of an oblique cylinder is the better drawing region.
   constexpr Real kMuch = 0.9;
   const Vec3 extent = max_ - min_;
   if (drawn_ && drawn_->volume > kMuch * extent.x * extent.y * extent.z) drawn_.reset();
@@ -174,7 +175,8 @@ PackingBox FillRegion::packing(Real gap, std::int64_t tries) const {
 
 Real FillRegion::share(const IsFree& is_free) const {
   constexpr int kPoints = 20000;
-  const Real point = 1e-9 * norm(max_ - min_);  // so small a sphere, as surfaces do not count points
+  const Real point =
+      1e-9 * norm(max_ - min_);  // a very small sphere, as overlaps with surfaces need a radius
   RandomNumbers random(1);
   int found = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -199,7 +201,7 @@ void FillRegion::stay_within_points(const std::vector<Vec3>& points) {
   stay_within(min, max);
 }
 
-// A box alone may be outside the space, as the space's own checks say.
+// A plain box may extend beyond the domain; the checks of positions report it.
 void FillRegion::add_box(const DeckTable& table) {
   if (is_box()) {
     min_ = table.vector("min"), max_ = table.vector("max");

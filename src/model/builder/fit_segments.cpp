@@ -21,7 +21,7 @@ Real smallest_of(const DeckTable& group, int dimension) {
   return std::ranges::min(file.read({0, file.count()}).at("radius"));
 }
 
-// The largest circle of a round shape; 0 of others [m].
+// Radius of the largest circle of a round shape; 0 for others [m].
 Real largest_circle(const DeckTable& mesh) {
   switch (mesh.choice<MeshKind>("kind")) {
     case MeshKind::plate:

@@ -21,7 +21,7 @@ herr_t find_lock_error(unsigned, const H5E_error2_t* error, void* number) {
   return 0;
 }
 
-// Whether the library could not lock a file, though nobody else has locked it.
+// Whether the library failed to lock a file that nobody else has locked.
 bool lacks_locks() {
   constexpr std::array kHeld = {0, EWOULDBLOCK, EAGAIN, EACCES};
   int number = 0;
@@ -39,7 +39,8 @@ hid_t open_once(const std::string& path, Hdf5Open how, hid_t access, hid_t creat
 hid_t open_hdf5(const std::string& path, Hdf5Open how, hid_t access, hid_t creation) {
   const hid_t file = open_once(path, how, access, creation);
   if (file >= 0 || !lacks_locks()) return file;
-  if (how == Hdf5Open::create) unlink(path.c_str());  // made before it could not be locked
+  if (how == Hdf5Open::create)
+    unlink(path.c_str());  // the library creates the file before it tries to lock it
   H5Pset_file_locking(access, false, true);
   return open_once(path, how, access, creation);
 }

@@ -24,7 +24,7 @@ Vec3 size_of(const DeckTable& table, std::size_t entries) {
 
 Index segments_of(const DeckTable& table) { return static_cast<Index>(table.integer("segments")); }
 
-// The keys of a pipe and a screw are called otherwise in the deck than in their shapes.
+// The deck's names of the dimensions of a pipe and a screw differ from those of their shapes.
 void check_smaller(const DeckTable& table, const std::string& key, const std::string& than) {
   if (!(table.real(key) < table.real(than)))
     table.fail(key, fmt::format("must be below {} = {}", than, table.real(than)));
@@ -64,7 +64,7 @@ ScrewShape screw_of(const DeckTable& table) {
           segments_of(table)};
 }
 
-// Points on the segments, so that none of these is longer than `longest` [m].
+// Points with intermediate points on the segments, so that no segment is longer than `longest` [m].
 std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool closed, Real longest) {
   std::vector<Vec3> all;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -77,7 +77,7 @@ std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool clos
   return all;
 }
 
-// Checked but for whether they cross themselves.
+// Points of a line, with all checks except for self-intersection.
 const std::vector<Vec3>& line_points(const DeckTable& table) {
   const std::vector<Vec3>& points = table.vectors("points");
   const bool closed = table.boolean("closed");
@@ -174,7 +174,7 @@ MadeMesh made(const DeckTable& table, Real half_depth) {
   return {line_of(table, half_depth), std::nullopt};
 }
 
-// Factors along the axes of what is drawn. One that mirrors turns the windings, which run the other way then.
+// Factors along the axes of the generated mesh. A mirroring factor reverses the orientation of its triangles.
 Vec3 size_factors(const DeckTable& table, TriangleMesh& mesh) {
   const Real scale = table.has("scale") ? table.real("scale") : 1;
   if (!table.has("stretch")) return {scale, scale, scale};

@@ -24,7 +24,7 @@ std::string text_of(const DeckValue& value) {
   throw std::logic_error("mixing: a value of another type");
 }
 
-// A pair that is being made of two like ones.
+// A pair that is combined from the pairs of two materials with themselves.
 class Combination {
  public:
   Combination(const DeckTable& contact, const LikePairs& like, const std::string& name_a,
@@ -81,7 +81,7 @@ void Combination::fail(const DeckTable& at, const std::string& key, const std::s
                            problem, pair_text(name_a_, name_b_)));
 }
 
-// Whether the two have the key, or neither.
+// Whether both pairs have the key, or neither.
 bool Combination::both(const char* key) const {
   if (a_.has(key) == b_.has(key)) return a_.has(key);
   const bool in_a = a_.has(key);
@@ -122,7 +122,7 @@ void Combination::take_stiffness() {
     set_series("stiffness", a_.real("stiffness"), b_.real("stiffness"), a_.real("exponent"));
 }
 
-// Without a restitution, and with no damping, a contact has one of 1.
+// A contact without restitution and damping has a restitution of 1.
 void Combination::take_damping() {
   const bool rebounds = a_.has("restitution") || b_.has("restitution");
   for (const DeckTable* pair : {&a_, &b_})
@@ -137,7 +137,7 @@ void Combination::take_damping() {
   take_mean("damping");
 }
 
-// One that is left out follows from a linear stiffness, as does that of the combined pair where both are.
+// Left out, it follows from a linear stiffness; left out in both pairs, so does that of the combined pair.
 void Combination::take_tangential_stiffness() {
   const char* key = "tangential_stiffness";
   if (!a_.has(key) && !b_.has(key)) return;
@@ -150,7 +150,7 @@ void Combination::take_tangential_stiffness() {
   set_series(key, of(a_, b_), of(b_, a_));
 }
 
-// Where it is left out and something resists rolling it is the friction.
+// Left out, with rolling resistance, it equals the friction.
 void Combination::take_twisting() {
   const char* key = "twisting_friction";
   if (!a_.has(key) && !b_.has(key)) return;
@@ -165,7 +165,7 @@ void Combination::take_twisting() {
   set(key, mixed(rule_, of(a_), of(b_)));
 }
 
-// Of the works of adhesion; the geometric mean is that of surfaces with dispersion forces alone (Girifalco
+// Mean of the works of adhesion; the geometric mean holds for surfaces with dispersion forces only (Girifalco
 // and Good, J. Phys. Chem. 61, 1957).
 void Combination::take_adhesion() {
   const auto has_work = [](const DeckTable& pair) {

@@ -25,8 +25,8 @@ std::vector<std::string> known_columns(int dimension) {
   return {"x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "radius", "mass", "inertia_factor"};
 }
 
-// Cells of a line of CSV, without the blanks around them: commas between, a cell in quotes may hold commas,
-// and two quotes for one (RFC 4180).
+// Cells of a CSV line, without blanks around them. Cells are separated by commas; a quoted cell may contain
+// commas, and two quotes stand for one (RFC 4180).
 std::vector<std::string> split_line(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -50,7 +50,7 @@ std::vector<std::string> split_line(const std::string& line) {
   return cells;
 }
 
-// What separates columns in the place of commas; "" where nothing seems to.
+// The separator that the file uses in place of commas; "" where none is recognised.
 std::string separator_of(const std::string& cell) {
   return cell.find(';') != cell.npos             ? "semicolons"
          : cell.find('\t') != cell.npos          ? "tabs"
@@ -59,7 +59,7 @@ std::string separator_of(const std::string& cell) {
                                                  : "blanks";
 }
 
-// Nothing where the cell is no number. std::from_chars() reads no sign above 0.
+// Empty where the cell is not a number. std::from_chars() does not accept a plus sign.
 std::optional<Real> number_of(const std::string& cell) {
   Real value = 0;
   const char* const begin = cell.data() + (cell.size() > 1 && cell[0] == '+' && cell[1] != '-' ? 1 : 0);
@@ -76,7 +76,7 @@ bool is_positive(const std::string& column) {
   return column == "radius" || column == "mass" || column == "inertia_factor";
 }
 
-// What is wrong with a value, or "".
+// The error of a value, or "".
 std::string value_trouble(const std::string& column, Real value) {
   if (column == "inertia_factor" && value > 1) return "must be at most 1, all mass at the radius";
   if (std::isfinite(value) && (!is_positive(column) || value > 0)) return "";
@@ -121,11 +121,11 @@ class CsvTable {
   explicit CsvTable(const std::string& path) : path_(path), file_(path) {
     if (!file_) throw IoError(path + ": cannot be read");
   }
-  // The next line that says something, as cells; false at the end.
+  // Reads the cells of the next line that is neither empty nor a comment; false at the end.
   bool next(std::vector<std::string>& cells) {
     for (std::string line; std::getline(file_, line);) {
       ++number_;
-      constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets begin with it
+      constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it first
       if (number_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
       cells = split_line(line);
       if (!cells.front().starts_with("#") && !(cells.size() == 1 && cells.front().empty())) return true;
@@ -191,7 +191,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// The library prints no errors while this lives: they become exceptions.
+// Suppresses the library's error output while it exists: errors become exceptions.
 class QuietHdf5 {
  public:
   QuietHdf5() {
@@ -216,8 +216,7 @@ Handle open_file(const std::string& path) {
   throw InputError(fmt::format("{}: dataset {} must hold numbers, one per particle", path, name));
 }
 
-// Files that the program has written itself: what to do in the place of giving them as particles; "" of
-// others.
+// Advice for files that Scree has written; "" for others.
 std::string advice_of_own(hid_t file) {
   constexpr const char* kSettled =
       "scree.packing.settled in Python makes particle files of a run's last snapshot, with what a deck says "
@@ -229,7 +228,7 @@ std::string advice_of_own(hid_t file) {
   return "";
 }
 
-// Lengths of the columns that the file has.
+// Lengths of the file's columns.
 std::map<std::string, std::int64_t> look_through_hdf5(const std::string& path, int dimension) {
   const QuietHdf5 quiet;
   const Handle file = open_file(path);

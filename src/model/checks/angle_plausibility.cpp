@@ -41,7 +41,7 @@ class Search {
         given.place, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
         value * kTurn / 360));
   }
-  // Whether what stands in the table is of an angle of its joint.
+  // Whether the values of the table refer to an angle of its joint.
   bool is_of_angle(const DeckTable& table) const {
     for (const DeckTable& joint : deck_.tables("joints")) {
       if (joint.text("name") != table.text("joint")) continue;
@@ -49,7 +49,7 @@ class Search {
       const std::vector<JointCoordinate> own = coordinates_of(joint.choice<JointKind>("type"));
       return !own.empty() && is_angle(own.front());
     }
-    return false;  // one of a row
+    return false;  // belongs to a row
   }
 
   const DeckTable& deck_;

@@ -12,7 +12,8 @@ namespace scree {
 
 namespace {
 
-// Adds the contact of a particle of this size. Particles see a body as unmovable in their damping.
+// Adds the contact of a particle of this size. In the particle's damping the mass of the body counts as
+// infinite.
 void add_contact(const Model& model, int particles, int surface, Real radius, Real surface_radius, Real mass,
                  PressedBody& body) {
   const KelvinVoigt& law = model.contact.law(particles, surface);
@@ -38,12 +39,13 @@ void add_contacts(const Model& model, int surface, Real radius, PressedBody& bod
   }
 }
 
-// prescribed: no contact moves it.
+// prescribed: contacts do not move the body.
 PressedBody pressed_body(const Model& model, const Body& body, bool prescribed) {
   PressedBody pressed;
   pressed.mass = body.mass;
-  const bool is_planar = body.kind == BodyKind::planar;  // it turns about z alone
-  Real arm = 0;  // of the farthest push; discs and spheres without friction are pushed through their centres
+  const bool is_planar = body.kind == BodyKind::planar;  // it rotates about z only
+  Real arm = 0;  // longest lever arm of a contact force; forces on discs and spheres without friction act
+                 // through their centres
   for (const Shape& shape : body.shapes) {
     if (!prescribed) add_contacts(model, shape.material, shape.radius, pressed);
     const Real offset = is_planar ? std::hypot(shape.offset.x, shape.offset.y) : norm(shape.offset);
@@ -65,7 +67,7 @@ Real triangle_area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
   return norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
 }
 
-// [m^2]; in two dimensions, where a surface is a line, [m].
+// Area of the surface [m^2]; in two dimensions length [m].
 Real surface_of(const Model& model, const Body& body, Real particle_radius) {
   const bool discs = model.space.dimension == 2;
   Real size = 0;
@@ -105,7 +107,7 @@ std::int64_t most_contacts(const Model& model, int body) {
   const Real r = totals.smallest_radius;
   if (!(r > 0)) return 0;
   const Real size = surface_of(model, model.bodies[static_cast<std::size_t>(body)], r);
-  // Size that one particle takes in the densest layer.
+  // Area, or length, per particle in the densest layer.
   const Real of_one = model.space.dimension == 2 ? 2 * r : 2 * std::sqrt(Real(3)) * r * r;
   const Real most = std::ceil(size / of_one);
   return most < static_cast<Real>(totals.count) ? std::max<std::int64_t>(1, std::llround(most))

@@ -1,4 +1,4 @@
-// Functions of time given as tables: do they cover the run, and does a spline go where no value is?
+// Checks functions of time given as tables: that they cover the run, and whether a spline overshoots.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 constexpr Real kNoticeable = 0.01;  // of a table's range
-// The others are forces and commands, which are read linearly unless they say otherwise.
+// The motions; all other keys are forces and commands, whose default interpolation is linear.
 constexpr std::array<std::string_view, 5> kMotions = {"motion", "displacement", "angle", "position",
                                                       "length"};
 

@@ -1,4 +1,4 @@
-// Whether drivers and cylinders ask for distances that two points can have.
+// Warns where drivers and cylinders prescribe impossible distances of two points.
 #include <fmt/format.h>
 
 #include <string>
@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// Instants at which a length is looked at: many equal ones, and those of the function [s].
+// Times at which a length is evaluated: many equidistant ones, and those of the function [s].
 std::vector<Real> instants_of(const TimeFunction& function, Real end) {
   constexpr int kParts = 1000;
   std::vector<Real> instants;

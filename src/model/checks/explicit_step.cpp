@@ -24,7 +24,7 @@ std::string pair_name(const Model& model, const PairLimit& limit) {
                      names[static_cast<std::size_t>(limit.material[1])]);
 }
 
-// Keeps the shortest.
+// Keeps the smaller step.
 void bound(ExplicitStep& step, Real by, const std::string& reason) {
   if (by < step.step) step = {by, reason};
 }
@@ -34,8 +34,8 @@ bool has_neck(const Model& model, const PairLimit& limit) {
   return law.neck && law.attracts();
 }
 
-// Phase of oscillation by which bodies on the corners of their meshes may advance in a step [rad]: a body
-// that joints hold may never lie on a plane.
+// Allowed phase per step of a body's oscillation on the vertices of its mesh [rad]: a body that joints hold
+// may never lie on a plane.
 Real corner_phase(bool held) { return held ? kMostBodyPhase : kGoodBodyPhase; }
 
 void bound_by_bodies(const Model& model, ExplicitStep& step) {
@@ -48,7 +48,7 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
       bound(step, phase / frequency,
             fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
   }
-  // A loaded body steps with the particles.
+  // A loaded body takes the steps of the particles.
   if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
     bound(step, substeps * loaded->step,
           fmt::format(
@@ -65,7 +65,7 @@ void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& 
     bound(step, substeps * kNeckShare * limit.contact_time,
           fmt::format("{:g} of the shortest contact of {}, whose necks let go within a small part of it",
                       kNeckShare, name));
-  // Trials take a while: where the step is short enough they need not say how long it might be.
+  // Trials are expensive: where the step is short enough, the longest good step need not be found.
   if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kGoodRebound) return;
   bound(
       step, substeps * trials.good_step(limit),
@@ -75,11 +75,11 @@ void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& 
 }  // namespace
 
 Real two_digits_below(Real x) {
-  if (!std::isnormal(x)) return x;  // of partners whose mass or size is next to nothing
+  if (!std::isnormal(x)) return x;  // from partners of negligible mass or size
   constexpr Real kRoundOff = 1e-12;
   const int exponent = static_cast<int>(std::floor(std::log10(x))) - 1;
   const Real digits = std::floor(x / std::pow(Real(10), exponent) * (1 + kRoundOff));
-  return std::stod(fmt::format("{:.0f}e{}", digits, exponent));  // what a deck that names it reads
+  return std::stod(fmt::format("{:.0f}e{}", digits, exponent));  // the value that a deck with this text has
 }
 
 ExplicitStep longest_explicit_step(const Model& model) {
@@ -93,7 +93,7 @@ ExplicitStep longest_explicit_step(const Model& model) {
   for (const PairLimit& limit : pairs) bound_by_pair(model, trials, limit, step);
   if (step.step == kInfinity) return step;
   step.step = two_digits_below(step.step);
-  // Errors mostly fall with the step, not always.
+  // Errors usually, but not always, decrease with the step.
   constexpr int kMostTries = 10;
   constexpr Real kShorter = 0.8;
   const auto errs = [&](const PairLimit& limit) {

@@ -36,7 +36,7 @@ Real ImpactSpeeds::of(const PairLimit& limit) const {
     speed = model_.particles.totals.most_radii_per_second * model_.particles.totals.smallest_radius;
   if (uses_[a].shapes + uses_[b].shapes + uses_[a].meshes + uses_[b].meshes > 0)
     for (const Body& body : model_.bodies) speed = std::max(speed, norm(body.velocity));
-  // Grains fall on such as lie on a floor already, of whatever material that is.
+  // Particles fall onto particles that lie on a floor, of any material.
   if (floor_ && particles) speed = std::hypot(speed, fall_speed(norm(model_.gravity), fall_height(model_)));
   return speed + (particles ? fastest_ : std::max(surfaces_[a], surfaces_[b]));
 }

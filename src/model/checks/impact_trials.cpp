@@ -16,18 +16,18 @@
 namespace scree {
 namespace {
 
-// The smallest and lightest things of one material.
+// The smallest and lightest objects of one material.
 struct Partner {
   Real radius = kInfinity, mass = kInfinity;  // [m], [kg]
   bool is_particle = false;
   Real inertia_factor = 0;  // of a particle, I / (m R^2)
 };
 
-// Two that can meet, particles before bodies before walls; i is never a wall.
+// Two objects that can meet; particles come before bodies, bodies before walls. i is never a wall.
 struct Partners {
   Partner i, j;
 
-  // As the law sees them: bodies that particles touch count as unmovable.
+  // Sizes for the law: bodies in contact with particles have infinite mass.
   PairSize size() const {
     const bool beside_particle = i.is_particle && !j.is_particle;
     return {i.radius, j.radius, i.mass, beside_particle ? kInfinity : j.mass};
@@ -49,7 +49,7 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
   };
   const auto body = [&](int side) {
     const Real of_spheres = use(side).smallest_radius;
-    const Real mass = use(side).smallest_body_mass;  // 0: none that gives way
+    const Real mass = use(side).smallest_body_mass;  // 0: all have infinite mass
     return Partner{of_spheres > 0 ? of_spheres : use(side).smallest_corner_radius,
                    mass > 0 ? mass : kInfinity, false};
   };
@@ -63,19 +63,19 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
   return {body(side), use(1 - side).shapes > (same ? 1 : 0) ? body(1 - side) : Partner{}};
 }
 
-// fastest: at which the two may meet. Where the force is linear any speed will do: one at which the two stay
-// as they lie to each other.
+// fastest: largest speed at which the two may meet. Where the force is linear any speed is equivalent; one
+// with small rotations is used.
 Real trial_speed(Real fastest, const KelvinVoigt& law, const Partners& two) {
-  constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlaps over the radius
+  constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlap over radius
   const auto speed = [&](Real share) { return overlapping_speed(law, two.mass(), share * two.radius()); };
   if (law.exponent == 1) return speed(kLinear);
   return fastest > 0 ? std::min(fastest, speed(kMost)) : speed(kAtRest);
 }
 
-// The step at which the local error of an impact in the middle of its acceleration is the tolerance.
+// The step at which the local error of an impact, in the middle of its acceleration, equals the tolerance.
 Real typical_adaptive_step(const Model& model, const Partners& two, Real speed, Real touch) {
   const Real frequency = std::numbers::pi_v<Real> / touch, jerk = frequency * frequency * speed;
-  Real most = 0;  // of i's and j's jerk over its radius
+  Real most = 0;  // jerk of i and j over the radius
   for (const Partner& one : {two.i, two.j})
     if (one.mass < kInfinity) most = std::max(most, jerk * two.mass() / (one.mass * one.radius));
   const HhtCoefficients hht = hht_coefficients(model.integrator.hht_alpha);
@@ -94,19 +94,19 @@ void judge(StepTrial& trial, const auto& trials) {
   if (trial.adaptive_step > 0) trial.adaptive_error = trials.with(trial.adaptive_step).error();
 }
 
-// Far enough from the normal for a slide and near enough for it to end: what slides all the time leaves as
-// Coulomb's law says, whatever the steps are.
+// An angle at which sliding occurs and ends: a contact that slides throughout follows Coulomb's law at any
+// step size.
 Real incidence(Real friction) { return std::min(std::atan(2 * friction), std::numbers::pi_v<Real> / 4); }
 
-// How the lightest partners of a pair are tried.
+// Parameters of the trial of a pair's lightest partners.
 struct Setup {
   Partners two;
-  Real speed, touch;   // of approach [m/s]; without damping, about [s]
+  Real speed, touch;   // approach speed [m/s]; contact time, approximately, without damping [s]
   Real incidence = 0;  // [rad]; 0: without friction
   TrialImpact impact{};
 };
 
-// What trials of all pairs have in common.
+// Data shared by the trials of all pairs.
 struct Field {
   explicit Field(const Model& of) : model(of), uses(material_uses(of)), speeds(of), laws(of.contact) {}
 
@@ -120,7 +120,7 @@ std::size_t pair_of(const Field& field, const PairLimit& limit) {
   return static_cast<std::size_t>(limit.material[0] * field.model.contact.materials() + limit.material[1]);
 }
 
-// Returns what use(law, setup) returns, the same type for every law.
+// Returns the result of use(law, setup), which has one type for all laws.
 template <class Use>
 auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
   const Partners two = lightest_partners(field.model, field.uses, limit);
@@ -136,7 +136,7 @@ auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
   });
 }
 
-// Returns what use(trials) returns for the Trials of velocity-verlet, whatever the model's integrator is.
+// Returns the result of use(trials) with the Trials of velocity-verlet, whatever the model's integrator is.
 template <class Use>
 auto with_explicit_trials(const Field& field, const PairLimit& limit, const Use& use) {
   return with_setup(field, limit, [&]<class Law>(const Law& law, const Setup& setup) {
@@ -145,8 +145,8 @@ auto with_explicit_trials(const Field& field, const PairLimit& limit, const Use&
   });
 }
 
-// All that the trial of a pair depends on beside the model's step and integrator. The bindings name every
-// member: one more does not compile without its place here.
+// All data on which the trial of a pair depends, besides the model's step and integrator. The structured
+// bindings name every member, so that a new member does not compile until it is added here.
 using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
@@ -167,7 +167,7 @@ TrialKey key_of(const Field& field, const PairLimit& limit) {
   return key;
 }
 
-// What a function of a trial gives, found once for pairs that are alike.
+// Caches a function of a trial for pairs with equal data.
 template <class Result>
 class Remembered {
  public:
@@ -197,7 +197,7 @@ void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTr
   }
 }
 
-// The trial of a pair in the steps of the model's integrator.
+// Trial of a pair in the steps of the model's integrator.
 StepTrial try_pair(const Field& field, const PairLimit& limit) {
   const Model& model = field.model;
   const Real fastest = field.speeds.of(limit);

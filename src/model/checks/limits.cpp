@@ -15,13 +15,13 @@ void take_smaller(Real& smallest, Real value) {
   if (smallest == 0 || value < smallest) smallest = value;
 }
 
-// Mass of the relative motion [kg].
+// Reduced mass [kg].
 Real smallest_reduced_mass(const PairSize& size) {
   if (size.mass_i == kInfinity || size.mass_j == kInfinity) return std::min(size.mass_i, size.mass_j);
   return reduced_mass(size.mass_i, size.mass_j);
 }
 
-// What a pair of materials does to particles; stiffnesses as in PairLimit.
+// Largest stiffnesses that a pair of materials causes for particles, as in PairLimit.
 struct PairSprings {
   const KelvinVoigt& law;
   Friction friction;
@@ -30,7 +30,7 @@ struct PairSprings {
   Real smallest_radius;                               // [m]
 };
 
-// Springs and dashpots alike have their fastest modes; that both are of one mode is the worst.
+// Springs and dashpots are taken at their highest modes; the worst case is that both belong to one mode.
 Real rubbing_step(const PairSprings& pair, const MaterialUse& use, int dimension, bool dense) {
   const Real mass = use.smallest_particle_mass, inertia_share = use.smallest_inertia_factor;
   const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_share));
@@ -49,8 +49,8 @@ Real rubbing_step(const PairSprings& pair, const MaterialUse& use, int dimension
                              root_of_decay * root_of_decay);
 }
 
-// Of the lightest particle of use `use`: in a dense packing of such particles, or, where the other material
-// has none, at a wall or body.
+// Step limit for the lightest particle of use `use`: in a dense packing of such particles or, where the other
+// material has no particles, on a wall or body.
 Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const PairSprings& pair) {
   if (use.particles == 0) return 0;
   const Real mass = use.smallest_particle_mass;
@@ -65,7 +65,7 @@ bool has_material(const Parts& parts, int material) {
   return std::ranges::any_of(parts, [&](const auto& part) { return part.material == material; });
 }
 
-// Whether a body with a shape of material a may touch another with a mesh of material b.
+// Whether a body with a shape of material a may touch another body with a mesh of material b.
 bool shapes_meet_meshes(const Model& model, int a, int b) {
   const TouchRule rule(model);
   const int bodies = static_cast<int>(model.bodies.size());
@@ -80,7 +80,7 @@ bool shapes_meet_meshes(const Model& model, int a, int b) {
   return false;
 }
 
-// The same of what has shapes, and walls that are meshes of a material.
+// Whether shapes of one material may touch walls that are meshes of the other.
 bool shapes_meet_walls(const Model& model, const MaterialUse& use, int material) {
   return use.shapes > 0 && std::ranges::any_of(model.walls, [&](const Wall& wall) {
            return wall.mesh >= 0 && wall.material == material;
@@ -197,7 +197,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
       const MaterialUse &first = uses[static_cast<std::size_t>(a)],
                         &second = uses[static_cast<std::size_t>(b)];
       const PairSize size = smallest_partners(first, second);
-      if (smallest_reduced_mass(size) == kInfinity) continue;  // neither gives way
+      if (smallest_reduced_mass(size) == kInfinity) continue;  // both have infinite mass
       const KelvinVoigt sized = law.of_size(size);
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;

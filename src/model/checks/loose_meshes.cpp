@@ -20,7 +20,7 @@ std::string some_of(const std::vector<std::string>& walls) {
                      walls.size() > shown ? fmt::format(" and {} more", walls.size() - shown) : "");
 }
 
-// Whether the deck has a pair of the two materials, be it one without forces.
+// Whether the deck has a pair of the two materials, also one without forces.
 bool pair_is_given(const DeckTable& deck, const Model& model, int a, int b) {
   const std::vector<std::string>& names = model.contact.material_names;
   const std::string &first = names[static_cast<std::size_t>(a)], &second = names[static_cast<std::size_t>(b)];
@@ -31,7 +31,8 @@ bool pair_is_given(const DeckTable& deck, const Model& model, int a, int b) {
   });
 }
 
-// Loose bodies of meshes alone, and the walls through which they go although these may be meant to stop them.
+// Bodies without joints that have only meshes, and the walls that they pass through though these may be meant
+// to stop them.
 class LooseMeshes {
  public:
   LooseMeshes(const DeckTable& deck, const Model& model) : deck_(deck), model_(model) {
@@ -58,7 +59,7 @@ class LooseMeshes {
 
  private:
   struct Passing {
-    std::string body;  // the first one
+    std::string body;  // the first such body
     std::vector<std::string> walls;
     std::size_t bodies = 0;
   };
@@ -94,7 +95,7 @@ class LooseMeshes {
   Passing meshes_, without_law_;
 };
 
-// Meshes meet neither each other nor walls that are meshes.
+// Meshes touch neither each other nor walls that are meshes.
 std::string without_partners(const DeckTable& deck, const Model& model) {
   const auto any_body = [&](const auto& has) { return std::ranges::any_of(model.bodies, has); };
   const bool meshes = any_body([](const Body& b) { return !b.meshes.empty(); });

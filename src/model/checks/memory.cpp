@@ -14,16 +14,16 @@ namespace scree {
 
 namespace {
 
-// Measured as the growth of the peak memory of `scree check` from 10^5 to 10^6 of each [B]. Building a body
-// and each of its shapes takes so much on every rank, its unknowns and those of a link on rank 0.
+// Measured as the growth of the peak memory of `scree check` from 10^5 to 10^6 of each [B]. A body and each
+// of its shapes need this on every rank, unknowns and joints or force elements on rank 0.
 constexpr Real kToBuildBody = 600, kToBuildShape = 300, kToBuildUnknowns = 1400, kToBuildLink = 1600;
-// A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
-// of.
+// A particle and its entry in the search for overlaps; a particle of a random group, with the items that it
+// must avoid.
 constexpr Real kToBuildParticle = 150, kToPlace = 130;
-// Of what a run takes, what is there once the model is built: of a triangle all but what shows it.
+// The part of a run's memory that is in use once the model is built: of a triangle all but its output.
 constexpr Real kOfModelShape = 170, kOfModelDrawnShape = 140;
-// Where particles rotate, and where something resists rolling: the fields of rotation, and what contacts
-// remember in the copies that a checkpoint is made of, of a dense packing
+// Additional memory per particle where particles rotate, and where there is rolling resistance, in a dense
+// packing: fields of rotation, and the contact history in the copies from which a checkpoint is made
 // (tests/performance/bytes_per_item.py) [B].
 constexpr Real kOfRotation = 400, kOfRolling = 280;
 
@@ -158,7 +158,8 @@ void check_memory(const ModelSize& size, Real bytes, const std::string& task, co
 
 std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding) {
   const Real particles = kBytesPerExplicitParticle * static_cast<Real>(size.particles);
-  // A body has three coordinates, a link two constraints at the most but for fixed joints.
+  // A body has three coordinates; a joint or force element has at most two constraints, except for fixed
+  // joints.
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links) + bytes_of_shapes(size);
   std::string of = counted(size.particles, "particle", "particles");

@@ -17,12 +17,12 @@
 namespace scree {
 namespace {
 
-constexpr Real kMostOfCurve = 0.5;  // radius of a particle over that of a concave surface
-constexpr Real kMostSag = 0.1;      // over the largest overlap: so far the force errs where it is greatest
-constexpr Real kMostTrianglesNear = 24;  // where they touch
-constexpr Real kMostOfSpace = 10;        // the length of a mesh
+constexpr Real kMostOfCurve = 0.5;  // radius of a particle relative to that of a concave surface
+constexpr Real kMostSag = 0.1;  // relative to the largest overlap: the relative error of the largest force
+constexpr Real kMostTrianglesNear = 24;  // number within range at a contact
+constexpr Real kMostOfSpace = 10;        // extent of a mesh relative to the domain
 
-// Sums over the triangles [m^2], [m].
+// Sums over all triangles [m^2], [m].
 struct MeshSize {
   Real area = 0, perimeters = 0;
 };
@@ -38,10 +38,10 @@ MeshSize size_of(const SurfaceMesh& mesh) {
   return size;
 }
 
-// Length of a line, which is drawn along z [m].
+// Length of a line, whose mesh is extruded along z [m].
 Real length_of(const SurfaceMesh& line) { return size_of(line).area / (line.box.max.z - line.box.min.z); }
 
-// Meshes that walls and bodies have, or solids are made of.
+// Names of the meshes that walls, bodies or solids use.
 std::set<std::string> used_meshes(const DeckTable& deck) {
   std::set<std::string> used;
   const auto use = [&](const std::vector<DeckTable>& tables) {
@@ -53,7 +53,7 @@ std::set<std::string> used_meshes(const DeckTable& deck) {
   return used;
 }
 
-// Materials of the carriers of each mesh.
+// Materials of the owners of each mesh.
 std::vector<std::set<int>> materials_of(const Model& model) {
   std::vector<std::set<int>> materials(model.meshes.size());
   for (const Wall& wall : model.walls)
@@ -64,7 +64,7 @@ std::vector<std::set<int>> materials_of(const Model& model) {
   return materials;
 }
 
-// Pairs of one of the materials with one that particles have.
+// Limits of the pairs of one of the materials with a material of particles.
 std::vector<PairLimit> limits_with_particles(const Model& model, const std::set<int>& materials) {
   const std::vector<MaterialUse> uses = material_uses(model);
   std::vector<PairLimit> limits = pair_limits(model);
@@ -78,7 +78,7 @@ std::vector<PairLimit> limits_with_particles(const Model& model, const std::set<
   return limits;
 }
 
-// The largest that impacts on one of the materials make; 0 where nothing moves [m].
+// The largest overlap of impacts on one of the materials; 0 where nothing moves [m].
 Real largest_overlap(const Model& model, const std::set<int>& materials) {
   Real largest = 0;
   const ImpactSpeeds speeds(model);
@@ -87,7 +87,7 @@ Real largest_overlap(const Model& model, const std::set<int>& materials) {
   return largest;
 }
 
-// Of one whose file is in other units, mostly.
+// A mesh far larger than the domain, usually a file in other units.
 std::string too_large(const Model& model, const ModelMesh& mesh) {
   const auto longest = [](Vec3 a) { return std::max({a.x, a.y, a.z}); };
   const Vec3 space = model.space.max - model.space.min, size = mesh.surface->box.max - mesh.surface->box.min;
@@ -119,7 +119,7 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
         "by "
         "which impacts overlap it, and forces err by as much: a smaller coarsen",
         mesh.name, mesh.moved, 100 * mesh.moved / overlap, overlap);
-  // No finer than where the deck leaves it out.
+  // Not finer than the default.
   const Real fitting = mesh.deviation_is_exact ? kFacetShare * model.particles.totals.smallest_radius : 0;
   if (overlap == 0 || !(sag > std::max(kMostSag * overlap, fitting))) return "";
   return fmt::format(
@@ -129,7 +129,7 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
       mesh.name, sag, 100 * sag / overlap, overlap);
 }
 
-// The remedy that makes a mesh of this table coarser, as text.
+// Advice for making a mesh of this table coarser.
 std::string coarser(const DeckTable& table, const ModelMesh& mesh, Real smallest_radius) {
   if (table.has("refine")) return "a larger refine";
   if (table.has("file")) return fmt::format("coarsen = {:.2g}", kFacetShare * smallest_radius);
@@ -147,7 +147,7 @@ std::string too_fine(const Model& model, const ModelMesh& mesh, const DeckTable&
       mesh.name, particles.largest_radius, near, coarser(table, mesh, particles.smallest_radius));
 }
 
-// Over the lowest corner of the space, against gravity [m].
+// Height above the lowest corner of the domain, against gravity [m].
 Real height_of(const Model& model, Vec3 p) {
   const Vec3 g = model.gravity, low = p - model.space.min, high = model.space.max - p;
   const auto along = [](Real gravity, Real from_min, Real to_max) {
@@ -164,8 +164,8 @@ Vec3 top_of(const Model& model, Vec3 low, Vec3 high) {
   return {g.x < 0 ? high.x : low.x, g.y < 0 ? high.y : low.y, g.z < 0 ? high.z : low.z};
 }
 
-// How far a particle can fall from where the highest one starts to a mesh's fold, where that is the lowest at
-// t = 0 [m].
+// Height from which a particle can fall from the initially highest position to a mesh's fold, at the lowest
+// position of the fold at t = 0 [m].
 Real fall_to_fold(const Model& model, std::size_t mesh) {
   const Vec3 fold = model.meshes[mesh].surface->fold.position;
   Real lowest = kInfinity;
@@ -180,14 +180,14 @@ Real fall_to_fold(const Model& model, std::size_t mesh) {
   return std::max<Real>(0, height_of(model, top_of(model, particles.lowest, particles.highest)) - lowest);
 }
 
-// A particle that touches a fold: the smallest or the largest one, on something that does not give way.
+// Impact of the smallest or largest particle on a fold, with an object of infinite mass.
 struct FoldImpact {
-  Real factor = 0;           // by which the stiffness is too low
+  Real factor = 0;           // factor by which the stiffness is too low
   Real overlap = 0, radius;  // [m]
   PairLimit limit;
 };
 
-// share: of its radius that a particle may overlap; speed [m/s].
+// share: allowed overlap relative to the particle's radius; speed [m/s].
 FoldImpact fold_impact(const Model& model, const PairLimit& limit, Real share, Real speed, bool largest) {
   const ParticleTotals& particles = model.particles.totals;
   const Real radius = largest ? particles.largest_radius : particles.smallest_radius,
@@ -201,8 +201,8 @@ FoldImpact fold_impact(const Model& model, const PairLimit& limit, Real share, R
           limit};
 }
 
-// The one that overlaps the farthest beyond what it may. fall: onto the fold [m]; impacts are as fast as they
-// can be in the model, but for the way that particles fall.
+// The impact with the largest excess of overlap. fall: height above the fold [m]; speeds are the largest in
+// the model, except for the height of falling particles.
 FoldImpact worst_on_fold(const Model& model, const std::set<int>& materials, Real share, Real fall) {
   const Real top = height_of(model, top_of(model, model.space.min, model.space.max)),
              not_fallen = fall_speed(norm(model.gravity), std::max<Real>(0, top - fall));
@@ -226,7 +226,7 @@ std::string sharp_folds(const Model& model, std::size_t number, const std::set<i
   const Real share = 1 - std::cos(fold.angle);
   const FoldImpact worst = worst_on_fold(model, materials, share, fall_to_fold(model, number));
   if (!(worst.factor > 1)) return "";
-  const Real enough = Real(1.01) * worst.factor;  // also with the digits that are shown
+  const Real enough = Real(1.01) * worst.factor;  // stays sufficient with the printed digits
   const auto [one, other] = worst.limit.material;
   const std::vector<std::string>& names = model.contact.material_names;
   const KelvinVoigt& law = worst.limit.law;
@@ -254,7 +254,7 @@ std::string crossing_shells(const ModelMesh& mesh) {
       mesh.name, mesh.crossing);
 }
 
-// A text on a wall whose mesh has no face along which its surface could run; else empty.
+// Warning about a wall whose mesh has no face parallel to its surface velocity; otherwise empty.
 std::string runs_across(const Model& model, const Wall& wall) {
   constexpr Real kRoundOff = 1e-9;
   if (wall.mesh < 0 || !wall.runs()) return "";
@@ -272,9 +272,9 @@ std::string runs_across(const Model& model, const Wall& wall) {
 
 }  // namespace
 
-// Within a distance of a point of a plane that is cut into triangles are on average as many of these as have
-// the point within their outlines widened by that distance: the area of such an outline is that of the
-// triangle, its perimeter times the distance, and a disc.
+// Average number of triangles within a distance of a point of a triangulated plane: the point lies within
+// that distance of a triangle where it is inside the triangle's outline widened by the distance, whose area
+// is that of the triangle, plus its perimeter times the distance, plus a disc.
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
   const Real reach = radius + model.contact.reach + model.contact.skin;
   const Real within = std::sqrt(reach * reach - radius * radius);

@@ -25,7 +25,7 @@ namespace {
 constexpr Real kMostSizes = 1e5;                  // largest over smallest radius
 constexpr Real kMostSteps = 1e9;                  // of a run
 constexpr Real kLightest = 1, kHeaviest = 25000;  // densities: aerogel, osmium [kg/m^3]
-constexpr Real kMostGyration = 2;                 // radius of gyration over a body's extent
+constexpr Real kMostGyration = 2;                 // radius of gyration relative to a body's extent
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 std::array<Real, 3> components(Vec3 v) { return {v.x, v.y, v.z}; }
@@ -38,7 +38,7 @@ std::string pair_name(const Model& model, const PairLimit& limit) {
                      names[static_cast<std::size_t>(limit.material[1])]);
 }
 
-// Of the space across gravity, the base on which particles come to rest: area, or in 2D length.
+// Base of the domain perpendicular to gravity, on which particles come to rest: area, in 2D length.
 Real base_size(const Model& model) {
   const Vec3 extent = model.space.max - model.space.min;
   const Real volume = extent.x * extent.y * (model.space.dimension == 2 ? 1 : extent.z);
@@ -46,11 +46,11 @@ Real base_size(const Model& model) {
 }
 
 std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
-  if (!deck.tables("particles").empty()) return "";  // a group without particles says so itself
+  if (!deck.tables("particles").empty()) return "";  // a warning about empty groups exists
   if (model.bodies.empty())
     return "the deck has no particles and no bodies: nothing will move; was the file cut off?";
   std::string only;
-  bool meets = false;  // contacts of bodies, which are stepped as those of particles
+  bool meets = false;  // contacts of bodies that are integrated like those of particles
   const std::vector<MaterialUse> uses = material_uses(model);
   for (int a = 0; a < model.contact.materials(); ++a)
     for (int b = a; b < model.contact.materials(); ++b) {
@@ -98,8 +98,7 @@ std::string larger_than_space(const Model& model) {
                     : finding(fmt::format("a shape of body \"{}\"{}", first->name, and_more(count)), radius);
 }
 
-// How far the shapes and meshes of each body, and the points that something acts on, reach from its centre
-// [m].
+// Distance of the farthest shape, mesh or point of action of each body from its centre [m].
 std::vector<Real> body_extents(const Model& model) {
   std::vector<Real> extents(model.bodies.size());
   const auto reach = [&](int body, Vec3 point, Real radius) {
@@ -157,8 +156,8 @@ std::string overdamped(const Model& model, const PairLimit& limit) {
       pair_name(model, limit), damping, ratio, damping / ratio);
 }
 
-// Number of particles in a column of the smallest kind, spread over the whole base: no column is lower than
-// the mean.
+// Number of particles above one in a column of the smallest particles, spread over the whole base: no bed is
+// lower on average.
 Real particles_on_top(const Model& model) {
   const Real diameter = 2 * model.particles.totals.smallest_radius;
   const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));
@@ -184,8 +183,8 @@ std::string overlap_at_rest(const Model& model, const std::vector<MaterialUse>& 
       pair_name(model, limit), stack, weight, overlap, totals.smallest_radius);
 }
 
-// A sheet pushes back to its contact's side until the centre is a radius past it; all else lets through what
-// is past the middle.
+// An open surface pushes a particle back to its side until the centre is one radius beyond; other surfaces
+// let it through once its centre has passed the middle.
 std::string overlap_at_impact(const Model& model, const std::vector<MaterialUse>& uses,
                               const ImpactSpeeds& speeds, const PairLimit& limit) {
   Real radius = kInfinity;
@@ -230,14 +229,14 @@ std::string wide_attraction(const Model& model) {
       reach, smallest);
 }
 
-// Whether a random group fills a box alone.
+// Whether a random group fills a plain box.
 bool is_boxed(const DeckTable& group) {
   return group.has("min") && group.has("max") && !group.has("cylinder_radius") && !group.has("mesh") &&
          !group.has("body");
 }
 
-// Such groups have the same places in their boxes, and particles of the same radii in the same order where
-// those are drawn alike.
+// Such groups have equal positions in their boxes, with equal radii in equal order where those are drawn from
+// equal distributions.
 std::string same_random_places(const DeckTable& deck) {
   const auto size = [](const DeckTable& table) { return table.vector("max") - table.vector("min"); };
   const auto alike = [&](const DeckTable& a, const DeckTable& b) {
@@ -276,7 +275,7 @@ std::string odd_density(const DeckTable& deck) {
   return "";
 }
 
-// Of spheres whose mass is given; a disc may be of any thickness.
+// For spheres with given masses; a disc may have any thickness.
 std::string odd_mass(const DeckTable& deck, const Model& model) {
   const ParticleTotals& totals = model.particles.totals;
   if (model.space.dimension == 2 || totals.count == 0 || !odd_density(deck).empty()) return "";
@@ -307,7 +306,7 @@ std::string many_steps(const Model& model) {
                      model.integrator.substeps > 1 ? " with their substeps" : "", fixed ? "" : " at least");
 }
 
-// The trapezoidal rule keeps errors of the velocities across constraints that turn.
+// The trapezoidal rule does not damp velocity errors perpendicular to constraints whose direction changes.
 std::string undamped_joints_in_space(const Model& model) {
   const bool joints = std::ranges::any_of(
       model.joints, [&](const Joint& joint) { return between(model, joint.body) == BodyKind::spatial; });

@@ -31,7 +31,7 @@ std::string point_text(const Space& space, Vec3 p) {
                               : fmt::format("({}, {}, {})", p.x, p.y, p.z);
 }
 
-// Numbers of items: particles by their ids, then shapes, then walls, then meshes of bodies.
+// Numbering of items: particles by their ids, then shapes, then walls, then meshes of bodies.
 class ItemNames {
  public:
   explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.count) {
@@ -40,7 +40,7 @@ class ItemNames {
       for (const MeshShape& shape : model.bodies[b].meshes) meshes_.emplace_back(b, shape.mesh);
     }
   }
-  // Of a shape; kGround for a particle.
+  // Body of a shape; kGround for a particle.
   int body(std::int64_t number) const {
     return number < particles_ ? kGround : body_[static_cast<std::size_t>(number - particles_)];
   }
@@ -55,13 +55,13 @@ class ItemNames {
     return fmt::format("body \"{}\"", model_.bodies[meshes_[mesh_number(number)].first].name);
   }
   bool is_particle(std::int64_t number) const { return number < particles_; }
-  // Index into Model::meshes; -1 where the item is none.
+  // Index into Model::meshes; -1 where the item is not a mesh.
   int mesh(std::int64_t number) const {
     if (number < first_wall()) return -1;
     if (number < first_mesh()) return model_.walls[static_cast<std::size_t>(number - first_wall())].mesh;
     return meshes_[mesh_number(number)].second;
   }
-  // "its shape 2 (from 0)", "its mesh "tooth"": which of a body it is, where it has several; or "".
+  // "its shape 2 (from 0)", "its mesh "tooth"": the part of a body with several parts; otherwise "".
   std::string part(std::int64_t number) const {
     if (number < particles_) return "";
     if (number < first_wall()) {
@@ -80,18 +80,20 @@ class ItemNames {
 
   const Model& model_;
   std::int64_t particles_;
-  std::vector<int> body_;                            // of each shape
-  std::vector<std::pair<std::size_t, int>> meshes_;  // of each mesh of a body: the body, and Model::meshes
+  std::vector<int> body_;  // for each shape
+  std::vector<std::pair<std::size_t, int>>
+      meshes_;  // for each mesh of a body: the body, and the index into Model::meshes
 };
 
-constexpr Real kRoundOff = 1e-9;  // of exactly touching neighbours
+constexpr Real kRoundOff = 1e-9;  // of exact contact between neighbours
 
-// The largest overlap so far, over the smaller radius; of equal ones the first by number. How many there are.
+// The largest relative overlap so far, by the smaller radius; of equal ones the first by number. Also the
+// number of overlaps.
 struct Overlaps {
-  Real limit;  // the largest that is allowed
+  Real limit;  // the largest allowed overlap
   Real ratio = 0;
   std::int64_t first = 0, second = 0;
-  std::int64_t count = 0, above_limit = 0;  // of those that are this rank's
+  std::int64_t count = 0, above_limit = 0;  // counts of this rank
 
   void meet(Real other, std::int64_t a, std::int64_t b, bool is_own = true) {
     if (other > ratio || (other == ratio && ratio > 0 && std::pair(b, a) < std::pair(second, first)))
@@ -102,7 +104,7 @@ struct Overlaps {
   }
 };
 
-// Of all ranks.
+// Combines the overlaps of all ranks.
 Overlaps overlaps_of_all(const Overlaps& own, const Share& share) {
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
   Overlaps all{own.limit, share.max(own.ratio)};
@@ -112,7 +114,7 @@ Overlaps overlaps_of_all(const Overlaps& own, const Share& share) {
   return all;
 }
 
-// This rank's particles; the last rank has the shapes, too.
+// This rank's particles; the last rank also has the shapes.
 std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   std::vector<StartItem> items;
   const ParticleSet& particles = model.particles;
@@ -128,7 +130,7 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   return items;
 }
 
-// name: of what starts at p, outside the space.
+// name: of the object that starts at p, outside the domain.
 std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
   const auto text = [&](Vec3 a) { return point_text(space, a); };
   const Box allowed = start_box(space);
@@ -142,7 +144,7 @@ std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
                      text(space.max), sides);
 }
 
-// The deck's table of the group that has this particle.
+// The deck's table of the particle's group.
 const DeckTable& group_of(const DeckTable& deck, const Model& model, GlobalId id) {
   const GlobalId ids[] = {id};
   return deck.tables("particles")[static_cast<std::size_t>(groups_of(model.particles.groups, ids).front())];
@@ -159,7 +161,7 @@ void check_particles_inside(const DeckTable& deck, const Model& model) {
   }
 }
 
-// Around all of them; there is at least one.
+// Bounding box of all items; there is at least one.
 Box box_around(const std::vector<StartItem>& items) {
   Box box{items.front().position, items.front().position};
   for (const StartItem& item : items) {
@@ -170,7 +172,7 @@ Box box_around(const std::vector<StartItem>& items) {
   return box;
 }
 
-// reach: two items farther away from each other than this do not overlap [m].
+// reach: two items farther apart than this do not overlap [m].
 void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items, Real reach,
                         Overlaps& overlaps) {
   if (items.empty()) return;
@@ -222,7 +224,7 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
   }
 }
 
-// Overlaps of the corners of bodies' meshes with planes, over the meshes' effective radii.
+// Finds overlaps of the vertices of bodies' meshes with planes, relative to the meshes' effective radii.
 void find_corner_overlaps(const Model& model, Overlaps& overlaps) {
   const ItemNames names(model);
   std::int64_t number = names.first_mesh();
@@ -245,7 +247,7 @@ void find_corner_overlaps(const Model& model, Overlaps& overlaps) {
     }
 }
 
-// Of particles and shapes the numbers given, on all ranks.
+// The particles and shapes with these numbers, on all ranks.
 std::vector<StartItem> items_of(const Model& model, const Share& share,
                                 std::initializer_list<std::int64_t> numbers) {
   std::vector<StartItem> items = collect_items(model, share);
@@ -254,7 +256,7 @@ std::vector<StartItem> items_of(const Model& model, const Share& share,
   return share.everywhere(std::move(items));
 }
 
-// "; particle 3: of particles.grains, at (0.1, 0.2), radius 0.05 m"; of a plane "".
+// "; particle 3: of particles.grains, at (0.1, 0.2), radius 0.05 m"; "" for a plane.
 std::string item_text(const DeckTable& deck, const Model& model, const std::vector<StartItem>& items,
                       std::int64_t number) {
   const ItemNames names(model);
@@ -266,11 +268,11 @@ std::string item_text(const DeckTable& deck, const Model& model, const std::vect
   return text.empty() ? "" : fmt::format("; {}: {}", names.name(number), text);
 }
 
-// What is said of an item that is inside a closed mesh; else "".
+// A note about an item inside a closed mesh; otherwise "".
 std::string inside_text(const DeckTable& deck, const Model& model, const Overlaps& overlaps) {
   const ItemNames names(model);
   const int mesh = names.mesh(overlaps.second);
-  // Outside at most the radius overlaps.
+  // Outside the mesh the overlap is at most the radius.
   if (mesh < 0 || names.mesh(overlaps.first) >= 0 || !(overlaps.ratio > 1)) return "";
   const DeckTable& table = deck.tables("meshes")[static_cast<std::size_t>(mesh)];
   const std::string finding = fmt::format("; the centre of {} is inside the solid that mesh \"{}\" encloses",
@@ -309,7 +311,7 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log) {
   share.together([&] { check_particles_inside(deck, model); });
   std::vector<StartItem> items = collect_items(model, share);
-  // As a run does it: a particle may start many periods outside the space.
+  // As in a run: a particle may start many periods outside the domain.
   for (StartItem& item : items) item.position = in_periodic_box(model.space, item.position);
   const DeckTable& contact = deck.table("contact");
   const Real limit = contact.real("max_start_overlap");
@@ -324,7 +326,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   const Overlaps all = overlaps_of_all(own, share);
   if (all.ratio <= kRoundOff) return;
   const ItemNames names(model);
-  // Elsewhere the second one is a mesh, if one is.
+  // In other overlaps the second item is a mesh, if one is.
   const bool on_corners = all.first >= names.first_mesh();
   const std::string finding = fmt::format(
       "{} and {} overlap at t = 0 by {:.6g} of the {}", names.name(all.first), names.name(all.second),

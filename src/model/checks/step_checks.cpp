@@ -1,4 +1,4 @@
-// Whether the deck's steps suit its contacts, bodies and speeds.
+// Checks the deck's steps against contacts, bodies and speeds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace scree {
 
 namespace {
 
-// n = 1 has an exact limit, other exponents an estimate: an error and a warning.
+// For n = 1 the limit is exact, and exceeding it an error; for other exponents it is an estimate, and
+// exceeding it a warning.
 void check_explicit_step(const DeckTable& deck, const Model& model, const std::vector<PairLimit>& limits,
                          Log& log) {
   const std::optional<PairLimit> tightest = smallest_explicit_step(limits);
@@ -34,15 +35,15 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
               left_out_step(model));
 }
 
-// Masses of a body on a contact [kg]: for forces along the normal, and for friction across it; 0: there is
-// none.
+// Effective masses of a body at a contact [kg]: for forces along the normal, and for tangential friction; 0:
+// no contact.
 struct MassesOnContact {
   Real pushed = 0, rubbed = 0;
-  bool beside_particle = false;  // else other bodies or walls alone are met
+  bool beside_particle = false;  // otherwise only other bodies or walls are touched
 };
 
-// The masses of the lightest body of material a on something of material b: a particle, another body or a
-// surface. The motion of particles is left out: they have substeps of their own.
+// The effective masses of the lightest body of material a in contact with material b: with a particle,
+// another body or a surface. The motion of particles is not included: they have substeps of their own.
 MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
   const bool beside_particle = other.particles > 0;
@@ -50,16 +51,16 @@ MassesOnContact masses_on_contact(const Model& model, const std::vector<Material
   if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
   if (!bodies_can_meet(model, uses, a, b) || (beside_particle && !model.rotates()))
     return beside_particle || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
-  if (other.smallest_body_mass == 0) return alone;  // nothing else gives way
+  if (other.smallest_body_mass == 0) return alone;  // all other objects have infinite mass
   return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),
           reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass), beside_particle};
 }
 
 }  // namespace
 
-// The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
-// and stable only while the step is short against the oscillation of a body on its contacts. The limit is an
-// estimate for exponents other than 1.
+// Bodies take the contact force at the end of their step while the particles take substeps: the scheme is
+// staggered, and stable only for steps that are short relative to the oscillation of a body on its contacts.
+// For exponents other than 1 the limit is an estimate.
 BodyStepLimit body_step_limit(const Model& model) {
   const std::vector<MaterialUse> uses = material_uses(model);
   BodyStepLimit limit{0, kMostBodyPhase, 0, true};
@@ -101,8 +102,7 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
                             left_out_step(model)));
 }
 
-// The remedy of a step in which something goes farther than a radius. An implicit step of fixed length has no
-// default.
+// Advice for a step in which something moves by more than a radius. A fixed implicit step has no default.
 std::string slower_than_radius(const Model& model) {
   if (model.integrator.particles == ParticleIntegrator::velocity_verlet) return left_out_step(model);
   const Real most = two_digits_below(unnoticed_step(model));
@@ -110,8 +110,8 @@ std::string slower_than_radius(const Model& model) {
                                                      : fmt::format("; it should be at most {:g} s", most);
 }
 
-// Warns where something goes more than a radius in a step [s]: it may pass others. No law of contact says so,
-// and neither does an error estimate: uniform motion is integrated without error.
+// Warns where something moves by more than a radius in a step [s] and may pass others. Neither a contact law
+// nor an error estimate detects this: uniform motion is integrated without error.
 void warn_where_unnoticed(const Model& model, Real step, Real radii, const std::string& what,
                           const std::string& of_what, Log& log) {
   if (radii <= 1) return;
@@ -133,8 +133,8 @@ void check_speeds(const Model& model, Real step, Log& log) {
                        fmt::format("the smallest radius at its fastest, {:.3g} m/s", speed), log);
 }
 
-// Checks the step against the oscillation of bodies on the corners of their meshes, of which a face has many.
-// A body that a joint holds may never come to a plane: too long a step causes a warning there, no refusal.
+// Checks the step against the oscillation of bodies on the vertices of their meshes, of which a face has
+// many. A body that a joint holds may never touch a plane: too long a step is then a warning, not an error.
 void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
   if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
   const Real most = model.rotates() ? kMostBodyPhase : kMostAmongBodies;
@@ -152,8 +152,8 @@ void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
   }
 }
 
-// A driver that turns its joint by so much within a step may bring the mechanism past a dead point, into
-// another way of putting its parts together: Newton's method finds that one as well, and nothing fails.
+// Warns of a driver that rotates its joint by a large angle within a step. The mechanism may then pass a dead
+// point into another configuration, in which Newton's method converges as well, without an error.
 void check_driven_angles(const Model& model, Log& log) {
   constexpr Real kMost = 1;  // [rad]
   if (model.time.control != StepControl::fixed) return;

@@ -15,7 +15,8 @@ std::vector<std::string> names_of(const Map& map) {
   return names;
 }
 
-// "; "net" has net.0 to net.19" where the name is that of a row, or of one element too many; else "".
+// "; "net" has net.0 to net.19" where the name is that of a row, or of an element beyond its end; otherwise
+// "".
 std::string elements_of_row(const NameMap& names, const std::string& name) {
   const auto has = [&](const std::string& row) { return names.contains(row + ".0"); };
   const std::string row = has(name) ? name : name.substr(0, name.rfind('.'));
@@ -25,7 +26,7 @@ std::string elements_of_row(const NameMap& names, const std::string& name) {
   return fmt::format("; \"{0}\" has {0}.0 to {0}.{1}", row, last);
 }
 
-// known: names that are none of the map, but would do.
+// known: further names that are valid, for the message.
 [[noreturn]] void fail_for_name(const NameMap& names, const std::string& name, const DeckTable& table,
                                 const std::string& key, const std::string& what,
                                 std::vector<std::string> known) {

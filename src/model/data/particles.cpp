@@ -6,13 +6,13 @@
 namespace scree {
 namespace {
 
-// Extremes of this rank's values; what they are of all ranks is found by maxima of numbers >= 0.
+// Extremes of this rank's values; those of all ranks are found as maxima of non-negative numbers.
 struct Extremes {
   Real smallest = kInfinity, largest = 0;
   void add(Real value) { smallest = std::min(smallest, value), largest = std::max(largest, value); }
 };
 
-// Numbers > 0 order as their bits do.
+// The bits of positive numbers have the order of the numbers.
 Real smallest_of_all(const Share& share, Real value) {
   const Real smallest = std::bit_cast<Real>(share.min(std::bit_cast<std::int64_t>(value)));
   return smallest < kInfinity ? smallest : 0;

@@ -13,7 +13,8 @@ namespace scree {
 
 namespace {
 
-// The body's centre where the other side is the ground, otherwise midway between the centres [m].
+// Default point of a connection: the body's centre where the other side is the ground, otherwise midway
+// between the centres [m].
 Vec3 default_point(const Model& model, const Connection& connection) {
   const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
   if (connection.body[0] == kGround) return b;
@@ -65,7 +66,7 @@ Connection marked_pair(const DeckTable& table, const NamedEnds& ends) {
   return connection;
 }
 
-// Of the elements of a row, whose bodies have consecutive numbers.
+// Marks the elements of a row, whose bodies have consecutive indices.
 void mark_row(const DeckTable& table, const NamedEnds& ends, std::vector<Connection>& connections) {
   for (Connection& connection : connections) {
     for (std::size_t side = 0; side < 2; ++side)
@@ -218,7 +219,7 @@ void check_single(const DeckTable& table, const std::string& key) {
 
 namespace {
 
-// How far apart the two points of a joint of spatial bodies are from where it wants them.
+// Violation of the joint's position constraints between spatial bodies [m].
 Real spatial_gap(const Model& model, const Joint& joint, Vec3 apart) {
   const Vec3 axis =
       to_global_direction(model, joint.body[0], rotation_matrix(joint.marker[0]) * Vec3{0, 0, 1});

@@ -12,8 +12,8 @@ namespace scree {
 
 namespace {
 
-constexpr Real kUnitLength = 1e-6;  // of a quaternion
-constexpr Real kSquare = 1e-6;      // cosine between two axes
+constexpr Real kUnitLength = 1e-6;  // tolerance of a quaternion's length
+constexpr Real kSquare = 1e-6;      // largest cosine between perpendicular axes
 
 Quaternion read_quaternion(const DeckTable& table, const std::string& key) {
   const std::vector<Real>& e = table.reals(key);

@@ -23,7 +23,7 @@ Vec3 random_place(const PackingBox& box, Real radius, RandomNumbers& random) {
   return {x, y, box.dimension == 3 ? random.uniform(box.min.z + radius, box.max.z - radius) : 0};
 }
 
-// Of the region [m^3, in 2D m^2]. gap: between neighbours; it does not keep off walls.
+// Volume of the region [m^3, in 2D m^2]. gap: between neighbours; it does not apply to walls.
 Real volume_of(const PackingBox& box, Real gap) {
   if (box.drawn) return box.share * box.drawn->volume;
   const Vec3 extent = box.max - box.min;
@@ -35,11 +35,11 @@ bool fits(const PackingBox& box, Real radius) {
   return extent.x >= 2 * radius && extent.y >= 2 * radius && (box.dimension == 2 || extent.z >= 2 * radius);
 }
 
-// Below so many the walls of the box and chance decide, not the fraction.
+// Below this number, boundaries and chance matter more than the fraction.
 constexpr std::size_t kMany = 1000;
 
-// About how many of a group find no place. radius: from large to small [m]. scale: so many times their
-// number. The chance of a place is taken twice as large as it is, to be on the safe side.
+// Expected number of particles that find no position. radius: from large to small [m]. scale: factor on their
+// number. The probability of a free position is doubled, as a safety margin.
 Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, Real scale) {
   constexpr std::size_t kParts = 200;
   const Real volume = volume_of(box, box.gap);
@@ -69,7 +69,7 @@ void check_distribution(const DeckTable& table) {
   }
 }
 
-// A distribution's numbers, looked up once: there may be many values to draw.
+// Parameters of a distribution, read once because many values may be drawn.
 class Distribution {
  public:
   explicit Distribution(const DeckTable& table)
@@ -100,7 +100,7 @@ class Distribution {
 
  private:
   Real draw_normal(RandomNumbers& random) const {
-    // A window that the distribution almost never meets is a mistake in the deck.
+    // A window with a negligible probability is a mistake in the deck.
     constexpr int kMostDraws = 100000;
     for (int i = 0; i < kMostDraws; ++i) {
       const Real value = mean_ + sd_ * random.normal();
@@ -162,7 +162,7 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
 }
 
 std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, const std::string& region) {
-  constexpr Real kCertain = 20;  // failures: chance would have to be kind as once in 10^8
+  constexpr Real kCertain = 20;  // expected failures: success then has a probability of 10^-8
   std::sort(radius.begin(), radius.end(), std::greater<>());
   PackingSums sums;
   const Real volume = volume_of(box, 0);

@@ -19,12 +19,12 @@ const HullCorners* corners_of(const Model& model, const MeshShape& shape) {
   return model.meshes[static_cast<std::size_t>(shape.mesh)].corners.get();
 }
 
-constexpr int kMotions = 6;  // of a body: displacements, then rotations
+constexpr int kMotions = 6;  // displacements, then rotations of a body
 using Motion = std::array<Real, kMotions>;
 
-// How a point of a body moves in a direction, with each of the body's motions over the root of its inertia:
-// what a spring there adds to the square of frequencies is this vector times itself, times the stiffness
-// [kg^-1/2].
+// Mobility of a body's point in a direction: the body's motions divided by the root of their inertia. A
+// spring there adds this vector times its transpose, times the stiffness, to the matrix of squared
+// frequencies [kg^-1/2].
 Motion mobility(const Body& body, Vec3 place, Vec3 direction) {
   const Vec3 lever = cross(place, direction);
   const Real move = 1 / std::sqrt(body.mass), turn = 1 / std::sqrt(body.inertia);
@@ -39,9 +39,9 @@ Real product(const Motion& a, const Motion& b) {
   return sum;
 }
 
-// The largest eigenvalue of the sum of a a^T, where it may exceed `least`; it is at most the trace. By the
-// power method, from the longest of the vectors on, and from below: to a hundredth, with the trace as the
-// other bound.
+// Largest eigenvalue of the sum of a a^T, computed where it may exceed `least`; it is at most the trace.
+// Power method from the longest of the vectors, which converges from below, to one per cent, with the trace
+// as upper bound.
 Real largest_eigenvalue(const std::vector<Motion>& rows, Real least) {
   constexpr int kIterations = 60;
   Real trace = 0;
@@ -65,8 +65,8 @@ Real largest_eigenvalue(const std::vector<Motion>& rows, Real least) {
   return value;
 }
 
-// Inverse masses of a body on its corners [1/kg]: for forces along a plane's normal, and for friction along
-// the plane.
+// Inverse effective masses of a body on its vertices [1/kg]: for forces along a plane's normal, and for
+// tangential friction.
 struct InverseMasses {
   Real pushed = 0, rubbed = 0;
 };
@@ -110,9 +110,9 @@ void build_mesh_corners(Model& model) {
     }
 }
 
-// As far as contacts may overlap at t = 0, unless the deck says otherwise.
+// Limit: the overlap that contacts may have at t = 0 by default.
 const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& shape) {
-  constexpr Real kMostOverlap = 0.05;  // over the effective radius
+  constexpr Real kMostOverlap = 0.05;  // relative to the effective radius
   const HullCorners* const hull = corners_of(model, shape);
   if (hull == nullptr) return nullptr;
   const auto is_across = [&](const Wall& wall) {

@@ -114,7 +114,7 @@ void ScalarFunction::find_monotone() {
   }
 }
 
-// 0 where the segments beside the point differ in sign, or one of them is level.
+// 0 where the segments on either side differ in the sign of their slopes, or one of them is constant.
 Real ScalarFunction::monotone_rate(std::size_t point, Real parabola) const {
   constexpr Real kSteepest = 1.25;
   const std::size_t last = function_.times.size() - 2;
@@ -124,10 +124,10 @@ Real ScalarFunction::monotone_rate(std::size_t point, Real parabola) const {
   return 0;
 }
 
-// With r = rate: as the left end of a segment that rises, -4 r/d <= m <= (10 s - 8 r)/d; as its right end the
-// same with the other sign; on a segment that falls, both with the other sign.
+// With r = rate: as the left end of a rising segment, -4 r/d <= m <= (10 s - 8 r)/d; as its right end with
+// the opposite sign; on a falling segment, both with the opposite sign.
 Real ScalarFunction::monotone_bend(std::size_t point, Real parabola) const {
-  Real low = -kInfinity, high = -low;  // 0 lies between them but for round-off
+  Real low = -kInfinity, high = -low;  // 0 lies between the limits except for round-off
   for (std::size_t segment = point == 0 ? 0 : point - 1; segment < std::min(point + 1, rates_.size() - 1);
        ++segment) {
     const Real length = function_.times[segment + 1] - function_.times[segment], s = slope(segment);
@@ -150,7 +150,7 @@ TimeValue ScalarFunction::segment_value(std::size_t i, Real t) const {
   return spline_function({times[i], times[i + 1], values[i], values[i + 1], bends[i], bends[i + 1]}, t);
 }
 
-// Of tables: the same points, rates and second derivatives there, of all pieces that begin before t.
+// For tables: points, rates and second derivatives are equal in all segments that begin before t.
 bool ScalarFunction::same_until(const ScalarFunction& other, Real t) const {
   const TimeFunction &a = function_, &b = other.function_;
   if (a.kind != b.kind) return false;

@@ -6,8 +6,8 @@ namespace {
 
 constexpr Real kFar = kInfinity;
 
-// distance(boundary, length): of a side with this boundary from where the deck has it, outwards [m]; length:
-// of the space along its axis [m].
+// distance(boundary, length): outward displacement of a side with this boundary from its position in the deck
+// [m]; length: of the domain along its axis [m].
 template <class Distance>
 Box box_of(const Space& space, const Distance& distance) {
   Box box{{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};

@@ -12,7 +12,7 @@ namespace scree {
 
 namespace {
 
-// c: the centre in the frame of the mesh.
+// c: the sphere's centre in the frame of the mesh.
 Real overlap_at(const MeshView& mesh, Vec3 c, Real radius) {
   const MeshBox& around = mesh.boxes[mesh.level_start[mesh.levels - 1]];
   if (!(squared_distance(around, c) < radius * radius)) return 0;
@@ -26,7 +26,8 @@ Real overlap_at(const MeshView& mesh, Vec3 c, Real radius) {
   return is_inside(mesh, c) ? radius + distance : radius - distance;
 }
 
-// What of `periods` a mesh with this box and these axes (rows) is as long as.
+// The components of `periods` that equal the extent of a mesh with this box and these axes (rows); 0
+// otherwise.
 Vec3 spanned_by(const MeshBox& box, const Mat3& axes, Vec3 periods) {
   const Vec3 size = box.max - box.min;
   const auto along = [&](Real x, Real y, Real z, Real period) {
@@ -36,7 +37,7 @@ Vec3 spanned_by(const MeshBox& box, const Mat3& axes, Vec3 periods) {
           along(axes.x.z, axes.y.z, axes.z.z, periods.z)};
 }
 
-// The image of x that is the nearest to `middle`.
+// The image of x that is nearest to `middle`.
 Real beside(Real middle, Real x, Real period) {
   return period > 0 ? x - std::floor((x - middle) / period + Real(0.5)) * period : x;
 }

@@ -16,20 +16,20 @@ namespace scree {
 
 namespace {
 
-// The velocity of a rigid thing at x: velocity + spin x (x - point).
+// The velocity field of a rigid object: velocity + spin x (x - point).
 struct Twist {
   Vec3 point, velocity, spin;  // [m], [m/s], [rad/s]
 
   Vec3 at(Vec3 x) const { return velocity + cross(spin, x - point); }
-  // The twist in a frame that is turned by `turn` and whose origin is at the position `origin` here.
+  // The twist in a frame with the rotation `turn` and its origin at `origin` in the present frame.
   Twist seen_from(const Quaternion& turn, Vec3 origin) const {
     const Quaternion back = conjugate(turn);
     return {turned(back, point - origin), turned(back, velocity), turned(back, spin)};
   }
 };
 
-// Times between 0 and `end` [s] at which a function may be fastest: its ends, the middle of a step, the first
-// crest of a sine's rate, and eight times of each piece of a table.
+// Times from 0 to `end` [s] at which a function may have its largest rate: its ends, the middle of a step,
+// the first maximum of a sine's rate, and eight times in each segment of a table.
 std::vector<Real> telling_times(const TimeFunction& function, Real end) {
   std::vector<Real> times{0, end};
   if (function.kind == TimeFunctionKind::step) times.push_back((function.start + function.end) / 2);
@@ -45,7 +45,7 @@ std::vector<Real> telling_times(const TimeFunction& function, Real end) {
   return times;
 }
 
-// The time at which the rate is largest either way [s].
+// The time of the largest absolute rate [s].
 Real fastest_time(const TimeFunction& function, Real end) {
   const ScalarFunction value(function, "motion", end);
   const std::vector<Real> times = telling_times(function, end);
@@ -67,7 +67,7 @@ Real fastest_rate(const TimeFunction& function, Real end) {
 
 namespace {
 
-// Unit normals of the faces of an edge.
+// Unit normals of the faces at an edge.
 std::vector<Vec3> face_normals(const SurfaceMesh& mesh, const MeshFeature& edge) {
   std::vector<Vec3> normals;
   for (Index k = edge.first_test; k < edge.first_test + edge.tests; ++k) {
@@ -77,10 +77,11 @@ std::vector<Vec3> face_normals(const SurfaceMesh& mesh, const MeshFeature& edge)
   return normals;
 }
 
-// The most that a velocity v, or -v, has along a normal of an edge: any direction between those of its two
-// faces, a1 n1 + a2 n2 with a1, a2 >= 0, and of an edge of one face or of many any across it.
+// The largest component of v or -v along a normal of an edge: any direction between the normals of its two
+// faces, a1 n1 + a2 n2 with a1, a2 >= 0; at an edge of one face, or of many, any direction perpendicular to
+// it.
 Real along_normals_of(const SurfaceMesh& mesh, const MeshFeature& edge, Vec3 v) {
-  constexpr Real kSmooth = 1 - 1e-6;  // cosine, above which two faces are one
+  constexpr Real kSmooth = 1 - 1e-6;  // cosine above which two faces are taken as one
   const auto vertex = [&](Index k) { return mesh.vertices[static_cast<std::size_t>(k)]; };
   const Vec3 way = vertex(edge.b) - vertex(edge.a), along = (1 / norm(way)) * way;
   const Real beside = norm(v - dot(v, along) * along);
@@ -106,7 +107,7 @@ Real fastest_along_normals(const SurfaceMesh& mesh, const Twist& twist) {
   return most;
 }
 
-// Points at which a plane cuts the edges of the space's box.
+// Points at which a plane intersects the edges of the domain's box.
 std::vector<Vec3> corners_in_space(const Space& space, Vec3 point, Vec3 normal) {
   const auto corner = [&](unsigned k) {
     return Vec3{k & 1u ? space.max.x : space.min.x, k & 2u ? space.max.y : space.min.y,
@@ -123,7 +124,7 @@ std::vector<Vec3> corners_in_space(const Space& space, Vec3 point, Vec3 normal) 
   return cuts;
 }
 
-// A wall as it is at one instant: where its origin is, how it is turned, and how it moves.
+// Pose and velocity of a wall at one time.
 struct PlacedWall {
   Quaternion turn;
   Twist twist;
@@ -161,8 +162,8 @@ Real wall_speed(const Model& model, const Wall& wall, Real t) {
   return most;
 }
 
-// One motion of a mesh is fastest where its rate is. Several are evaluated where each of them is, and
-// between, and so is a plane: what the space has of it changes as it turns.
+// A single motion of a mesh is fastest at its largest rate. Several motions are evaluated at the largest rate
+// of each and in between. So is a plane, whose part in the domain changes as it rotates.
 Real wall_speed(const Model& model, const Wall& wall) {
   constexpr int kBetween = 32;
   const Real end = model.time.end;
@@ -175,7 +176,7 @@ Real wall_speed(const Model& model, const Wall& wall) {
   return most;
 }
 
-// A body's frame and its centre of mass at t = 0.
+// Transforms a direction from the global frame to the body's frame at t = 0, and back.
 Vec3 in_frame_of(const Model& model, int body, Vec3 direction) {
   if (body == kGround) return direction;
   const Body& of = model.bodies[static_cast<std::size_t>(body)];
@@ -189,7 +190,7 @@ Vec3 global(const Model& model, int body, Vec3 direction) {
                                       : Rotation(of.angle).turn(direction);
 }
 
-// The global axis, at t = 0, about or along which a joint's coordinate moves; unit.
+// The axis along or about which a joint's coordinate moves, in the global frame at t = 0; unit vector.
 Vec3 axis_of(const Model& model, const Joint& joint, JointCoordinate coordinate) {
   const bool spatial = std::ranges::any_of(joint.body, [&](int body) {
     return body != kGround && model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
@@ -212,8 +213,7 @@ Vec3 axis_of(const Model& model, const Joint& joint, JointCoordinate coordinate)
   return coordinate == JointCoordinate::angle ? Vec3{0, 0, 1} : global(model, joint.body[0], joint.axis);
 }
 
-// The rate at which a motor drives a joint without a load, at its fastest [rad/s, m/s]; 0: it prescribes
-// none.
+// The largest rate at which a motor drives a joint without load [rad/s, m/s]; 0: it prescribes none.
 Real fastest_rate(const Motor& motor, Real end) {
   switch (motor.kind) {
     case MotorKind::speed:
@@ -228,7 +228,7 @@ Real fastest_rate(const Motor& motor, Real end) {
   return 0;
 }
 
-// Calls use(joint, coordinate, rate) for all that drive a joint at a rate [rad/s, m/s].
+// Calls use(joint, coordinate, rate) for all elements that drive a joint at a rate [rad/s, m/s].
 template <class Use>
 void for_prescribed(const Model& model, const Use& use) {
   const Real end = model.time.end;
@@ -262,7 +262,7 @@ void take_body(const Model& model, int number, const Twist& twist, std::vector<R
   }
 }
 
-// The body, and those that fixed joints hold to it.
+// The body and those that fixed joints connect to it.
 std::vector<int> fixed_together(const Model& model, int body) {
   std::vector<int> group{body};
   for (std::size_t k = 0; k < group.size(); ++k)

@@ -50,7 +50,7 @@ void build_ramp(const DeckTable& table, TimeFunction& function) {
                "needs end, the time from which on the slope is rate: between the two it grows from 0");
 }
 
-// otherwise: how a table is read that does not say it.
+// otherwise: the default interpolation of a table.
 TimeFunction build_function(const DeckTable& table, Interpolation otherwise) {
   TimeFunction function;
   function.kind = table.choice<TimeFunctionKind>("kind");

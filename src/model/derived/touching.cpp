@@ -29,7 +29,7 @@ TouchRule::TouchRule(const Model& model) : apart_(model.bodies.size()) {
       apart_[static_cast<std::size_t>(b)].push_back(a);
     }
   }
-  std::int64_t bodies = 0, apart = 0;  // with shapes, and pairs of them; each pair counted from both sides
+  std::int64_t bodies = 0, apart = 0;  // bodies with shapes; pairs of them, each counted from both sides
   for (std::size_t b = 0; b < apart_.size(); ++b) {
     std::sort(apart_[b].begin(), apart_[b].end());
     if (!shaped(b)) continue;
