@@ -79,7 +79,7 @@ const TableKeys& time_keys() {
            .above(0)
            .left_out("velocity-verlet: chosen from the deck's contacts so that trial impacts rebound within "
                      "2 % and the step is stable (input/choosing.md); hht, adaptive: the smaller of 1/20 of "
-                     "the shortest contact time and end / 1000; hht, fixed: must be given")
+                     "the minimum contact time and end / 1000; hht, fixed: must be given")
            .about("Step size; the initial one with control = \"adaptive\". A chosen step is printed by scree "
                   "check and in the log, and is part of the resolved deck."),
        choice<StepControl>("control")
