@@ -377,7 +377,7 @@ class RunTest(CommandLineTest):
                  (row.format(6000000, 2e-7), r'body "row\.[0-9]+" starts at \(0\.35.+, outside the space'),
                  (group.format(1000000000, 1e-6), "not enough memory: building the particles takes about 280 GB"),
                  (group.format(1000000, 0.01), r"particles\.many\.count = 1000000: the particles are 276 of the area "
-                  r"of their box \(min, max\), and random places fill at most about 0\.5[0-9]* of it in 10000 "
+                  r"of their box \(min, max\), and random insertion fills at most about 0\.5[0-9]* of it in 10000 "
                   r"tries each"))
         for text, message in cases:
             with self.subTest(message=message):

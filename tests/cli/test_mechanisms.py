@@ -269,10 +269,10 @@ class DeadPointTest(CommandLineTest):
         motion = '{ kind = "step", end_value = 3.5, start = 0.1, end = 0.11 }'
         deck = 'velocities = "consistent"\n' + CRANK + DRIVEN.format("drive", motion)
         path = self.write("turns.toml", deck)
-        warned = "driver 'drive' turns its joint by 6.56 rad in a step of 0.01 s at its fastest"
+        warned = "driver 'drive' rotates its joint by 6.56 rad in a step of 0.01 s at its fastest"
         self.assertIn(warned, self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",
                                           "time.step=0.01").stderr)
-        self.assertNotIn("turns its joint", self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",
+        self.assertNotIn("rotates its joint", self.expect(DONE, "check", path, "--set", "time.control=fixed", "--set",
                                                          "time.step=1e-4").stderr)
 
     def test_one_that_comes_to_rest_there(self):
@@ -330,7 +330,7 @@ class StartTest(CommandLineTest):
                                                                                      "[0.0, 0.0, 0.0]")
         deck = "".join(line for line in deck.splitlines(True) if "velocity" not in line).partition("[[joints]]")[0]
         for text in self.both(DONE, deck):
-            self.assertIn("bodies.crank.rotation_angle = 45.0: 45 rad are 7.16 turns; angles are in radians: 45 "
+            self.assertIn("bodies.crank.rotation_angle = 45.0: 45 rad are 7.16 revolutions; angles are in radians: 45 "
                           "degrees are 0.785398", text)
         for text in self.both(DONE, deck.replace("45.0", "6.28")):
             self.assertEqual(text, "")

@@ -140,9 +140,9 @@ class BadDeckTest(MeshTest):
         cases = [
             (['output.surface_fields=["slidng_work"]'], 'there is no field "slidng_work" of surfaces; did you mean'),
             (['output.surface_fields=["shear","shear"]'], '"shear" is repeated'),
-            ([works, "walls=[]", "meshes=[]"], "only triangles have works and wear, and no wall or body has a mesh"),
+            ([works, "walls=[]", "meshes=[]"], "only triangles have dissipation and wear, and no wall or body has a mesh"),
             ([works], "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0"),
-            (["contact.pairs.0.wear_coefficient=1e-12"], "wear_coefficient=1e-12: needs friction above 0 beside it"),
+            (["contact.pairs.0.wear_coefficient=1e-12"], "wear_coefficient=1e-12: needs friction above 0"),
             (["contact.pairs.0.wear_coefficient=-1e-12"], "wear_coefficient must be a number from 0 to 1"),
             (["walls.rock.mesh=rocks"], "no mesh named \"rocks\""),
             (["walls.rock.normal=[0,0,1]"], "not used together with mesh"),
@@ -237,7 +237,7 @@ class ReportTest(MeshTest):
                 (["walls=[]"], 'mesh "rock": no wall, body or solid uses it'),
                 (["meshes.rock.refine=0.005"], "of them, and each costs time: a larger refine"),
                 (['meshes=[{name="rock",kind="pipe",radius=0.1,inner_radius=0.09,length=0.1}]'],
-                 "more than half as wide as the narrowest of its hollows, of radius about 0.0894 m"),
+                 "more than half as wide as its narrowest concave part, of radius about 0.0894 m"),
                 (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=1}]'], "beside the smooth surface")]:
             with self.subTest(settings=settings):
                 self.assertIn(text, self.report(*settings)[1])

@@ -58,14 +58,14 @@ MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real d
   const MeshInertia kind = table.choice<MeshInertia>("inertia");
   if (sheet && kind == MeshInertia::exact)
     table.fail("mesh",
-               "is a sheet, which encloses no volume; inertia = \"convex\" or \"shell\", or give the body's "
-               "mass and inertia instead");
+               "is an open surface, which encloses no volume; inertia = \"convex\" or \"shell\", or give the "
+               "body's mass and inertia instead");
   if (!crossing.empty() && kind == MeshInertia::exact)
-    table.fail("mesh",
-               fmt::format("{}, and the volume that two of them share would count twice: unite them in "
-                           "the program that the file comes from, or leave solids out and give the "
-                           "body's mass and inertia",
-                           crossing));
+    table.fail(
+        "mesh",
+        fmt::format("{}, and the volume that two of them share would count twice: unite the shells in the "
+                    "program that wrote the file, or leave solids out and give the body's mass and inertia",
+                    crossing));
   if ((kind == MeshInertia::shell) != table.has("thickness"))
     table.fail("thickness", kind == MeshInertia::shell ? "missing; inertia is \"shell\""
                                                        : "not used without inertia = \"shell\"");

@@ -97,11 +97,9 @@ void check_start_turn(const DeckTable& table, const Model& model, const Bushing&
     frame[side] = quaternion_of(transposed(global_frame(model, bushing.body[side], bushing.marker[side])));
   const Real turn = norm(rotation_vector(conjugate(frame[0]) * frame[1]));
   if (bushing.resists_turning() && turn > kMostBushingTurn)
-    table.fail(
-        "markers",
-        fmt::format("their frames are turned by {:.6g} rad against each other at t = 0; a bushing holds "
-                    "up to {:g} rad",
-                    turn, kMostBushingTurn));
+    table.fail("markers", fmt::format("their frames are rotated by {:.6g} rad relative to each other at t = "
+                                      "0; a bushing allows up to {:g} rad",
+                                      turn, kMostBushingTurn));
 }
 
 Bushing build_bushing(const DeckTable& table, const Model& model, const Connection& connection) {

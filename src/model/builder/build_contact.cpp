@@ -125,7 +125,7 @@ KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model
   for (std::size_t side = 0; side < 2 && !materials.empty(); ++side)
     moduli[side] = plane_strain_modulus(materials[static_cast<std::size_t>(material[side])]);
   if (!table.has("largest_overlap") && table.has("impact_speed"))
-    table.fail("impact_speed", "needs largest_overlap beside it");
+    table.fail("impact_speed", "needs largest_overlap");
   if (table.has("stiffness") || table.has("largest_overlap"))
     return stiffness_law(table, model, material, moduli[0] > 0 && moduli[1] > 0);
   const KelvinVoigt hertz = hertz_law(table, model, moduli, material);
@@ -141,10 +141,8 @@ Real shear_modulus(const DeckTable& a, const DeckTable& b) {
 Friction build_friction(const DeckTable& deck, const DeckTable& table, const KelvinVoigt& law,
                         const int (&material)[2]) {
   if (!table.has("friction")) {
-    if (table.has("tangential_stiffness"))
-      table.fail("tangential_stiffness", "needs friction beside it: without, contacts do not rub");
-    if (table.real("tangential_damping_ratio") > 0)
-      table.fail("tangential_damping_ratio", "needs friction beside it: without, contacts do not rub");
+    if (table.has("tangential_stiffness")) table.fail("tangential_stiffness", "needs friction");
+    if (table.real("tangential_damping_ratio") > 0) table.fail("tangential_damping_ratio", "needs friction");
     return {};
   }
   Friction friction{.friction = table.real("friction"),
@@ -174,12 +172,11 @@ RollingResistance build_rolling(const DeckTable& table, const Friction& friction
   const bool springs = is_positive(table, "rolling_friction"),
              acts = springs || is_positive(table, "rolling_damping");
   for (const char* key : kRollingKeys)
-    if (is_positive(table, key) && !table.has("friction"))
-      table.fail(key, "needs friction beside it, 0 where contacts do not rub");
+    if (is_positive(table, key) && !table.has("friction")) table.fail(key, "needs friction; it may be 0");
   if (table.has("rolling_stiffness") && !table.has("rolling_friction"))
-    table.fail("rolling_stiffness", "needs rolling_friction beside it");
+    table.fail("rolling_stiffness", "needs rolling_friction");
   if (table.real("rolling_damping_ratio") > 0 && !table.has("rolling_friction"))
-    table.fail("rolling_damping_ratio", "needs rolling_friction beside it");
+    table.fail("rolling_damping_ratio", "needs rolling_friction");
   if (dimension == 2 && is_positive(table, "twisting_friction"))
     table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
   RollingResistance rolling;
@@ -252,7 +249,7 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
     law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
     law.neck = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
   } else if (table.has("adhesion") && !table.has(key)) {
-    table.fail("adhesion", "needs work_of_adhesion or surface_energy beside it");
+    table.fail("adhesion", "needs work_of_adhesion or surface_energy");
   }
   if (is_positive(table, "attraction")) {
     if (law.effective_modulus == 0 && law.exponent != 1)
@@ -261,7 +258,7 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
     law.attraction = table.real("attraction");
   }
   if (table.has("attraction_range")) {
-    if (!table.has("attraction")) table.fail("attraction_range", "needs attraction beside it");
+    if (!table.has("attraction")) table.fail("attraction_range", "needs attraction");
     law.range = law.attraction > 0 ? table.real("attraction_range") : 0;
   }
   // The damping force of adhesive laws is not limited.

@@ -189,7 +189,7 @@ bool has_common_point(JointKind kind) {
 // Markers may start rotated and displaced: the initial state defines the screw's offset.
 void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
   joint.lead = table.real("lead");
-  if (joint.lead == 0) table.fail("lead", "must not be 0; a revolute joint has no advance");
+  if (joint.lead == 0) table.fail("lead", "must not be 0; use a revolute joint instead");
   Mat3 frame[2];
   for (int side = 0; side < 2; ++side)
     frame[side] = global_frame(model, joint.body[side], joint.marker[side]);

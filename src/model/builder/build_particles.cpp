@@ -103,7 +103,7 @@ std::int64_t Group::lattice_count() const {
   const std::int64_t places = size[0] * size[1] * size[2];
   const std::int64_t count = table_.has("count") ? table_.integer("count") : places;
   if (count > places)
-    table_.fail("count", fmt::format("must be at most {}, the places of the lattice", places));
+    table_.fail("count", fmt::format("must be at most {}, the number of lattice sites", places));
   return count;
 }
 
@@ -226,8 +226,8 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
   const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, random_);
   if (places.size() < radius.size())
     table_.fail("count",
-                fmt::format("only {} particles found a place in {} tries each in the {}; a larger {}, fewer "
-                            "or smaller particles are needed",
+                fmt::format("only {} particles found a position in {} tries each in the {}; a larger {}, "
+                            "fewer or smaller particles are needed",
                             places.size(), box.tries, region.name(), region.is_box() ? "box" : "region"));
   position_.assign(places.begin() + part_.first, places.begin() + part_.last);
 }

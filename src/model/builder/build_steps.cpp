@@ -75,8 +75,10 @@ IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
   const std::int64_t touching = touching_particles(model);
   if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
   if (model.rolls())
-    return {ParticleIntegrator::velocity_verlet, "contacts resist rolling or twisting, which is explicit"};
-  if (model.attracts()) return {ParticleIntegrator::velocity_verlet, "contacts attract, which is explicit"};
+    return {ParticleIntegrator::velocity_verlet,
+            "contacts have rolling or twisting resistance, which only explicit steps support"};
+  if (model.attracts())
+    return {ParticleIntegrator::velocity_verlet, "contacts have adhesion, which only explicit steps support"};
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
@@ -149,7 +151,7 @@ void check_integrator(const DeckTable& deck, const Model& model) {
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
     for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
       if (pair.has(key) && pair.real(key) > 0)
-        pair.fail(key, fmt::format("{}: implicit steps have friction alone", needs));
+        pair.fail(key, fmt::format("{}: implicit steps support only friction", needs));
     for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
       if (pair.has(key) && pair.real(key) > 0) pair.fail(key, needs);
   }

@@ -12,7 +12,8 @@ namespace scree {
 void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact) {
   if (!pair.has("wear_coefficient") || pair.real("wear_coefficient") == 0) return;
   if (friction == 0)
-    pair.fail("wear_coefficient", "needs friction above 0 beside it: what slides is known from its work");
+    pair.fail("wear_coefficient",
+              "needs friction above 0: the sliding distance is computed from its dissipation");
   contact.wear.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side)
     contact.wear[static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side])] =
@@ -33,7 +34,7 @@ void build_surface_fields(const DeckTable& output, Model& model) {
   const bool any = std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.mesh >= 0; }) ||
                    std::ranges::any_of(model.bodies, [](const Body& body) { return !body.meshes.empty(); });
   if (model.output.adds_up_works() && !any)
-    output.fail(key, "only triangles have works and wear, and no wall or body has a mesh");
+    output.fail(key, "only triangles have dissipation and wear, and no wall or body has a mesh");
   if (model.output.shows(SurfaceField::wear_depth) && model.contact.wear.empty())
     output.fail(key, "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0");
 }

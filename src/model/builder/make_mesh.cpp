@@ -95,7 +95,7 @@ const std::vector<Vec3>& line_points(const DeckTable& table) {
   if (closed && !(area > 0))
     table.fail(
         "points",
-        fmt::format("enclose an area of {:.4g} m^2; they must run counterclockwise around what is solid",
+        fmt::format("enclose an area of {:.4g} m^2; they must be in counterclockwise order around the solid",
                     area));
   return points;
 }

@@ -37,7 +37,7 @@ class Search {
         key.unit == "rad" || (key.unit == "rad or m" && std::floor(value) == value && is_of_angle(table));
     if (!meant) return;
     findings_.push_back(fmt::format(
-        "{}: {}.{} = {}: {:g} rad are {:.3g} turns; angles are in radians: {:g} degrees are {:.6g}",
+        "{}: {}.{} = {}: {:g} rad are {:.3g} revolutions; angles are in radians: {:g} degrees are {:.6g}",
         given.place, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
         value * kTurn / 360));
   }

@@ -39,9 +39,8 @@ void warn_of_overshoot(const DeckTable& table, const TimeFunction& function, Log
   const std::string share =
       range > 0 ? fmt::format(", {:.2g} % of the table's range", 100 * beyond / range) : "";
   log.warning(
-      fmt::format("{}: between {} s and {} s the {} spline goes past the values there, to {:.4g} at t = "
-                  "{:.4g} s, by {:.3g}{}; "
-                  "interpolation = \"monotone\" stays between them",
+      fmt::format("{}: between {} s and {} s the {} spline overshoots the values there, to {:.4g} at t = "
+                  "{:.4g} s, by {:.3g}{}; interpolation = \"monotone\" stays between them",
                   table.label(), function.times[farthest.segment], function.times[farthest.segment + 1],
                   word_of(function.interpolation), farthest.value, farthest.t, beyond, share));
 }

@@ -46,7 +46,7 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
     const Real phase = corner_phase(held), frequency = fastest_on_corners(model, held).frequency;
     if (frequency > 0)
       bound(step, phase / frequency,
-            fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
+            fmt::format("{:g} rad of the oscillation of a body on the vertices of its mesh", phase));
   }
   // A loaded body takes the steps of the particles.
   if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
@@ -63,7 +63,7 @@ void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& 
         fmt::format("{:.2g} of the stability limit in dense contacts of {}", kStableShare, name));
   if (has_neck(model, limit))
     bound(step, substeps * kNeckShare * limit.contact_time,
-          fmt::format("{:g} of the shortest contact of {}, whose necks let go within a small part of it",
+          fmt::format("{:g} of the shortest contact of {}, which breaks within a small part of it",
                       kNeckShare, name));
   // Trials are expensive: where the step is short enough, the longest good step need not be found.
   if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kGoodRebound) return;

@@ -105,7 +105,7 @@ std::string too_narrow(const Model& model, const ModelMesh& mesh) {
   const Real curve = mesh.surface->curvature.concave_radius, radius = model.particles.totals.largest_radius;
   if (!(radius > kMostOfCurve * curve)) return "";
   return fmt::format(
-      "mesh \"{}\": a particle of radius {:.3g} m is more than half as wide as the narrowest of its hollows, "
+      "mesh \"{}\": a particle of radius {:.3g} m is more than half as wide as its narrowest concave part, "
       "of radius about {:.3g} m: contacts on a smooth surface that point in about the same direction count "
       "once; a smaller feature_angle, or smaller particles",
       mesh.name, radius, curve);
@@ -232,11 +232,9 @@ std::string sharp_folds(const Model& model, std::size_t number, const std::set<i
   const KelvinVoigt& law = worst.limit.law;
   const bool has_moduli = model.contact.law(one, other).effective_modulus > 0;
   return fmt::format(
-      "mesh \"{}\": its faces turn inwards by {:.3g} degrees at ({:.4g}, {:.4g}, {:.4g}) in its own frame, "
-      "and "
-      "contacts \"{}\" on \"{}\" overlap by up to {:.3g} of the radius, {:.3g} m: past {:.2g} a contact with "
-      "one side "
-      "of such a fold ends at once, and impacts there lose or gain energy; {} would do",
+      "mesh \"{}\": it has a concave edge of {:.3g} degrees at ({:.4g}, {:.4g}, {:.4g}) in its own frame, "
+      "and contacts \"{}\" on \"{}\" overlap by up to {:.3g} of the radius, {:.3g} m: past {:.2g} a contact "
+      "with one side of such a fold ends at once, and impacts there lose or gain energy; {} would do",
       mesh.name, fold.angle * 180 / std::numbers::pi_v<Real>, fold.position.x, fold.position.y,
       fold.position.z, names[static_cast<std::size_t>(one)], names[static_cast<std::size_t>(other)],
       worst.overlap / worst.radius, worst.radius, share,
@@ -264,9 +262,8 @@ std::string runs_across(const Model& model, const Wall& wall) {
   };
   if (!std::ranges::all_of(parts, is_across)) return "";
   return fmt::format(
-      "wall \"{}\": its surface_velocity is across every face of its mesh, and takes nothing along: a "
-      "surface "
-      "runs along itself",
+      "wall \"{}\": its surface_velocity is perpendicular to every face of its mesh and has no effect: only "
+      "its tangential part counts",
       wall.name);
 }
 

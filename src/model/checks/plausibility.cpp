@@ -221,10 +221,8 @@ std::string wide_attraction(const Model& model) {
   const Real smallest = radius_range(model).smallest, reach = model.contact.reach;
   if (smallest == 0 || reach <= smallest) return "";
   return fmt::format(
-      "surfaces attract each other up to {:.3g} m beyond touch, more than the smallest radius, {:.3g} m: "
-      "laws "
-      "of attraction are of surfaces nearly in touch; a shorter attraction_range, less work of adhesion, or "
-      "a "
+      "adhesion acts up to {:.3g} m beyond contact, more than the smallest radius, {:.3g} m: adhesion laws "
+      "are for surfaces nearly in contact; use a shorter attraction_range, less work of adhesion, or a "
       "larger modulus",
       reach, smallest);
 }
@@ -291,9 +289,8 @@ std::string odd_mass(const DeckTable& deck, const Model& model) {
 std::string belt_without_friction(const Model& model) {
   const auto belt = std::ranges::find_if(model.walls, &Wall::runs);
   if (belt == model.walls.end() || !model.contact.friction.empty()) return "";
-  return fmt::format(
-      "wall \"{}\": its surface_velocity takes nothing along: no pair in contact.pairs has friction",
-      belt->name);
+  return fmt::format("wall \"{}\": its surface_velocity has no effect: no pair in contact.pairs has friction",
+                     belt->name);
 }
 
 std::string many_steps(const Model& model) {

@@ -117,7 +117,7 @@ void warn_where_unnoticed(const Model& model, Real step, Real radii, const std::
   if (radii <= 1) return;
   const bool is_fixed = model.time.control == StepControl::fixed;
   log.warning(fmt::format(
-      "{}: in a step of {}{:.4g} s{} {} goes {:.3g} times {}, and may pass others unnoticed{}",
+      "{}: in a step of {}{:.4g} s{} {} moves by {:.3g} times {}, and may pass others unnoticed{}",
       is_fixed ? "time.step" : "time.max_step", model.integrator.substeps > 1 ? "step / substeps = " : "",
       step, is_fixed ? "" : ", the longest allowed,", what, radii, of_what, slower_than_radius(model)));
 }
@@ -142,7 +142,7 @@ void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
     const CornerOscillation on = fastest_on_corners(model, held);
     const Real phase = on.frequency * model.time.step;
     const std::string finding = fmt::format(
-        "a body on a plane, with all corners of a face of its mesh, oscillates with {:.4g} rad/s; with "
+        "a body on a plane, with all vertices of a face of its mesh, oscillates with {:.4g} rad/s; with "
         "velocity-verlet particles the bodies' step must be at most {:.3g} s",
         on.frequency, most / on.frequency);
     if (phase > most && on.is_exact && !held) deck.table("time").fail("step", finding + left_out_step(model));
@@ -163,9 +163,8 @@ void check_driven_angles(const Model& model, Log& log) {
     const Real turn = fastest_rate(driver.motion, model.time.end) * model.time.step;
     if (turn > kMost)
       log.warning(fmt::format(
-          "{}: driver '{}' turns its joint by {:.3g} rad in a step of {:.4g} s at its fastest, "
-          "and may bring the mechanism past a dead point unnoticed; the step should be at most "
-          "{:.2g} s",
+          "{}: driver '{}' rotates its joint by {:.3g} rad in a step of {:.4g} s at its fastest, and may "
+          "bring the mechanism past a dead point unnoticed; the step should be at most {:.2g} s",
           driver.deck_label, driver.name, turn, model.time.step, 0.1 * kMost * model.time.step / turn));
   }
 }

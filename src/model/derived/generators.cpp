@@ -177,7 +177,7 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, con
       const Real middle = (most + high) / 2;
       (expected_failures(box, radius, middle / sums.fraction) > kCertain ? high : most) = middle;
     }
-    bound = "random places fill at most about";
+    bound = "random insertion fills at most about";
   }
   if (sums.fraction <= most) return "";
   return fmt::format(

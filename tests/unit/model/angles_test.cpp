@@ -51,7 +51,7 @@ TEST_CASE("constant angles of more than a revolution are warned of") {
                                     std::string("bodies.arm.rotation_angle=") + angle};
   };
   CHECK(found(turned("45.0"),
-              "bodies.arm.rotation_angle = 45.0: 45 rad are 7.16 turns; angles are in radians: 45 "
+              "bodies.arm.rotation_angle = 45.0: 45 rad are 7.16 revolutions; angles are in radians: 45 "
               "degrees are 0.785398") == 1);
   CHECK(found(turned("-90")) == 1);
   CHECK(found(turned("6.283")) == 0);

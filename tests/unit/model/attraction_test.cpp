@@ -80,7 +80,7 @@ TEST_CASE("an attraction that reaches farther than a radius is warned of") {
     const std::vector<std::string> texts =
         model_warnings(linear("attraction = 1e-3\nattraction_range = " + range + "\n"));
     return std::count_if(texts.begin(), texts.end(), [](const std::string& text) {
-      return contains(text, "attract each other up to 0.021 m beyond touch, more than the smallest radius");
+      return contains(text, "adhesion acts up to 0.021 m beyond contact, more than the smallest radius");
     });
   };
   CHECK(warned("0.021") == 1);
@@ -97,8 +97,8 @@ TEST_CASE("incompatible keys beside attraction are refused with a remedy") {
                    "contact.pairs.0.adhesion = \"" + form + "\": needs work_of_adhesion or surface_energy"));
   CHECK(contains(model_error(linear("exponent = 1.5\nattraction = 0.1\n")),
                  "attraction = 0.1: needs a pair with exponent = 1, or Hertz's law"));
-  CHECK(contains(model_error(linear("attraction_range = 0.1\n")),
-                 "attraction_range = 0.1: needs attraction beside it"));
+  CHECK(
+      contains(model_error(linear("attraction_range = 0.1\n")), "attraction_range = 0.1: needs attraction"));
   CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nattraction = 0.1\n")),
                  "attraction = 0.1: a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\""));
   for (const std::string keys :

@@ -121,10 +121,9 @@ TEST_CASE("markers of a bushing that differ by more than its valid rotation are 
                angle) +
            stiffness;
   };
-  CHECK(
-      contains(input_error([&] { model_of(deck(2.7, kSoft)); }),
-               "bushings.b.markers = [\"frame\", \"foot\"]: their frames are turned by 2.7 rad against each "
-               "other at t = 0; a bushing holds up to 2.6 rad"));
+  CHECK(contains(input_error([&] { model_of(deck(2.7, kSoft)); }),
+                 "bushings.b.markers = [\"frame\", \"foot\"]: their frames are rotated by 2.7 rad relative "
+                 "to each other at t = 0; a bushing allows up to 2.6 rad"));
   CHECK(model_of(deck(2.5, kSoft)).bushings.size() == 1);
   CHECK(model_of(deck(2.7, "stiffness = [1, 2, 3, 0, 0, 0]\n")).bushings.size() == 1);
 }

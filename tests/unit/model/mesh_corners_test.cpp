@@ -80,7 +80,7 @@ TEST_CASE(
   const auto overrides = [](const std::string& step) {
     return std::vector<std::string>{kExplicit, kFixed, "time.step=" + step, "contact.pairs.0.friction=0.3"};
   };
-  const std::string finding = "a body on a plane, with all corners of a face of its mesh, oscillates with";
+  const std::string finding = "a body on a plane, with all vertices of a face of its mesh, oscillates with";
   const auto warnings = [&](const std::string& text, const std::string& step) {
     return std::ranges::count_if(model_warnings(text, overrides(step)),
                                  [&](const std::string& warning) { return contains(warning, finding); });

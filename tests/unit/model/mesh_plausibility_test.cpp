@@ -118,44 +118,44 @@ TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of
     // An impact of 1 kg at 1 m/s overlaps by sqrt(1 / K).
     const Real most = 0.05 * (1 - std::cos(degrees * M_PI / 180)), enough = 1 / (most * most);
     const auto warned = [&](Real stiffness) {
-      return of("its faces turn inwards", line(degrees),
+      return of("it has a concave edge", line(degrees),
                 {fmt::format("contact.pairs.0.stiffness={}", stiffness)});
     };
     REQUIRE(warned(0.9 * enough).size() == 1);
     const std::string text = warned(0.9 * enough)[0];
-    CHECK(contains(
-        text, fmt::format("mesh \"m\": its faces turn inwards by {:.3g} degrees at (0, 0, 0)", degrees)));
+    CHECK(contains(text,
+                   fmt::format("mesh \"m\": it has a concave edge of {:.3g} degrees at (0, 0, 0)", degrees)));
     const std::string named = text.substr(text.find("a stiffness of ") + 15);
     CHECK(std::stod(named) == Approx(enough).epsilon(0.02));
     CHECK(warned(std::stod(named)).empty());
     CHECK(warned(1.01 * enough).empty());
   }
-  CHECK(of("its faces turn inwards", line(29), {"contact.pairs.0.stiffness=1e3"}).empty());
-  // They fall at most from the height of the highest start: from 0.8 m, from below.
+  CHECK(of("it has a concave edge", line(29), {"contact.pairs.0.stiffness=1e3"}).empty());
+  // They fall no farther than from where the highest starts: from 0.8 m, from below.
   const auto falls = [](Real height) {
-    return of("its faces turn inwards", line(45),
+    return of("it has a concave edge", line(45),
               {"particles.g.velocity=[0, 0]", "gravity=[0, -9.81]", "contact.pairs.0.stiffness=3e4",
                fmt::format("particles.g.positions=[[0.3, {}]]", height)})
         .size();
   };
   CHECK(falls(0.8) == 1);
   CHECK(falls(-0.3) == 0);
-  // Also by their static weight, and of bodies.
-  CHECK(of("its faces turn inwards", line(45),
+  // Also by their weight at rest, and of bodies.
+  CHECK(of("it has a concave edge", line(45),
            {"particles.g.velocity=[0, 0]", "gravity=[0, -1e-9]", "contact.pairs.0.stiffness=1e-6"})
             .size() == 1);
-  CHECK(of("its faces turn inwards", line(45),
+  CHECK(of("it has a concave edge", line(45),
            {"walls=[]", "bodies=[{name=\"b\",mass=1.0,inertia=1.0,position=[0,0],meshes=[{mesh=\"m\"}]}]",
             "contact.pairs.0.stiffness=1e3"})
             .size() == 1);
-  // A mesh that no body or wall uses.
-  CHECK(of("its faces turn inwards", line(45), {"walls=[]", "contact.pairs.0.stiffness=1e3"}).empty());
+  // A mesh that nothing has.
+  CHECK(of("it has a concave edge", line(45), {"walls=[]", "contact.pairs.0.stiffness=1e3"}).empty());
 }
 
 TEST_CASE("a surface that runs across every face takes nothing along") {
   const std::string sheet = kSpace + mesh("kind = \"rectangle\"\nsize = [1.0, 1.0]");
   const auto warned = [&](const char* velocity) {
-    return of("is across every face", sheet, {fmt::format("walls.w.surface_velocity={}", velocity)}).size();
+    return of("is perpendicular to every face", sheet, {fmt::format("walls.w.surface_velocity={}", velocity)}).size();
   };
   CHECK(warned("[0, 0, 1]") == 1);
   CHECK(warned("[0.1, 0, 1]") == 0);

@@ -58,7 +58,7 @@ TEST_CASE("unsupported laws are refused in implicit steps whatever keys beside t
   CHECK(contains(refused("friction = 0.5\nrolling_friction = 0.1\nrolling_damping = 0.0\n"), needs));
   CHECK(contains(refused("attraction = 0.0\nwork_of_adhesion = 0.5\n", true), needs));
   CHECK(contains(refused("attraction = 0.5\nwork_of_adhesion = 0.0\n", true), needs));
-  CHECK(contains(refused("rolling_friction = 0.1\n"), "needs friction beside it"));
+  CHECK(contains(refused("rolling_friction = 0.1\n"), "needs friction"));
 }
 
 TEST_CASE("of a plane the surface runs along itself") {

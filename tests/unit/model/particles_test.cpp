@@ -86,7 +86,7 @@ TEST_CASE("wrong lattices") {
   CHECK(contains(model_error(deck_2d(start + "size = [2]\norigin = [0, 0]\n")),
                  "particles.l.size = [2]: must have 2 entries"));
   CHECK(contains(model_error(deck_2d(start + "size = [2, 2]\norigin = [0, 0]\ncount = 5\n")),
-                 "particles.l.count = 5: must be at most 4, the places of the lattice"));
+                 "particles.l.count = 5: must be at most 4, the number of lattice sites"));
 }
 
 TEST_CASE("a random packing keeps clear of everything and stays in its box") {
@@ -149,7 +149,7 @@ mass = 1.0
   for (std::size_t i = 1; i < p.size(); ++i) CHECK(norm(p.position[i]) >= 0.45);
   const std::string message = model_error(text, {"particles.discs.count=260", "particles.discs.tries=100"});
   CHECK(contains(message, "--set particles.discs.count=260: only "));
-  CHECK(contains(message, "particles found a place in 100 tries each"));
+  CHECK(contains(message, "particles found a position in 100 tries each"));
 }
 
 TEST_CASE("random groups without room are refused before a position is tried") {
@@ -159,15 +159,14 @@ TEST_CASE("random groups without room are refused before a position is tried") {
                        {"particles.spheres.count=" + count, "particles.spheres.radius=" + radius,
                         "particles.spheres.tries=1000000000"});
   };
-  CHECK(contains(
-      error("200000", "0.01"),
-      "--set particles.spheres.count=200000: the particles are 0.838 of the volume of their box (min, max), "
-      "and random places fill at most about 0.38 of it in 1000000000 tries each"));
+  CHECK(contains(error("200000", "0.01"),
+                 "--set particles.spheres.count=200000: the particles are 0.838 of the volume of their box "
+                 "(min, max), and random insertion fills at most about 0.38 of it in 1000000000 tries each"));
   CHECK(contains(error("3000000", "{ kind = \"uniform\", min = 0.003, max = 0.006 }"),
-                 "random places fill at most about 0."));
+                 "random insertion fills at most about 0."));
   CHECK(contains(error("2000000", "0.02"),
-                 "the particles are 67 of the volume of their box (min, max), and random "
-                 "places fill at most about 0.38 of it"));
+                 "the particles are 67 of the volume of their box (min, max), and random insertion fills at "
+                 "most about 0.38 of it"));
   CHECK(contains(error("8", "0.3"),
                  "the particles are 0.905 of the volume of their box (min, max), and no packing "
                  "fills more than 0.74 of it; a larger box"));

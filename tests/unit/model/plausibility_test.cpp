@@ -181,7 +181,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {sheet, {"walls.w.surface_velocity=[1, 0, 0]", "contact.pairs.0.friction=0.1"}, ""},
       {sheet,
        {"walls.w.surface_velocity=[1, 0, 0]"},
-       "wall \"w\": its surface_velocity takes nothing along: no pair in contact.pairs has friction"},
+       "wall \"w\": its surface_velocity has no effect: no pair in contact.pairs has friction"},
       {sheet, {"particles=[]", kMeshOnBody}, "bodies have meshes, and the deck has nothing that these touch"},
       {sheet,
        {kMeshOnBody},
@@ -201,8 +201,8 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {sheet, {kMeshOnBody, "walls=[]"}, ""},
       {moved,
        {"walls.w.motions.0.displacement.interpolation=natural"},
-       "walls.w.motions.0.displacement: between 0.5 s and 1 s the natural spline goes past the values there, "
-       "to "},
+       "walls.w.motions.0.displacement: between 0.5 s and 1 s the natural spline overshoots the values "
+       "there, to "},
       {all,
        {"time.end=1e5", "time.control=adaptive", "time.max_step=1e-5", "time.step=1e-6"},
        "time.end / time.max_step = 1e+10 steps at least"},

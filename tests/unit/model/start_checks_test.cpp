@@ -199,7 +199,7 @@ TEST_CASE("a particle that goes farther than its radius in a step is a warning")
   CHECK(step_warnings({fast, "time.step=1.9e-3"}).empty());
   CHECK(step_warnings({fast, verlet, "integrator.substeps=2", "time.step=3.9e-3"}).empty());
   const std::string rest =
-      "0.0025 s a particle goes 1.25 times its radius with its speed at t = 0, and may pass others "
+      "0.0025 s a particle moves by 1.25 times its radius with its speed at t = 0, and may pass others "
       "unnoticed; ";
   CHECK(step_warnings({fast, "time.step=2.5e-3"}) ==
         std::vector<std::string>{"time.step: in a step of " + rest + "it should be at most 0.001 s"});
@@ -211,7 +211,7 @@ TEST_CASE("a particle that goes farther than its radius in a step is a warning")
       step_warnings({fast, "time.control=adaptive", "time.max_step=0.01"});
   REQUIRE(adaptive.size() == 1);
   CHECK(contains(adaptive[0],
-                 "time.max_step: in a step of 0.01 s, the longest allowed, a particle goes 5 times"));
+                 "time.max_step: in a step of 0.01 s, the longest allowed, a particle moves by 5 times"));
   CHECK(contains(adaptive[0], "unnoticed; left out, it is at most 0.001 s"));
 }
 

@@ -173,7 +173,7 @@ max = [1.0, 1.0, 1.0]
   const std::string none = model_error(
       kSpace + kRock + group,
       {"particles.0.min=[-0.15, -0.15, -0.15]", "particles.0.max=[0.15, 0.15, 0.15]", "particles.0.count=1"});
-  CHECK(contains(none, "only 0 particles found a place in 10000 tries each"));
+  CHECK(contains(none, "only 0 particles found a position in 10000 tries each"));
 }
 
 }  // namespace scree
