@@ -107,6 +107,65 @@ class SameBitsTest(RanksTest):
             if name in MAIN_CASES:
                 self.assertGreater(rebalances, 0, name)
 
+
+class ContinuedTest(RanksTest):
+    def assert_same_content(self, parts, whole, name):
+        """The first part of a run plans the chunks of its files, for fewer snapshots than the whole run has."""
+        self.assertEqual(self.datasets(parts, name, chunks=False), self.datasets(whole, name, chunks=False), name)
+
+    def test_a_restart_on_another_number_of_ranks_continues_the_run(self):
+        for name, ((deck, *overrides), _) in MAIN_CASES.items():
+            with self.subTest(case=name):
+                end = next(float(word.removeprefix("time.end=")) for word in overrides if "time.end=" in word)
+                settings = [*overrides, f"output.checkpoint_interval={end / 2}", "output.history_csv=true"]
+                whole, parts = f"whole {name}", f"parts {name}"
+                self.run_deck(DONE, 1, deck, whole, settings)
+                self.run_deck(DONE, 3, deck, parts, [*settings, f"time.end={end / 2}"])
+                self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
+                self.assertEqual(self.hash(parts), self.hash(whole))
+                self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
+                self.assert_same_content(parts, whole, "surfaces.vtkhdf")
+                surfaces = self.datasets(parts, "surfaces.vtkhdf")
+                self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
+                if surfaces is not None and "works" in name:
+                    self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
+                if results is not None and LINES[0] in overrides:
+                    for lines in ("contacts.vtkhdf", "links.vtkhdf"):
+                        self.assert_same_content(parts, whole, lines)
+                    self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
+                for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
+                    self.assert_same_content(parts, whole, series)
+                counts = self.record(parts)["counts"]
+                self.assertGreaterEqual(counts["steps"], 1000)
+                self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])
+
+
+class FilesTest(RanksTest):
+    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
+    def test_every_number_of_ranks_writes_the_same_files(self):
+        for compression in (0, 3):
+            settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.02", "output.snapshot_interval=0.01",
+                        f"output.compression={compression}", f"output.fields={FIELDS}"]
+            for ranks in (1, 2, 4):
+                with self.subTest(compression=compression, ranks=ranks):
+                    self.run_deck(DONE, ranks, DAM[0], f"{compression} {ranks}", settings)
+                    for name in ("particles.vtkhdf", "bodies.vtkhdf", "history.h5", "checkpoint_end.h5"):
+                        files = [self.datasets(f"{compression} {n}", name) for n in (1, ranks)]
+                        self.assertEqual(files[0], files[1], name)
+                    position = files[1]["real_rows/particles/position"]
+                    self.assertEqual(position[3], "gzip" if compression else None)
+        sizes = [(self.folder / f"{c} 4" / "checkpoint_end.h5").stat().st_size for c in (0, 3)]
+        self.assertLess(sizes[1], sizes[0])
+
+    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
+    def test_every_number_of_ranks_writes_the_same_spins(self):
+        deck, *settings = [*RUBBING, "time.end=0.04", "output.snapshot_interval=0.01",
+                           f"output.fields={RUBBING_FIELDS}"]
+        for ranks in (1, 2, 3):
+            self.run_deck(DONE, ranks, deck, f"spins {ranks}", settings)
+            for name in ("particles.vtkhdf", "history.h5", "checkpoint_end.h5"):
+                self.assertEqual(self.datasets(f"spins {ranks}", name), self.datasets("spins 1", name), name)
+
     def test_ranks_without_particles_take_part(self):
         deck = self.write("lonely.toml", LONELY.replace("stiffness = 1e5", "stiffness = 1e5\nfriction = 0.5"))
         for steps in (EXPLICIT, IMPLICIT):
@@ -157,52 +216,6 @@ class SameBitsTest(RanksTest):
         self.assertGreater(record["counts"]["rebalances"], 0)
         self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
 
-    def assert_same_content(self, parts, whole, name):
-        """The first part of a run plans the chunks of its files, for fewer snapshots than the whole run has."""
-        self.assertEqual(self.datasets(parts, name, chunks=False), self.datasets(whole, name, chunks=False), name)
-
-    def test_a_restart_on_another_number_of_ranks_continues_the_run(self):
-        for name, ((deck, *overrides), _) in MAIN_CASES.items():
-            with self.subTest(case=name):
-                end = next(float(word.removeprefix("time.end=")) for word in overrides if "time.end=" in word)
-                settings = [*overrides, f"output.checkpoint_interval={end / 2}", "output.history_csv=true"]
-                whole, parts = f"whole {name}", f"parts {name}"
-                self.run_deck(DONE, 1, deck, whole, settings)
-                self.run_deck(DONE, 3, deck, parts, [*settings, f"time.end={end / 2}"])
-                self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
-                self.assertEqual(self.hash(parts), self.hash(whole))
-                self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
-                self.assert_same_content(parts, whole, "surfaces.vtkhdf")
-                surfaces = self.datasets(parts, "surfaces.vtkhdf")
-                self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
-                if surfaces is not None and "works" in name:
-                    self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
-                if results is not None and LINES[0] in overrides:
-                    for lines in ("contacts.vtkhdf", "links.vtkhdf"):
-                        self.assert_same_content(parts, whole, lines)
-                    self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
-                for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
-                    self.assert_same_content(parts, whole, series)
-                counts = self.record(parts)["counts"]
-                self.assertGreaterEqual(counts["steps"], 1000)
-                self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])
-
-    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
-    def test_every_number_of_ranks_writes_the_same_files(self):
-        for compression in (0, 3):
-            settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.02", "output.snapshot_interval=0.01",
-                        f"output.compression={compression}", f"output.fields={FIELDS}"]
-            for ranks in (1, 2, 4):
-                with self.subTest(compression=compression, ranks=ranks):
-                    self.run_deck(DONE, ranks, DAM[0], f"{compression} {ranks}", settings)
-                    for name in ("particles.vtkhdf", "bodies.vtkhdf", "history.h5", "checkpoint_end.h5"):
-                        files = [self.datasets(f"{compression} {n}", name) for n in (1, ranks)]
-                        self.assertEqual(files[0], files[1], name)
-                    position = files[1]["real_rows/particles/position"]
-                    self.assertEqual(position[3], "gzip" if compression else None)
-        sizes = [(self.folder / f"{c} 4" / "checkpoint_end.h5").stat().st_size for c in (0, 3)]
-        self.assertLess(sizes[1], sizes[0])
-
     def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
         cases = {deck: [] for deck in ("rubbing", "rubbing_hertz", "rolling", "rubbing_bodies", "spatial_elements",
                                     "meshes", "mesh_walls", "sticky_meshes")}
@@ -221,15 +234,6 @@ class SameBitsTest(RanksTest):
                 builds.append(self.record(output)["counts"]["list_builds"] / self.record(output)["counts"]["steps"])
             self.assertGreater(builds[0], 0.4, deck)
             self.assertLess(builds[2], 0.1, deck)
-
-    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
-    def test_every_number_of_ranks_writes_the_same_spins(self):
-        deck, *settings = [*RUBBING, "time.end=0.04", "output.snapshot_interval=0.01",
-                           f"output.fields={RUBBING_FIELDS}"]
-        for ranks in (1, 2, 3):
-            self.run_deck(DONE, ranks, deck, f"spins {ranks}", settings)
-            for name in ("particles.vtkhdf", "history.h5", "checkpoint_end.h5"):
-                self.assertEqual(self.datasets(f"spins {ranks}", name), self.datasets("spins 1", name), name)
 
 
 if __name__ == "__main__":
