@@ -24,12 +24,21 @@ is_run_done() {
 # What a bare Debian 12 takes; jobs/setup.sh says what this one does.
 if [[ ! -x "$scree" ]]; then
   cat <<END
-A bare Debian 12 gets some 215 packages (1.4 GB) and Python packages in .venv (1 GB); then the program is built, for some
-six minutes on two cores: 10 to 20 minutes in all. Another start does only what is out of date.
+A bare Debian 12 gets some 215 packages (1.4 GB) and Python packages in .venv (1 GB), those for pictures while the program is
+built, for some six minutes on two cores. Another start does only what is out of date.
 END
 fi
-jobs/setup.sh --quiet
+jobs/setup.sh --quiet --program
+# What draws is installed beside the compiler, which waits for no network.
+pictures_log=$(mktemp)
+trap 'wait; rm -f "$pictures_log"' EXIT
+jobs/setup.sh --quiet --pictures >"$pictures_log" 2>&1 &
+pictures=$!
 jobs/build.sh release scree
+pictures_status=0
+wait "$pictures" || pictures_status=$?
+cat "$pictures_log"
+((pictures_status == 0)) || exit "$pictures_status"
 
 if is_run_done; then
   echo "$results is up to date"

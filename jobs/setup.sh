@@ -2,10 +2,11 @@
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
 #     jobs/setup.sh [--quiet] [--paraview] [--slurm] [--cuda] [--ccache]
-#     jobs/setup.sh [--quiet] --pictures | --package
+#     jobs/setup.sh [--quiet] --program | --pictures | --package
 #
-# --pictures installs what postprocess/draw needs and no more. --package installs what the program and packages of it need
-# (jobs/packaging/README.md) and no more: nothing for tests or pictures, and no .venv.
+# --program installs what the program needs and no more: nothing for tests or pictures, and no .venv. --pictures installs what
+# postprocess/draw needs and no more. --package installs what the program and packages of it need
+# (jobs/packaging/README.md) and no more.
 # --quiet leaves out what apt-get prints, unless it fails; how much is installed is said in one line.
 # --paraview adds Debian's ParaView, for the tests that open results in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
@@ -114,9 +115,11 @@ for argument in "$@"; do
     --slurm) packages+=("${slurm_packages[@]}") ;;
     --cuda) with_cuda=true ;;
     --ccache) packages+=(ccache) ;;
+    --program) packages=("${program_packages[@]}") with_python=false ;;
     --pictures) packages=("${picture_packages[@]}") ;;
     --package) packages=("${program_packages[@]}" "${package_packages[@]}") with_python=false ;;
-    *) fail "unknown argument: $argument; allowed: --quiet, --paraview, --slurm, --cuda, --ccache, --pictures, --package" ;;
+    *) fail "unknown argument: $argument; allowed:" \
+      --quiet, --paraview, --slurm, --cuda, --ccache, --program, --pictures, --package ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
