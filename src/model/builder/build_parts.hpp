@@ -51,27 +51,4 @@ void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
 
-// The time function of a quantity of the deck: build_motion for drivers, build_force for forces and torques.
-TimeFunction build_motion(const DeckTable& table);
-TimeFunction build_force(const DeckTable& table);
-// Checks all tables over time below `table`. Throws InputError where one does not cover the run up to `end`
-// [s]; warns where a spline overshoots its points noticeably.
-void check_time_tables(const DeckTable& table, Real end, Log& log);
-
-// Whether this shape or mesh of the body takes part in contact.
-bool collides(const DeckTable& body, const DeckTable& surface);
-// Transforms a vector from the frame of this body to the global frame at t = 0.
-Vec3 turned_at_start(const DeckTable& body, Vec3 local);
-// Throws InputError where the centre of a body's shape is outside the domain. Works from the deck, before any
-// body is built.
-void check_bodies_inside(const DeckTable& deck, const Space& space);
-// Throws InputError where a particle is outside the domain or an overlap exceeds the deck's limit. Warns of
-// smaller overlaps.
-void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
-// Warns of steps in which particles move by more than their radius. Throws InputError for explicit steps
-// beyond the stability limit.
-void check_steps(const DeckTable& deck, const Model& model, Log& log);
-// Warns of drivers, and of cylinders of type length, that prescribe a distance of two points of 0 or less.
-void check_driven_lengths(const Model& model, Log& log);
-
 }  // namespace scree

@@ -8,20 +8,20 @@
 
 namespace scree {
 
-// Refuses tables over time, anywhere below `table`, that end before the run does at `end` [s]; warns of
-// splines that overshoot their tabulated values noticeably.
+// Checks all tables over time below `table`. Throws InputError where one does not cover the run up to `end`
+// [s]; warns where a spline overshoots its points noticeably.
 void check_time_tables(const DeckTable& table, Real end, Log& log);
 
-// Refuses shapes of bodies whose centres lie outside the domain. It reads the deck alone, before any body is
-// built.
+// Throws InputError where the centre of a body's shape is outside the domain. Works from the deck, before any
+// body is built.
 void check_bodies_inside(const DeckTable& deck, const Space& space);
-// Refuses particles outside the domain and overlaps above the deck's limit; warns of smaller overlaps.
+// Throws InputError where a particle is outside the domain or an overlap exceeds the deck's limit. Warns of
+// smaller overlaps.
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
-// Refuses explicit steps beyond the stability limit; warns of steps in which a particle's displacement
-// exceeds its radius.
+// Warns of steps in which particles move by more than their radius. Throws InputError for explicit steps
+// beyond the stability limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);
-// Warns of drivers, and of cylinders of type length, that prescribe a distance of 0 or less between two
-// points.
+// Warns of drivers, and of cylinders of type length, that prescribe a distance of two points of 0 or less.
 void check_driven_lengths(const Model& model, Log& log);
 
 }  // namespace scree

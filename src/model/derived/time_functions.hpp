@@ -6,11 +6,10 @@
 
 namespace scree {
 
-// From the table of a driver's motion; without an interpolation its points are joined by a clamped cubic
-// spline.
+// Time function of a driver's motion. The default interpolation of its points is a natural cubic spline.
+// Throws InputError for linear interpolation, whose velocity jumps.
 TimeFunction build_motion(const DeckTable& table);
-// From the table of a force, a torque or a motor's command; without an interpolation its points are joined by
-// lines.
+// Time function of a force, a torque or a motor's command. The default interpolation of its points is linear.
 TimeFunction build_force(const DeckTable& table);
 
 }  // namespace scree

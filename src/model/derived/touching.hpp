@@ -15,6 +15,9 @@ struct RadiusRange {
 };
 RadiusRange radius_range(const Model& model);
 
+// Whether this shape or mesh of the body takes part in contact.
+bool collides(const DeckTable& body, const DeckTable& surface);
+
 // Shapes of two bodies may touch, but not those of one body or, unless the deck says so, those of two bodies
 // that a joint or force element connects. Particles and walls may touch everything.
 class TouchRule {

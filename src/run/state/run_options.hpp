@@ -1,4 +1,4 @@
-// One complete run: from a model to its result files.
+// What the command line says of one run.
 #pragma once
 
 #include <string>
@@ -16,10 +16,5 @@ struct RunOptions {
   Ranks ranks;
   bool overwrite = false;  // remove results of an earlier run in the output directory
 };
-
-// Runs to the end and writes snapshots, history, checkpoints and the run record into the output directory. A
-// failed simulation writes a checkpoint of its last good state. Throws InputError and IoError. Collective;
-// rank 0 writes the files.
-ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log);
 
 }  // namespace scree
