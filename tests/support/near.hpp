@@ -12,8 +12,8 @@ namespace scree {
 
 // Distance from 1 to the next number, the unit of round-off.
 inline constexpr Real kUlp = std::numeric_limits<Real>::epsilon();
-// Relative difference of two evaluations of the same quantity in another order of operations: the round-off of
-// some thousand operations.
+// Relative difference of two evaluations of the same quantity in another order of operations: the round-off
+// of some thousand operations.
 inline constexpr Real kAccumulatedRoundOff = 1e-12;
 
 // Largest distance of a value from the expected one, by the larger of the two bounds. An absent bound is

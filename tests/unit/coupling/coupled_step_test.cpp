@@ -214,8 +214,9 @@ TEST_CASE("a step too long for the pair search is refused, but only where contac
   Coupled step(fast);
   const StepOutcome outcome = step.step->implicit_step(step.bodies, 0, 0.02);
   CHECK(outcome.verdict == Verdict::not_converged);
-  CHECK(contains(outcome.trouble, "stage neighbors: the step moves a particle or a shape of a body by 2 m"));
-  // A single body that rotates by many of its radii per step: no list has to cover it.
+  CHECK(contains(outcome.trouble,
+                 "stage neighbors: the step displaces a particle or a shape of a body by 2 m"));
+  // A body alone that turns by many of its radii per step: no list has to cover it.
   petsc();
   const Model model = model_of(kSmallDeck + R"(
 [[contact.pairs]]

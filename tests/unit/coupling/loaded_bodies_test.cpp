@@ -132,7 +132,8 @@ TEST_CASE(
   const std::string warning = bodies.warning();
   CHECK(
       warning ==
-      "body \"plate\" had 80 simultaneous contacts with particles, on which it oscillates by 2.68 rad per step "
+      "body \"plate\" had 80 simultaneous contacts with particles, on which it oscillates by 2.68 rad per "
+      "step "
       "of 0.0003 s, too fast for this step; set time.step to at most 0.00021 s with integrator.substeps = 1");
 }
 
