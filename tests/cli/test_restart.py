@@ -223,7 +223,9 @@ class FailureTest(CommandLineTest):
 class RestartTest(CommandLineTest):
     VARIANTS = {"hht": (), "velocity-verlet": EXPLICIT, "adaptive": ("--set", "time.control=adaptive"),
                 "periodic history": ("--set", "output.history_interval=0.0007")}
-    AT_END = ("--set", "output.checkpoint_interval=0.4")
+    # Up to some time after the discs have met the pad, with a checkpoint at the end alone.
+    LONGER = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001", "--set", "time.end=0.2")
+    AT_END = ("--set", "output.checkpoint_interval=0.2")
 
     def test_a_restarted_run_ends_with_the_same_bits(self):
         for name, words in self.VARIANTS.items():
@@ -236,17 +238,17 @@ class RestartTest(CommandLineTest):
                 self.assert_same_results("parts", "whole")
 
     def test_a_signal_stops_the_run_and_a_restart_completes_it(self):
-        longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
-        self.run_deck(DONE, "whole", *longer, *self.AT_END)
+        self.run_deck(DONE, "whole", *self.LONGER, *self.AT_END)
         blocked = ("env", "--block-signal=TERM", "--block-signal=USR1")
         for number, launcher in itertools.product((signal.SIGTERM, signal.SIGUSR1), ((), blocked)):
             with self.subTest(signal=number.name, launcher=launcher):
-                run = self.start("parts", *longer, *self.AT_END, launcher=launcher)
+                run = self.start("parts", *self.LONGER, *self.AT_END, launcher=launcher)
                 run.send_signal(number)
                 text = run.stdout.read()
                 self.assertEqual(run.wait(LIMIT), STOPPED, text)
                 self.assertIn("continue with --restart", text)
-                self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+                self.run_deck(DONE, "parts", *self.LONGER, *self.AT_END, "--restart",
+                              self.folder / "parts/checkpoint.h5")
                 self.assert_same_results("parts", "whole")
 
     LONG = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
@@ -294,13 +296,12 @@ class RestartTest(CommandLineTest):
                 self.assertEqual(*hashes)
 
     def test_a_killed_run_leaves_files_to_restart_from(self):
-        longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
         frequent = ("--set", "output.checkpoint_interval=0.002")
-        self.run_deck(DONE, "whole", *longer, *self.AT_END)
-        run = self.start("parts", *longer, *frequent)
+        self.run_deck(DONE, "whole", *self.LONGER, *self.AT_END)
+        run = self.start("parts", *self.LONGER, *frequent)
         run.kill()
         self.assertEqual(run.wait(LIMIT), -signal.SIGKILL)
-        self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+        self.run_deck(DONE, "parts", *self.LONGER, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
         self.assert_same_results("parts", "whole")
 
     def test_another_deck_is_refused_but_a_later_end_is_not(self):
