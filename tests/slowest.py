@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 
 def seconds_of_tests(text):
-    """{name: seconds} of ctest's CTestCostData.txt: lines of a name, a number of runs and a mean, up to a line of dashes."""
+    """{name: seconds} of ctest's CTestCostData.txt: a name, a number of runs and a mean a line, up to dashes."""
     found = {}
     for line in text.split("\n---")[0].splitlines():
         name, runs, mean = line.rsplit(maxsplit=2)
@@ -24,7 +24,7 @@ def seconds_of_tests(text):
 def table(seconds, count):
     """Lines: the slowest tests, and the sum of all."""
     slowest = sorted(seconds.items(), key=lambda item: -item[1])[:count]
-    return ["| test | seconds |", "|---|---|", *(f"| `{name}` | {value:.0f} |" for name, value in slowest),
+    return ["| test | seconds |", "|---|---|", *(f"| {name} | {value:.0f} |" for name, value in slowest),
             f"| all {len(seconds)} together | {sum(seconds.values()):,.0f} |"]
 
 

@@ -223,9 +223,8 @@ class FailureTest(CommandLineTest):
 class RestartTest(CommandLineTest):
     VARIANTS = {"hht": (), "velocity-verlet": EXPLICIT, "adaptive": ("--set", "time.control=adaptive"),
                 "periodic history": ("--set", "output.history_interval=0.0007")}
-    # Up to some time after the discs have met the pad, with a checkpoint at the end alone.
     LONGER = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001", "--set", "time.end=0.2")
-    AT_END = ("--set", "output.checkpoint_interval=0.2")
+    AT_END = ("--set", "output.checkpoint_interval=0.2")  # the discs have met the pad by then
 
     def test_a_restarted_run_ends_with_the_same_bits(self):
         for name, words in self.VARIANTS.items():

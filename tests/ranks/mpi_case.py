@@ -23,8 +23,8 @@ BACKEND = os.environ.get("SCREE_TEST_BACKEND", "cpu")
 HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parent.parent / "input"
 LIMIT = 300  # [s] for any one run: past it, the run hangs
-# Without OpenCL, which may take SIGUSR1 from mpirun (jobs/README.md). Ranks that wait leave their core to others: two ranks
-# beside other tests are more than twice as fast so, and take less than half of the time of processors.
+# Without OpenCL, which may take SIGUSR1 from mpirun (jobs/README.md). Ranks that wait leave their core to others: two
+# ranks beside other tests are more than twice as fast so, and take less than half of the time of processors.
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                    OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
                    HWLOC_COMPONENTS="-opencl")

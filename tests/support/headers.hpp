@@ -1,5 +1,8 @@
-// What most tests include, as one precompiled header (tests/CMakeLists.txt). Each test includes what it uses all the same.
+// What most tests include, as one precompiled header (tests/CMakeLists.txt). Each test includes what it uses
+// all the same.
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +14,7 @@
 #include <random>
 #include <string>
 #include <vector>
-#include <fmt/format.h>
+
 #include "base/error.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
