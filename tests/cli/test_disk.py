@@ -21,7 +21,7 @@ control = "fixed"
 stiffness = 1e5
 [[bodies]]
 name = "row"
-count = 10000
+count = 5000
 position = [1.0, 5.0]
 spacing = [2.0, 0.0]
 mass = 1.0
@@ -106,7 +106,7 @@ class DiskTest(CommandLineTest):
 
     def test_history_of_many_bodies(self):
         found = self.assert_as_said(self.write("row.toml", ROW))
-        self.assertLess(found[1], 80e6)  # six rows of 80,000 columns
+        self.assertLess(found[1], 40e6)  # six rows of 40,000 columns
 
     def test_contacts_that_are_remembered_make_a_range(self):
         rubbing = GAS.replace("stiffness = 1e6", "stiffness = 1e6\nfriction = 0.5").replace("hht", "velocity-verlet")
