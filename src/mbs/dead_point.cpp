@@ -145,10 +145,9 @@ std::string dead_point(RigidBodySystem& system, const SystemInstant& now, Real s
   return fmt::format(
       "{} asks for a motion that the mechanism cannot follow: it leads to a dead point, where {} become "
       "dependent and velocities and reactions grow without bound{}. Change its motion so that it stays clear "
-      "of this position, or drive another joint: neither shorter steps nor integrator.redundant = "
-      "\"minimum-norm\" "
-      "pass it",
-      system.constraint_name(asking_row(system, jacobian, near, rows, rate)),
+      "of this position, or drive another joint: neither shorter steps nor "
+      "integrator.redundant = \"minimum-norm\" pass it",
+      system.constraint_name(prescribing_row(system, jacobian, near, rows, rate)),
       names_of(system, {near.combination}),
       reached > prescribed && prescribed > 0
           ? fmt::format(" (velocities here are {:.3g} times those that drivers prescribe)",

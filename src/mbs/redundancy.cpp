@@ -188,12 +188,12 @@ std::string check_redundancy(const Model& model, const RigidBodySystem& system, 
             "driver '{}' asks for a motion that the mechanism cannot follow: its position at t = 0 is a "
             "dead point, where {} are dependent. Start elsewhere, or drive another joint: "
             "integrator.redundant = \"minimum-norm\" does not pass it",
-            stuck->name, names_of(system, groups))));
+            blocked->name, names_of(system, groups))));
   throw InputError(with_label(
       label(*groups.rbegin()),
       fmt::format("redundant constraints: {} fix the same motion more than once, {} rows have rank {}; the "
                   "motion is unique, the reactions of these are not. Remove or change one; or set "
-                  "integrator.redundant = \"minimum-norm\" for the least reactions{}{}",
+                  "integrator.redundant = \"minimum-norm\" for minimum-norm reactions{}{}",
                   names_of(system, groups), rows, rank, remedy_of_loops(model, groups, repeated.size()),
                   remedy_of_position(system, jacobian, repeated))));
 }

@@ -14,10 +14,8 @@ namespace scree {
 
 // Text behind the names of constraints that are redundant in the current position.
 inline constexpr const char* kSingularPosition =
-    " repeat each other in this position, or nearly so: it is singular; integrator.redundant = "
-    "\"minimum-norm\" "
-    "passes "
-    "it";
+    " are redundant in this position, or nearly so: it is singular; integrator.redundant = "
+    "\"minimum-norm\" passes it";
 
 struct StartFindings {
   std::string redundancy;            // the note on redundant constraints that are permitted

@@ -28,7 +28,7 @@ velocity = [3.0, 0.0, 0.0]
 radius = 0.1
 mass = 1.0
 """
-# Beams in a row, held at rest on hinges that repeat each other.
+# Beams in a row, held at rest on redundant revolute joints.
 REST = """\
 gravity = [0.0, -9.81, 0.0]
 [space]

@@ -103,7 +103,7 @@ def four_bar(angle, start):
 
 
 class ContradictionTest(CommandLineTest):
-    """With the line of the deck's table and its name, by check and run alike, however rows may repeat each other."""
+    """With the line of the deck's table and its name, by check and run alike, however many rows are redundant."""
 
     def refusals(self, deck, *settings):
         path = self.write("bad.toml", deck)
@@ -168,7 +168,7 @@ class ContradictionTest(CommandLineTest):
         text = self.expect(FAILED, "run", deck, "--output", self.folder / "out").stderr
         self.assertIn("no convergence in 50 iterations", text)
         self.assertIn('it is singular; integrator.redundant = "minimum-norm" passes it', text)
-        self.assertIn("driver 'drive' repeat each other in this position", text)
+        self.assertIn("driver 'drive' are redundant in this position", text)
         self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=minimum-norm")
 
 

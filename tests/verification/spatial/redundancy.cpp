@@ -337,13 +337,14 @@ TEST_CASE("the refusal of a loop of revolute joints names a remedy that works") 
   } catch (const InputError& error) {
     text = error.what();
   }
-  CHECK(text ==
-        "redundant constraints: joint 'foot.0', joint 'left.0', joint 'foot.1', joint 'right.1' fix the same "
-        "motion more than once, 20 rows have rank 17; the motion is unique, the reactions of these are not. "
-        "Remove or change one; or set integrator.redundant = \"minimum-norm\" for the least reactions; or, "
-        "for the "
-        "same "
-        "motion without any, make joint 'foot.0' spherical and joint 'right.1' cylindrical");
+  CHECK(
+      text ==
+      "redundant constraints: joint 'foot.0', joint 'left.0', joint 'foot.1', joint 'right.1' fix the same "
+      "motion more than once, 20 rows have rank 17; the motion is unique, the reactions of these are not. "
+      "Remove or change one; or set integrator.redundant = \"minimum-norm\" for minimum-norm reactions; or, "
+      "for the "
+      "same "
+      "motion without any, make joint 'foot.0' spherical and joint 'right.1' cylindrical");
   model.joints.front().kind = JointKind::spherical, model.joints.back().kind = JointKind::cylindrical;
   CHECK_NOTHROW(Multibody(model));
 }
