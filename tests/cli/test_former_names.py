@@ -1,4 +1,4 @@
-"""Decks with names of earlier versions: read with one line in the log, and with the same results. Usage: as test_cli.py"""
+"""Decks with names of earlier versions: one line in the log for each, and equal results. Usage: as test_cli.py"""
 
 import json
 import tomllib
@@ -43,7 +43,8 @@ class FormerNamesTest(CommandLineTest):
         self.assert_same_history("out", "at once")
 
     def test_both_names_are_refused_and_unknown_ones_stay_unknown(self):
-        text = self.expect(BAD_INPUT, "check", self.write("deck.toml", FORMER.replace("tension", "limit_damping = true\ntension")))
+        both = self.write("deck.toml", FORMER.replace("tension", "limit_damping = true\ntension"))
+        text = self.expect(BAD_INPUT, "check", both)
         place = KEY.replace(f":{LINE}:", f":{LINE + 1}:")
         self.assertIn(f"{place}: is the former name of limit_damping, which {self.folder}/deck.toml:{LINE}:17 gives, too",
                       text.stderr)
