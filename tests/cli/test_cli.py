@@ -179,8 +179,8 @@ class UsageTest(CommandLineTest):
 
     def test_keys_are_the_manual(self):
         text = self.expect(DONE, "keys").stdout
-        for key in ("time", "step", "hht_alpha", "stiffness", "limit_damping", "leaving", "history_csv", "max_start_overlap",
-                    "spring_dampers", "drivers", "min_step", "precision"):
+        for key in ("time", "step", "hht_alpha", "stiffness", "limit_damping", "leaving", "history_csv",
+                    "max_start_overlap", "spring_dampers", "drivers", "min_step", "precision"):
             self.assertIn(key, text)
         for word in ("[s]", "[N/m^n]", "default", "required"):
             self.assertIn(word, text)

@@ -46,8 +46,8 @@ class FormerNamesTest(CommandLineTest):
         both = self.write("deck.toml", FORMER.replace("tension", "limit_damping = true\ntension"))
         text = self.expect(BAD_INPUT, "check", both)
         place = KEY.replace(f":{LINE}:", f":{LINE + 1}:")
-        self.assertIn(f"{place}: is the former name of limit_damping, which {self.folder}/deck.toml:{LINE}:17 gives, too",
-                      text.stderr)
+        self.assertIn(f"{place}: is the former name of limit_damping, which {self.folder}/deck.toml:{LINE}:17 gives, "
+                      "too", text.stderr)
         unknown = self.expect(BAD_INPUT, "check", self.write("deck.toml", FORMER.replace("tension", "tensile")))
         self.assertIn("contact.pairs.0.tensile = true: unknown key", unknown.stderr)
 

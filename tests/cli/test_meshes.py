@@ -140,7 +140,8 @@ class BadDeckTest(MeshTest):
         cases = [
             (['output.surface_fields=["slidng_work"]'], 'there is no field "slidng_work" of surfaces; did you mean'),
             (['output.surface_fields=["shear","shear"]'], '"shear" is repeated'),
-            ([works, "walls=[]", "meshes=[]"], "only triangles have dissipation and wear, and no wall or body has a mesh"),
+            ([works, "walls=[]", "meshes=[]"],
+             "only triangles have dissipation and wear, and no wall or body has a mesh"),
             ([works], "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0"),
             (["contact.pairs.0.wear_coefficient=1e-12"], "wear_coefficient=1e-12: needs friction above 0"),
             (["contact.pairs.0.wear_coefficient=-1e-12"], "wear_coefficient must be a number from 0 to 1"),

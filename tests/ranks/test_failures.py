@@ -93,7 +93,8 @@ class FailureTest(RanksTest):
                 self.assert_one_message(result, "damaged.h5", words)
 
     def test_a_restart_with_an_absurd_velocity_fails(self):
-        drifting = LONELY.replace('"periodic"', '"open"').replace("dimension = 2", 'dimension = 2\nleaving = "ballistic"')
+        leaving = 'dimension = 2\nleaving = "ballistic"'
+        drifting = LONELY.replace('"periodic"', '"open"').replace("dimension = 2", leaving)
         cases = {"periodic.toml": (LONELY, EXPLICIT, ("stage sort_cells", "particle 1 ", "crossed the whole periodic")),
                  "open.toml": (drifting, EXPLICIT, ("stage output", "is not finite")),
                  "implicit.toml": (LONELY, IMPLICIT, ("stage neighbors",))}

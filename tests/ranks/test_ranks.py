@@ -94,7 +94,8 @@ class SameBitsTest(RanksTest):
                     record, first = self.record(output), f"{name} 1"
                     self.assertEqual(record["run"]["ranks"], ranks)
                     self.assertEqual(self.hash(output), self.hash(first))
-                    for count in ("steps", "newton_iterations", "linear_iterations", "list_builds", "particles_escaped"):
+                    for count in ("steps", "newton_iterations", "linear_iterations", "list_builds",
+                                  "particles_escaped"):
                         self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
                     self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
                     for kind in ("particles", "bodies", "surfaces", "contacts", "links"):
