@@ -27,10 +27,10 @@ struct CountItem {
 
 }  // namespace
 
-void CellSort::work_in(Index* scratch, std::size_t n) {
+void CellSort::use_scratch(Index* scratch, std::size_t n) {
   for (std::size_t k = 0; k < 2; ++k)
-    keys_[k].borrow(reinterpret_cast<unsigned*>(scratch + k * n), n),
-        order_[k].borrow(scratch + (2 + k) * n, n);
+    keys_[k].alias_memory(reinterpret_cast<unsigned*>(scratch + k * n), n),
+        order_[k].alias_memory(scratch + (2 + k) * n, n);
 }
 
 unsigned* CellSort::keys(std::size_t n) {

@@ -1,7 +1,7 @@
 // Sorting of items by cell, and the index of ghosts by cell.
 #pragma once
 
-#include "brick_grid.cuh"
+#include "cell_block_grid.cuh"
 #include "device.cuh"
 #include "device_list.cuh"
 
@@ -14,7 +14,7 @@ class CellSort {
   static constexpr std::size_t kNumbers = 4;
   // From now on the sort of n items uses this scratch memory, which must stay valid as long as keys and order
   // are needed.
-  void work_in(Index* scratch, std::size_t n);
+  void use_scratch(Index* scratch, std::size_t n);
   // Keys of the items to sort; written by the caller before sort().
   unsigned* keys(std::size_t n);
   // Afterwards order()[k] is the item at position k; the sort is stable. Items of one key are at

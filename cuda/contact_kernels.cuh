@@ -1,6 +1,6 @@
 // The contact stages on the device for the contact law of the run, which is chosen once at its start. All
 // pointers are device pointers; everything is queued on a stream and nothing waits.
-// src/dem/contact_kernels.hpp is the CPU's counterpart.
+// src/dem/laws/contact_kernels.hpp is the CPU's counterpart.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dem/contact/contact_items.hpp"
-#include "dem/explicit/mixed_rubbing_items.hpp"
+#include "dem/explicit/mixed_friction_items.hpp"
 #include "dem/implicit/step_items.hpp"
 #include "dem/laws/contact_kernels.hpp"
-#include "dem/reports/leaver_items.hpp"
+#include "dem/reports/escape_items.hpp"
 #include "dem/surface_contact/surface_items.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
@@ -30,7 +30,7 @@ using PrunedViews = ContactViews<PrunedRows<0>>;
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return with_rows(in, PrunedRows<kAtOnce>{r.rows, r.counts, r.neighbors, use, margin, r.places});
+  return with_rows(in, PrunedRows<kAtOnce>{r.rows, r.counts, r.neighbors, use, margin, r.entry_indices});
 }
 
 // Views for a warp whose lanes share the contacts of its rows.
@@ -38,8 +38,8 @@ template <class Word, int kWords>
 __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const PrunedViews& in, RowUse use, Real margin,
                                                            WarpContacts<Word, kWords>* shared, bool idle) {
   const PrunedRows<0>& r = in.rows;
-  return with_rows(
-      in, WarpRows<Word, kWords>{{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle});
+  return with_rows(in, WarpRows<Word, kWords>{
+                           {r.rows, r.counts, r.neighbors, use, margin, r.entry_indices}, shared, idle});
 }
 template <class Word, int kWords>
 __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const DeviceViews& in,
@@ -58,16 +58,16 @@ struct SystemRequest {
   ContactMatrix matrix;
   StepViews step;
   Vec3* residual;
-  Real* stiffening;
+  Real* stiffness_ratio;
   Sym3* inverse_block;
   StepNorms* largest;  // maxima over all particles so far
 };
 
 // The same for laws with friction: forces and torques only, of the particles first ... end - 1.
-struct DeviceRubbingRequest {
+struct DeviceFrictionRequest {
   DeviceViews in;
   Index first, end;
-  RubbingRequest of;
+  FrictionRequest of;
 };
 
 // Progress of a run of explicit steps, kept on the device: kernels that were queued past the end of the run
@@ -188,7 +188,7 @@ struct MixedRequest {
 
 // State of the open step for contacts with static surfaces in a run: only the device knows which arrays hold
 // it.
-struct OpenStepLook {
+struct OpenStepQuery {
   const VerletControl* control;
   const Real* first_step;  // as in VerletRequest
   const Vec4 *position[2], *velocity[2], *spin[2];
@@ -220,14 +220,14 @@ struct SurfaceChunks {
 // State at the start of an implicit step: particles and surfaces on bodies.
 struct SurfaceStart {
   StepStart particles;
-  const PlacedSurface* placed;
+  const SurfacePose* placed;
 };
 
 // The same for laws with friction, with the output per entry.
-struct SurfaceRubRequest {
-  RubbingStart particles;
-  const PlacedSurface* placed;
-  SurfaceRub* rubs;  // per entry
+struct SurfaceFrictionRequest {
+  FrictionStart particles;
+  const SurfacePose* placed;
+  SurfaceFriction* friction_steps;  // per entry
 };
 
 class DeviceContactKernels {
@@ -245,8 +245,8 @@ class DeviceContactKernels {
                              SurfaceLoad* loads, InstantSums* sums) const = 0;
   // At an instant, for the first n entries by_surface, of the step that is open when the kernel runs; without
   // sums.
-  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& query, Index n,
-                                    SurfaceLoad* loads) const = 0;
+  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query,
+                                    Index n, SurfaceLoad* loads) const = 0;
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
   // Queues the sums of `WallContactItem` over the first n particles; share: the reduction over the ranks that
@@ -262,20 +262,20 @@ class DeviceContactKernels {
   virtual void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
                              const LineRequest& request) const = 0;
   // What the contacts of the particles add to the energy balance over an accepted implicit step.
-  virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
-                     Real* contact_loss, Real* integrator_loss) const = 0;
+  virtual void step_losses(Device device, const DeviceViews& in, Index n, const StepStart& start,
+                           Real* contact_loss, Real* integrator_loss) const = 0;
   // The same for laws with friction, as in `ContactKernels`.
-  virtual void surface_rubs(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                            const SurfaceRubRequest& request, StepSums* sums) const = 0;
-  virtual void rubbing_system(Device device, const DeviceRubbingRequest& request) const = 0;
-  virtual void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-                             const RubbingBooksTo& to) const = 0;
-  virtual void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-                      const FrozenLimits& to) const = 0;
+  virtual void surface_friction_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                                      const SurfaceFrictionRequest& request, StepSums* sums) const = 0;
+  virtual void friction_system(Device device, const DeviceFrictionRequest& request) const = 0;
+  virtual void friction_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
+                               const FrictionLossOutputs& to) const = 0;
+  virtual void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
+                                   const LaggedLimits& to) const = 0;
   // Energy that n escaped particles take along, and what their contacts leave with the remaining particles:
-  // `LeaverEnergyItem` and `DepartureItem`.
-  virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-                       Leaver* leavers) const = 0;
+  // `EscapeEnergyItem` and `EscapedContactsItem`.
+  virtual void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
+                                 EscapedParticle* escaped_particles) const = 0;
   virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
                           const StartViews& start) const = 0;
   // Closes one explicit step and opens the next; does nothing once the control block says stop.

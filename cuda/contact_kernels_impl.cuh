@@ -38,9 +38,10 @@ __global__ void __launch_bounds__(kSystemThreads)
   Sym3 diagonal, inverse_block;
   StepNorms norms{};
   if (i < r.end) {
-    SystemItem<Laws> item{{{r.in, laws, {r.start}}, r.gravity, r.weights, r.forces, r.matrix},
-                          {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
-                          {r.step, r.residual, r.forces.magnitude, r.stiffening}};
+    SystemItem<Laws> item{
+        {{r.in, laws, {r.start}}, r.gravity, r.weights, r.forces, r.matrix},
+        {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffness_ratio},
+        {r.step, r.residual, r.forces.magnitude, r.stiffness_ratio}};
     item.system.out.step_force = only(step_force, i), item.residual.force = only(step_force, i);
     item.system.out.end_force = only(end_force, i);
     item.system.matrix.diagonal = item.residual.matrix.diagonal = only(diagonal, i);
@@ -54,26 +55,26 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.residual, &r.largest->residual);
   block_max(norms.correction_bound, &r.largest->correction_bound);
   block_max(norms.force, &r.largest->force);
-  block_max(norms.stiffening, &r.largest->stiffening);
+  block_max(norms.stiffness_ratio, &r.largest->stiffness_ratio);
 }
 
 // Blocks per multiprocessor, which bounds the registers per thread: faster, though a few registers spill.
-inline constexpr int kRubbingSystemBlocks = 3;
+inline constexpr int kFrictionSystemBlocks = 3;
 
 // Forces, torques and entries of the Newton matrix. Residual, block and norms are computed from these entries
 // by items of their own, because the contact loop needs all registers. r.first: a multiple of `kSlice`.
 template <class Laws>
-__global__ void __launch_bounds__(kSystemThreads, kRubbingSystemBlocks)
-    rubbing_kernel(const __grid_constant__ DeviceRubbingRequest r, const Laws laws) {
-  constexpr int kWords = sizeof(RubbingSums) / sizeof(double);
+__global__ void __launch_bounds__(kSystemThreads, kFrictionSystemBlocks)
+    friction_system_kernel(const __grid_constant__ DeviceFrictionRequest r, const Laws laws) {
+  constexpr int kWords = sizeof(FrictionSums) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = r.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   if (first >= r.end) return;
   const bool idle = i >= r.end;
-  const RubbingRequest& of = r.of;
+  const FrictionRequest& of = r.of;
   const auto views = warp_views(r.in, &contacts[threadIdx.x / kSlice], idle);
-  const RubbingSystemItem<Laws, WarpRows<double, kWords>> item{
-      {views, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.sharpness};
+  const FrictionSystemItem<Laws, WarpRows<double, kWords>> item{
+      {views, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.phase_squared};
   auto self = item.walk.self(idle ? r.end - 1 : i);
   auto total = item.weight(self);
   self.i = i;
@@ -84,18 +85,18 @@ __global__ void __launch_bounds__(kSystemThreads, kRubbingSystemBlocks)
 // Energy losses of the particles, and the new history of their contacts.
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
-    rubbing_books_kernel(Index n, const __grid_constant__ DeviceViews in,
-                         const __grid_constant__ RubbingStart start, const RubbingBooksTo to,
-                         const Laws laws) {
-  constexpr int kWords = sizeof(RubbingBookSums) / sizeof(double);
+    friction_losses_kernel(Index n, const __grid_constant__ DeviceViews in,
+                           const __grid_constant__ FrictionStart start, const FrictionLossOutputs to,
+                           const Laws laws) {
+  constexpr int kWords = sizeof(FrictionLossSums) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = thread_index();
   if (i - static_cast<Index>(threadIdx.x) % warpSize >= n) return;
   const bool idle = i >= n;
   const auto views = warp_views(in, &contacts[threadIdx.x / kSlice], idle);
-  const RubbingBooksItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
+  const FrictionLossesItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
   auto self = item.walk.self(idle ? n - 1 : i);
-  RubbingBookSums sum;
+  FrictionLossSums sum;
   self.i = i;
   item.add_neighbors(self, sum);
   if (!idle) item.finish(self, sum);
@@ -145,7 +146,7 @@ using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
 // by_surface.
 template <class Laws>
 __global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
-    load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepLook query,
+    load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepQuery query,
                        const Laws laws, SurfaceLoad* loads) {
   __shared__ LoadRecords::Shared shared;
   SurfaceViews now = in;
@@ -176,9 +177,9 @@ template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
-    if constexpr (LawOf<Laws>::kMoves)
-      prefer_cache(rubbing_advance_kernel<Laws>,
-                   kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>));
+    if constexpr (LawOf<Laws>::kNeedsMotion)
+      prefer_cache(friction_advance_kernel<Laws>,
+                   kFrictionBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>));
     else
       prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
@@ -186,9 +187,9 @@ class ContactKernelsOf : public DeviceContactKernels {
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
   const char* mixed_trouble() const override {
     using Law = LawOf<Laws>;
-    return kReaches<Law>                         ? "particles attract each other"
-           : Law::kMoves && !kFrictionAlone<Law> ? "contacts resist rolling"
-                                                 : "";
+    return kHasRange<Law>                             ? "particles attract each other"
+           : Law::kNeedsMotion && !kFrictionOnly<Law> ? "contacts resist rolling"
+                                                      : "";
   }
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
@@ -206,7 +207,7 @@ class ContactKernelsOf : public DeviceContactKernels {
                      InstantSums* sums) const override {
     launch_surfaces(device, chunks, SurfaceLoadItem<Laws>{in, laws_, loads}, loads, sums);
   }
-  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& query, Index n,
+  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query, Index n,
                             SurfaceLoad* loads) const override {
     if (n == 0) return;
     load_in_run_kernel<<<blocks_for(n, kLoadThreads), kLoadThreads, 0, device.stream>>>(n, in, query, laws_,
@@ -238,58 +239,59 @@ class ContactKernelsOf : public DeviceContactKernels {
     using Item = ContactLineItem<Laws, SlicedRows>;
     for_each(device, end - first, FromItem<Item>{{{in, laws_}, request}, first});
   }
-  void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
-             Real* integrator_loss) const override {
+  void step_losses(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
+                   Real* integrator_loss) const override {
     for_each(device, n,
-             ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+             ContactLossesItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
-  void surface_rubs(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                    const SurfaceRubRequest& r, StepSums* sums) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>)
-      launch_surfaces(device, chunks, SurfaceRubItem<Laws>{in, r.particles, r.placed, laws_, r.rubs}, r.rubs,
-                      sums);
+  void surface_friction_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                              const SurfaceFrictionRequest& r, StepSums* sums) const override {
+    if constexpr (kFrictionOnly<LawOf<Laws>>)
+      launch_surfaces(device, chunks,
+                      SurfaceFrictionItem<Laws>{in, r.particles, r.placed, laws_, r.friction_steps},
+                      r.friction_steps, sums);
     else
-      refuse_rubbing();
+      refuse_friction();
   }
-  void rubbing_system(Device device, const DeviceRubbingRequest& r) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>) {
+  void friction_system(Device device, const DeviceFrictionRequest& r) const override {
+    if constexpr (kFrictionOnly<LawOf<Laws>>) {
       if (r.end == r.first) return;
-      rubbing_kernel<Laws>
+      friction_system_kernel<Laws>
           <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
       require_cuda(cudaGetLastError(), "system with friction");
     } else {
-      refuse_rubbing();
+      refuse_friction();
     }
   }
-  void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-                     const RubbingBooksTo& to) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>) {
+  void friction_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
+                       const FrictionLossOutputs& to) const override {
+    if constexpr (kFrictionOnly<LawOf<Laws>>) {
       if (n == 0) return;
-      rubbing_books_kernel<Laws>
+      friction_losses_kernel<Laws>
           <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
       require_cuda(cudaGetLastError(), "losses with friction");
     } else {
-      refuse_rubbing();
+      refuse_friction();
     }
   }
-  void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-              const FrozenLimits& to) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>)
-      for_each(device, n, FreezeItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
+  void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
+                           const LaggedLimits& to) const override {
+    if constexpr (kFrictionOnly<LawOf<Laws>>)
+      for_each(device, n, LaggedLimitItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
     else
-      refuse_rubbing();
+      refuse_friction();
   }
-  void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-               Leaver* leavers) const override {
-    for_each(device, n, LeaverEnergyItem<Laws, SlicedRows>{{in, laws_}, box, leavers});
+  void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
+                         EscapedParticle* escaped_particles) const override {
+    for_each(device, n, EscapeEnergyItem<Laws, SlicedRows>{{in, laws_}, box, escaped_particles});
   }
   void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
                   const StartViews& start) const override {
-    for_each(device, n, DepartureItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
+    for_each(device, n, EscapedContactsItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    if constexpr (LawOf<Laws>::kMoves) {
-      launch(device, r, rubbing_advance_kernel<Laws>);
+    if constexpr (LawOf<Laws>::kNeedsMotion) {
+      launch(device, r, friction_advance_kernel<Laws>);
     } else {
       const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
       launch(device, r,
@@ -297,10 +299,10 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    if constexpr (!LawOf<Laws>::kMoves && !kReaches<LawOf<Laws>>)
+    if constexpr (!LawOf<Laws>::kNeedsMotion && !kHasRange<LawOf<Laws>>)
       advance_in_mixed(device, r);
-    else if constexpr (kFrictionAlone<LawOf<Laws>>)
-      launch(device, r, mixed_rubbing_kernel<Laws>);
+    else if constexpr (kFrictionOnly<LawOf<Laws>>)
+      launch(device, r, mixed_friction_kernel<Laws>);
     else
       throw std::logic_error("mixed_advance: this law is computed in double precision");
   }
@@ -313,7 +315,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
  private:
-  [[noreturn]] static void refuse_rubbing() {
+  [[noreturn]] static void refuse_friction() {
     throw std::logic_error("ContactKernelsOf: the law has no implicit steps with friction");
   }
   // Whether all particles of the step fit on the GPU at once, with this number of blocks per multiprocessor.

@@ -3,6 +3,6 @@
 namespace scree {
 
 template std::unique_ptr<DeviceContactKernels> device_kernels(
-    const std::vector<ContactLaw<RatedLinearLaw, LinearSlider, AnyRolling>>&, int);
+    const std::vector<ContactLaw<LinearRestitutionLaw, LinearSlider, AnyRolling>>&, int);
 
 }  // namespace scree

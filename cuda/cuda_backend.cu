@@ -23,14 +23,14 @@ std::string CudaBackend::description() const {
                                 : requested ? "double, because " + double_reason()
                                             : "double";
   const Ranks& all = items_.ranks;
-  const std::string ranks =
-      all.alone() ? ""
-                  : ", " + std::to_string(all.size()) + " ranks, halo by " + items_.lane.halo.transport();
+  const std::string ranks = all.alone() ? ""
+                                        : ", " + std::to_string(all.size()) + " ranks, halo by " +
+                                              items_.halo_stream.halo.transport();
   return "cuda (" + device_name() + ", precision " + precision + ranks + ")";
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
-  if (items_.model.rotates()) return std::make_unique<CudaRubbingStep>(items_, bodies_, implicit_arrays_, h);
+  if (items_.model.rotates()) return std::make_unique<CudaFrictionStep>(items_, bodies_, implicit_arrays_, h);
   return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
 }
 
@@ -43,7 +43,7 @@ std::vector<DeviceShare> CudaBackend::device_shares() const {
                                   {"second arrays", items_.other.bytes()},
                                   {"list", items_.list.bytes()},
                                   {"contact history", items_.history.bytes()},
-                                  {"explicit steps or packed history", items_.room.bytes()}};
+                                  {"explicit steps or packed history", items_.arena.bytes()}};
   std::size_t rest = device_bytes_in_use();
   for (const DeviceShare& share : shares) rest -= share.bytes;
   shares.push_back({"other", rest});
@@ -62,14 +62,14 @@ DeviceClaim claim_device(const Model& model) {
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
   choose_device(ranks);
   const auto refuse = [&](const std::string& trouble) {
-    ranks.together([&] {
+    ranks.collectively([&] {
       if (!trouble.empty()) throw InputError(trouble);
     });
   };
-  refuse(device_trouble());
+  refuse(device_error());
   // All ranks have initialised their GPUs by now, so that the free memory no longer includes what the driver
   // takes for each.
-  const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
+  const std::vector<DeviceClaim> claims = ranks.all_gather(std::vector{claim_device(model)});
   refuse(device_memory_trouble(claims, ranks.rank(), device_name()));
   return std::make_unique<CudaBackend>(model, ranks);
 }

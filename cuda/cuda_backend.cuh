@@ -1,15 +1,15 @@
-// The backend of one GPU, called GMAP in the paper. It follows the schedule of src/dem/cpu_backend.hpp with
-// kernels; the arithmetic is in src/physics, the items of the loops in src/dem.
+// The backend of one GPU, called GMAP in the paper. It follows the schedule of src/dem/cpu/cpu_backend.hpp
+// with kernels; the arithmetic is in src/physics, the items of the loops in src/dem.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "cuda_explicit.cuh"
+#include "cuda_friction.cuh"
 #include "cuda_implicit.cuh"
 #include "cuda_particles.cuh"
 #include "cuda_reports.cuh"
-#include "cuda_rubbing.cuh"
 #include "dem/backend/backend.hpp"
 
 namespace scree {

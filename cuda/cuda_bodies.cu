@@ -4,11 +4,11 @@ namespace scree {
 
 using Loads = DeviceSurfaces::Loads;
 
-void CudaBodies::put() { items_.surfaces.place(items_.device(), side_.places()); }
+void CudaBodies::put() { items_.surfaces.upload(items_.device(), side_.poses()); }
 
 SurfaceMoves CudaBodies::upload_moves() {
-  step_.upload(side_.step(), items_.stream), step_turn_.upload(side_.step_turn(), items_.stream);
-  return {step_.data(), step_turn_.data()};
+  step_.upload(side_.step(), items_.stream), step_rotation_.upload(side_.step_rotation(), items_.stream);
+  return {step_.data(), step_rotation_.data()};
 }
 
 void CudaBodies::find_loads() {
@@ -34,11 +34,11 @@ void CudaBodies::find_steps(const StepStart& start) {
       {items_.now.position.data(), items_.now.velocity.data(), nullptr, items_.history.views()});
 }
 
-void CudaBodies::find_rubs(const RubbingStart& start) {
+void CudaBodies::find_friction_steps(const FrictionStart& start) {
   if (!have_surfaces()) return;
-  items_.surfaces.find_rubs(items_.device(), *items_.kernels, start,
-                            {items_.now.position.data(), items_.now.velocity.data(),
-                             items_.now.angular_velocity.data(), items_.history.views()});
+  items_.surfaces.find_friction_steps(items_.device(), *items_.kernels, start,
+                                      {items_.now.position.data(), items_.now.velocity.data(),
+                                       items_.now.angular_velocity.data(), items_.history.views()});
 }
 
 void CudaBodies::take_steps(Real h) {
@@ -47,9 +47,9 @@ void CudaBodies::take_steps(Real h) {
   side_.take_steps(items_.surfaces.step_sums(), h);
 }
 
-void CudaBodies::queue_loads(const SurfaceLook& query, const Event& ready) {
+void CudaBodies::queue_loads(const SurfaceQuery& query, const Event& ready) {
   const Device on{stream_};
-  items_.surfaces.place(on, side_.places());
+  items_.surfaces.upload(on, side_.poses());
   ready.hold(stream_);
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, query);
   loads_found_.record(stream_);
@@ -62,17 +62,17 @@ void CudaBodies::take_loads(Real h) {
 
 // The next query on this stream overwrites what the accumulation of works still reads, and so does the next
 // list, on the particles' stream.
-void CudaBodies::book_loads(Real h) {
+void CudaBodies::accumulate_load_works(Real h) {
   if (!items_.surfaces.works().exist()) return;
-  items_.surfaces.book_loads({stream_}, *items_.kernels, h);
+  items_.surfaces.accumulate_load_works({stream_}, *items_.kernels, h);
   booked_.record(stream_), booked_.hold(items_.stream);
 }
 
-void CudaBodies::find_loads_beside(const SurfaceLook& query) {
+void CudaBodies::find_loads_concurrently(const SurfaceQuery& query) {
   if (!have_surfaces()) return;
   const Device on{stream_};
-  items_.surfaces.place(on, side_.places());
-  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_look, query);
+  items_.surfaces.upload(on, side_.poses());
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_query, query);
   take_loads(query.h);
 }
 

@@ -1,4 +1,4 @@
-// Bodies with surfaces beside particles on the GPU. The bodies are few and stay on the host (`SurfaceSide`):
+// Bodies with surfaces beside particles on the GPU. The bodies are few and stay on the host (`HostSurfaces`):
 // the device gets the poses of their surfaces, and the sums of their contacts go to pinned memory, for which
 // the host waits.
 #pragma once
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cuda_items.cuh"
-#include "dem/host/surface_side.hpp"
+#include "dem/host/host_surfaces.hpp"
 
 namespace scree {
 
@@ -14,8 +14,8 @@ class CudaBodies {
  public:
   explicit CudaBodies(CudaItems& items) : items_(items), side_(items.model, items.subdomain, items.ranks) {}
 
-  SurfaceSide& side() { return side_; }
-  const SurfaceSide& side() const { return side_; }
+  HostSurfaces& side() { return side_; }
+  const HostSurfaces& side() const { return side_; }
   bool have_surfaces() const { return side_.size() > 0; }
   const Stream& stream() const { return stream_; }  // stream of its own, concurrent with the particles'
 
@@ -30,28 +30,28 @@ class CudaBodies {
   // Over an implicit step: queues the contacts, which the particles' system reads; then takes their sums on
   // the host, and waits.
   void find_steps(const StepStart& start);
-  void find_rubs(const RubbingStart& start);  // for laws with friction
+  void find_friction_steps(const FrictionStart& start);  // for laws with friction
   void take_steps(Real h);
 
   // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
   // contacts of particles in the state of `query`. The kernel of the step reads them after loads_found();
   // take_loads() waits for their sums.
-  void queue_loads(const SurfaceLook& query, const Event& ready);
+  void queue_loads(const SurfaceQuery& query, const Event& ready);
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
-  void book_loads(Real h);
+  void accumulate_load_works(Real h);
   // The same as queue_loads() while the step's kernel may still read its own loads. Waits.
-  void find_loads_beside(const SurfaceLook& query);
+  void find_loads_concurrently(const SurfaceQuery& query);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
  private:
   CudaItems& items_;
-  SurfaceSide side_;
+  HostSurfaces side_;
   Stream stream_{Priority::urgent};
   Event loads_found_, booked_;
-  DeviceArray<Vec3> step_, step_turn_;
+  DeviceArray<Vec3> step_, step_rotation_;
 };
 
 }  // namespace scree

@@ -64,7 +64,7 @@ void RunControl::start(const VerletRequest& step) {
   max_over(items_.device(), items_.owned,
            RunStartItem{{state}, step.active, step.box, step.drifting, step.control}, largest);
   started_kernel<<<1, 1, 0, items_.stream>>>(on_device(), largest);
-  items_.lane.halo.max(items_.device(), on_device()->shared, 2);
+  items_.halo_stream.halo.max(items_.device(), on_device()->shared, 2);
   open_kernel<<<1, 1, 0, items_.stream>>>(on_device());
   require_cuda(cudaGetLastError(), "explicit step");
   wait_for(items_.stream);  // until the host's copy of the control block is free again
@@ -72,7 +72,7 @@ void RunControl::start(const VerletRequest& step) {
 
 const VerletControl& RunControl::wait() {
   const VerletControl& c = items_.results.fetch(&Results::control);
-  items_.lane.clock.read(items_.balance.halo);
+  items_.halo_stream.clock.read(items_.balance.halo);
   parity_[0] = c.parity[0], parity_[1] = c.parity[1];
   items_.history.closed(c.closed);
   list_.set_bound(c.bound);

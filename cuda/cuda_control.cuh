@@ -37,7 +37,7 @@ class RunControl {
   // After a step was queued whose control block has not been read yet.
   void turn() { parity_[0] ^= 1, parity_[1] ^= 1; }
   // After the open step was copied into the arrays of the state.
-  void at_home() { parity_[0] = parity_[1] = 0; }
+  void reset_parity() { parity_[0] = parity_[1] = 0; }
 
  private:
   CudaItems& items_;

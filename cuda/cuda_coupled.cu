@@ -30,7 +30,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
       renew_list(timers);
       continue;
     }
-    bodies_.side().book_losses(h_), bodies_.book_loads(h_);
+    bodies_.side().accumulate_losses(h_), bodies_.accumulate_load_works(h_);
     if (!keep_open || before.leaves) {
       bodies_.loads_found().hold(items_.stream);
       list_.set_bound(control.bound);
@@ -59,8 +59,8 @@ void CudaExplicitRun::queue_loads() {
 // stream reads and writes it.
 void CudaExplicitRun::shape_contacts() {
   bodies_.side().reopen_step();
-  bodies_.find_loads_beside({closed_step_.position, closed_step_.velocity, closed_step_.spin,
-                             items_.history.views_before(control_.velocity_parity() == 1), h_});
+  bodies_.find_loads_concurrently({closed_step_.position, closed_step_.velocity, closed_step_.spin,
+                                   items_.history.views_before(control_.velocity_parity() == 1), h_});
   bodies_.side().close_step();
 }
 

@@ -33,12 +33,12 @@ CudaExplicitRun::~CudaExplicitRun() {
 }
 
 StepsTaken CudaExplicitRun::take_steps(Index most, bool keep_open, StageTimers& timers) {
-  const bool follows = bodies_.have_surfaces() && !items_.surfaces.any_at_rest();
+  const bool follows = bodies_.have_surfaces() && !items_.surfaces.all_placed_static();
   return follows ? take_steps_with_bodies(most, keep_open, timers)
-                 : take_steps_alone(most, keep_open, timers);
+                 : take_steps_without_bodies(most, keep_open, timers);
 }
 
-StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTimers& timers) {
+StepsTaken CudaExplicitRun::take_steps_without_bodies(Index most, bool keep_open, StageTimers& timers) {
   const VerletControl* c = &control_.wait();
   const Index start = c->closed, last = start + most - (keep_open ? 0 : 1);
   const auto leaves = [&] { return c->closed_steps[c->closed % VerletControl::kClosedSteps].leaves; };
@@ -55,7 +55,7 @@ StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTi
   if (keep_open && !leaves()) return {closed, true};
   const auto scope = timers.time(Stage::contact_force);
   if (bodies_.have_surfaces())
-    queue_loads(), bodies_.book_loads(h_), bodies_.loads_found().hold(items_.stream);
+    queue_loads(), bodies_.accumulate_load_works(h_), bodies_.loads_found().hold(items_.stream);
   finish();
   return {closed + 1, false};
 }
@@ -71,21 +71,21 @@ bool CudaExplicitRun::renew_list(StageTimers& timers) {
 // Steps to queue before the host reads the control block again: little more than the list is likely to cover.
 // Those after a stop do nothing but still cost their launches and, on several ranks, their halo exchange.
 Index CudaExplicitRun::steps_ahead(const VerletControl& control) const {
-  if (items_.lane.halo.waits()) return 1;
+  if (items_.halo_stream.halo.waits()) return 1;
   const Real covered = (control.half_skin - control.bound) / control.displacement;
   return covered < kQueuedSteps - 1 ? static_cast<Index>(covered) + 1 : kQueuedSteps;
 }
 
-void CudaExplicitRun::settle() {
+void CudaExplicitRun::commit_open_step() {
   control_.wait();
-  queue_.bring_home();
+  queue_.gather_open_step();
   control_.resume();
 }
 
 // Closes the open step without opening another, once the host knows which arrays hold it; afterwards the
 // state is synchronous: positions and velocities belong to the same time.
 void CudaExplicitRun::finish() {
-  if (queue_.in_mixed()) settle();
+  if (queue_.in_mixed()) commit_open_step();
   ParticleArrays& now = items_.now;
   SecondArrays& other = items_.other;
   const VerletRequest r = queue_.request();
@@ -99,11 +99,11 @@ void CudaExplicitRun::finish() {
   if (control_.velocity_parity() == 0) {  // the velocity arrays have been swapped
     std::swap(now.velocity, other.velocity);
     std::swap(now.angular_velocity, other.angular_velocity);
-    items_.history.take_ahead();
+    items_.history.commit_next();
   }
-  control_.at_home();
+  control_.reset_parity();
   items_.open_run = nullptr;
-  items_.seen_velocity = other.velocity.data(), items_.seen_spin = other.angular_velocity.data();
+  items_.law_velocity = other.velocity.data(), items_.law_spin = other.angular_velocity.data();
   closed_step_ = {now.position.data(), other.velocity.data(), other.angular_velocity.data()};
   bodies_.put();
   items_.refresh_ghosts();

@@ -21,10 +21,10 @@ class CudaExplicitRun : public ExplicitRun {
   }
 
   // Copies the open step into the arrays of the state, from which the run continues.
-  void settle();
+  void commit_open_step();
 
  private:
-  StepsTaken take_steps_alone(Index most, bool keep_open, StageTimers& timers);
+  StepsTaken take_steps_without_bodies(Index most, bool keep_open, StageTimers& timers);
   bool renew_list(StageTimers& timers);
   Index steps_ahead(const VerletControl& control) const;
   void finish();

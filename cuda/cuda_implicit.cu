@@ -1,4 +1,4 @@
-// The same schedule as src/dem/cpu_implicit.cpp and block_solver.cpp, with kernels.
+// The same schedule as src/dem/cpu/cpu_implicit.cpp and block_solver.cpp, with kernels.
 #include <cmath>
 
 #include "cuda_bodies.cuh"
@@ -52,8 +52,8 @@ void CudaImplicitArrays::resize(const CudaItems& items) {
   const auto owned = static_cast<std::size_t>(items.owned),
              slots = static_cast<std::size_t>(items.list.slots());
   step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
-  stiffening.resize(owned), matrix_count.resize(owned), residual.resize(owned);
-  if (items.model.rotates()) return rubbing.resize(items);
+  stiffness_ratio.resize(owned), matrix_count.resize(owned), residual.resize(owned);
+  if (items.model.rotates()) return friction.resize(items);
   matrix_entries.resize(slots);
   for (DeviceArray<Vec4>& d : direction) d.resize(static_cast<std::size_t>(items.layout.items));
   right_hand_side.resize(owned), correction.resize(owned);
@@ -103,7 +103,7 @@ void CudaImplicitStep::predict() {
   ParticleArrays& now = items_.now;
   SecondArrays& start = items_.other;
   copy_async(start.acceleration.data(), now.acceleration.data(), n, items_.stream);
-  bodies_.side().keep_start(), items_.surfaces.keep_start(items_.device());
+  bodies_.side().store_start(), items_.surfaces.store_start(items_.device());
   for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
   ghosts_stale_ = true;
 }
@@ -132,7 +132,7 @@ void CudaImplicitStep::queue_forces() {
   r.weights = newton_weights();
   r.start = step_start();
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
-  r.residual = arrays_.residual.data(), r.stiffening = arrays_.stiffening.data();
+  r.residual = arrays_.residual.data(), r.stiffness_ratio = arrays_.stiffness_ratio.data();
   r.inverse_block = arrays_.inverse_block.data();
   r.largest = items_.results.at(&Results::norms);
   require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), items_.stream), "cudaMemsetAsync");
@@ -142,7 +142,8 @@ void CudaImplicitStep::queue_forces() {
   };
   if (!ghosts_stale_) return queue_rows(items_.device(), 0, items_.owned);
   items_.halo_after_rows();
-  items_.queue_beside_halo([&](Device on) { items_.refresh_ghosts(on); }, queue_rows, &items_.lane.clock);
+  items_.queue_overlapping_halo([&](Device on) { items_.refresh_ghosts(on); }, queue_rows,
+                                &items_.halo_stream.clock);
   items_.rows_after_halo();
   ghosts_stale_ = false;
 }
@@ -151,11 +152,11 @@ void CudaImplicitStep::queue_forces() {
 // finite.
 StepNorms CudaImplicitStep::largest_norms() {
   StepNorms largest = items_.results.fetch(&Results::norms);
-  items_.lane.clock.read(items_.balance.halo);
-  Real maxima[4] = {largest.residual, largest.correction_bound, largest.force, largest.stiffening};
+  items_.halo_stream.clock.read(items_.balance.halo);
+  Real maxima[4] = {largest.residual, largest.correction_bound, largest.force, largest.stiffness_ratio};
   items_.ranks.max(maxima);
   largest.residual = maxima[0], largest.correction_bound = maxima[1];
-  largest.force = maxima[2], largest.stiffening = maxima[3];
+  largest.force = maxima[2], largest.stiffness_ratio = maxima[3];
   if (!std::isfinite(largest.residual)) items_.report_not_finite(arrays_.residual.data());
   return largest;
 }
@@ -169,16 +170,16 @@ ParticleNorms CudaImplicitStep::contact_force() {
     items_.queue_sums(SlopeItem{arrays_.residual.data(), arrays_.correction.data()}, &Results::slope);
   results.copy(&Results::slope);
   const StepNorms largest = largest_norms();
-  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
+  force_scale_ = largest.force, largest_stiffness_ratio_ = largest.stiffness_ratio;
   right_hand_side_norm_ = largest.residual;
-  if (line_search_.is_open()) line_search_.look(results.totals(results.host().slope)[0]);
+  if (line_search_.is_open()) line_search_.update(results.totals(results.host().slope)[0]);
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
 GlobalId CudaImplicitStep::worst_particle() {
   Real* largest = items_.results.at(&Results::largest);
   max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()}, largest);
-  items_.lane.halo.max(items_.device(), largest, 1);
+  items_.halo_stream.halo.max(items_.device(), largest, 1);
   const long long worst = items_.smallest_id(IsLargest{arrays_.residual.data(), largest});
   return worst < kNoId ? worst : -1;
 }
@@ -217,7 +218,7 @@ void CudaImplicitStep::subtract_surface_steps() {
 // number of products.
 int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
   Vec3 *residual = arrays_.residual.data(), *correction = arrays_.correction.data();
-  DeviceHalo& halo = items_.lane.halo;
+  DeviceHalo& halo = items_.halo_stream.halo;
   const auto direction = [&](const ChebyshevWeights& weights) {
     return DirectionItem{arrays_.inverse_block.data(), residual, weights.from_last, weights.from_residual};
   };
@@ -236,7 +237,7 @@ int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real t
     out.subtract.d = arrays_.direction[product % 2].data(), out.subtract.residual = residual;
     return out;
   };
-  return solve_on_device(items_, arrays_.solver, largest_stiffening_, tolerance, begin, ghosts, item);
+  return solve_on_device(items_, arrays_.solver, largest_stiffness_ratio_, tolerance, begin, ghosts, item);
 }
 
 ParticleCorrection CudaImplicitStep::particle_correct() {
@@ -274,9 +275,9 @@ Real CudaImplicitStep::error() {
 void CudaImplicitStep::accept() {
   ParticleArrays& now = items_.now;
   bodies_.find_steps(step_start());
-  items_.kernels->books(items_.device(), items_.views(), items_.owned, step_start(), now.contact_loss.data(),
-                        now.integrator_loss.data());
-  items_.surfaces.book_steps(items_.device(), *items_.kernels);
+  items_.kernels->step_losses(items_.device(), items_.views(), items_.owned, step_start(),
+                              now.contact_loss.data(), now.integrator_loss.data());
+  items_.surfaces.accumulate_step_works(items_.device(), *items_.kernels);
   items_.history.accepted();
   for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});

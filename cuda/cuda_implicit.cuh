@@ -4,28 +4,28 @@
 #include "cuda_solver.cuh"
 #include "dem/backend/implicit_step.hpp"
 #include "dem/implicit/line_search.hpp"
-#include "dem/implicit/turning_items.hpp"
+#include "dem/implicit/rotation_items.hpp"
 
 namespace scree {
 
 class CudaBodies;
 
 // Additional arrays for laws with friction, where particles rotate.
-struct CudaRubbingArrays {
+struct CudaFrictionArrays {
   DeviceArray<Vec4> mean_spin;  // iterate, of all items
   // written by the contact force stage
   DeviceArray<Vec3> start_torque, step_torque, end_torque;
-  DeviceArray<Real> sharpness;
+  DeviceArray<Real> phase_squared;
   DeviceArray<Index> surface_count;
-  RubbingEntryArrays<DeviceArray> entries;
-  DeviceArray<RubbingEntry> surface_entries;
+  FrictionEntryArrays<DeviceArray> entries;
+  DeviceArray<FrictionEntry> surface_entries;
   DeviceArray<ScaledMass> mass;
   DeviceArray<float> inverse_block;  // laid out as `BlockSlices`
   DeviceArray<Twist> residual;
   DeviceArray<Twistf> correction;
   DeviceArray<Real> neighbor_limits, surface_limits;  // while the limits are lagged
-  DeviceArray<RubbingNorms> norms{1};
-  PinnedArray<RubbingNorms> h_norms{1};
+  DeviceArray<FrictionNorms> norms{1};
+  PinnedArray<FrictionNorms> h_norms{1};
   DeviceArray<Twistf> direction[2];  // all items
 
   void resize(const CudaItems& items);
@@ -35,7 +35,7 @@ struct CudaRubbingArrays {
 struct CudaImplicitArrays {
   // Stage `contact_force` of the implicit step.
   DeviceArray<Vec3> step_force, end_force, residual;
-  DeviceArray<Real> force_magnitude, stiffening;
+  DeviceArray<Real> force_magnitude, stiffness_ratio;
   DeviceArray<Index> matrix_count;
   DeviceArray<ContactEntry> matrix_entries;
   DeviceArray<Sym3> matrix_diagonal, inverse_block;
@@ -43,7 +43,7 @@ struct CudaImplicitArrays {
   DeviceArray<Vec3> right_hand_side, correction;
   DeviceArray<Vec4> direction[2];
   SolverProgress solver;
-  CudaRubbingArrays rubbing;
+  CudaFrictionArrays friction;
 
   // Sizes the arrays for the items and their list after it is built.
   void resize(const CudaItems& items);
@@ -85,7 +85,7 @@ class CudaImplicitStep : public ImplicitStep {
   int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
 
   // Of the last contact force stage.
-  Real largest_stiffening_ = 0, force_scale_ = 0, right_hand_side_norm_ = 0;
+  Real largest_stiffness_ratio_ = 0, force_scale_ = 0, right_hand_side_norm_ = 0;
   LineSearch line_search_;  // along arrays_.correction
 };
 

@@ -22,8 +22,8 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       surfaces(of, subdomain.period(), stream),
       lane(on, of.parallel.transport),
       list(kernels->history() > 0, slots_per_particle(of)),
-      history(kept_numbers(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
-              {other, room}),
+      history(packed_numbers(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
+              {other, arena}),
       results(on, stream) {
   static_cast<FieldsThere&>(now) = fields_there(of);
   other.rotates = now.rotates, other.implicit = of.integrator.particles == ParticleIntegrator::hht;
@@ -31,23 +31,24 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
 
 DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const Vec4* spin) {
   DeviceViews views = surfaces.views(position, velocity, now.material.data(), list.rows());
-  views.history = history.views(), views.spin = spin, views.reach = model.contact.reach;
+  views.history = history.views(), views.spin = spin,
+  views.interaction_range = model.contact.interaction_range;
   return views;
 }
 
 void CudaItems::reorder(const Index* order, Index n) {
   other.grow(now.position.size(), static_cast<std::size_t>(n));
-  history.reorder(order, n, numbers_while_listing());
+  history.reorder(order, n, list_scratch());
   scree::reorder(device(), now, other, order, n);
   owned = n;
 }
 
 void CudaItems::halo_after_rows() {
-  if (!ranks.alone()) fork_lane();
+  if (!ranks.alone()) fork_halo_stream();
 }
 
 void CudaItems::rows_after_halo() {
-  if (!ranks.alone()) join_lane();
+  if (!ranks.alone()) join_halo_stream();
 }
 
 void CudaItems::report_not_finite(const Vec3* force) {

@@ -6,10 +6,10 @@
 
 #include "contact_kernels.cuh"
 #include "cuda_results.cuh"
+#include "device_arena.cuh"
 #include "device_halo.cuh"
 #include "device_history.cuh"
 #include "device_list.cuh"
-#include "device_room.cuh"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
 #include "model/data/model.hpp"
@@ -23,8 +23,8 @@ namespace scree {
 class CudaExplicitRun;
 
 // The halo exchange on a stream of its own, concurrent with the kernels over rows.
-struct HaloLane {
-  HaloLane(const Ranks& ranks, Transport transport) : halo(ranks, transport) {}
+struct HaloStream {
+  HaloStream(const Ranks& ranks, Transport transport) : halo(ranks, transport) {}
 
   DeviceHalo halo;
   Stream stream{Priority::urgent};
@@ -52,29 +52,31 @@ struct CudaItems {
   // Moves particle order[i] to i for i = 0 ... n - 1; the others are removed.
   void reorder(const Index* order, Index n);
   // Scratch memory for one `Index` per particle while a list is built.
-  Index* numbers_while_listing() { return reinterpret_cast<Index*>(other.position.data()); }
+  Index* list_scratch() { return reinterpret_cast<Index*>(other.position.data()); }
 
   void refresh_ghosts(Device on) {
     update_halo(on, now.position.data(), now.velocity.data(), now.angular_velocity.data());
   }
   // spin: unused unless particles rotate.
   void update_halo(Device on, Vec4* position, Vec4* velocity, Vec4* spin) {
-    lane.halo.update_motion(on, position, velocity, model.rotates() ? std::optional(spin) : std::nullopt,
-                            owned);
+    halo_stream.halo.update_motion(on, position, velocity,
+                                   model.rotates() ? std::optional(spin) : std::nullopt, owned);
   }
   void refresh_ghosts() { refresh_ghosts(device()); }
   // Orders the streams: what is queued on the halo stream after the fork waits for the rows queued so far,
   // and what is queued on the main stream after the join waits for the halo.
-  void fork_lane() { lane.rows_done.record(stream), lane.rows_done.hold(lane.stream); }
-  void join_lane() { lane.done.record(lane.stream), lane.done.hold(stream); }
+  void fork_halo_stream() {
+    halo_stream.rows_done.record(stream), halo_stream.rows_done.hold(halo_stream.stream);
+  }
+  void join_halo_stream() { halo_stream.done.record(halo_stream.stream), halo_stream.done.hold(stream); }
   // The same for a halo exchange, for which a single rank does not use the second stream.
   void halo_after_rows();
   void rows_after_halo();
   template <class QueueGhosts, class QueueRows>
-  void queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
-  template <class QueueGhosts, class QueueEarly, class QueueLate>
-  void queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
-                         const QueueLate& queue_late, HaloClock* clock);
+  void queue_overlapping_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
+  template <class QueueGhosts, class QueueInterior, class QueueBoundary>
+  void queue_around_halo(const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
+                         const QueueBoundary& queue_boundary, HaloClock* clock);
 
   // Queues sums of terms over the particles; see `DeviceResults::totals`.
   template <int N, class Item>
@@ -104,10 +106,10 @@ struct CudaItems {
   Index interior = 0;  // number of leading particles, in whole thread blocks, that have no ghost neighbours
                        // and are no ghosts elsewhere
   StepParts parts;     // split of explicit steps
-  HaloLane lane;
+  HaloStream halo_stream;
   DeviceList list;
   // Arrays of explicit steps that depend on the list; while a list is built, scratch arrays.
-  DeviceRoom room;
+  DeviceArena arena;
   DeviceHistory history;
   LoadBalance balance;
   DeviceResults results;
@@ -117,7 +119,7 @@ struct CudaItems {
   CudaExplicitRun* open_run = nullptr;
   // Velocities at which the law was evaluated in the last explicit step, valid until the next list; null
   // where they are those of the state.
-  const Vec4 *seen_velocity = nullptr, *seen_spin = nullptr;
+  const Vec4 *law_velocity = nullptr, *law_spin = nullptr;
 };
 
 template <class Is>
@@ -140,15 +142,15 @@ long long CudaItems::smallest_id(const Is& is) {
 template <int N, class Item>
 void CudaItems::queue_sums(const Item& item, ExactSums<N> Results::*sums) {
   exact_sums(device(), owned, item, results.at(sums),
-             [&](Real* largest) { lane.halo.max(device(), largest, N); });
+             [&](Real* largest) { halo_stream.halo.max(device(), largest, N); });
 }
 
 // Queues a pass over the particles that reads their ghosts: queue_ghosts(device) the halo exchange,
 // queue_rows(device, first, end) the kernel. With several ranks the interior, which has no ghost neighbours,
 // is computed during the halo exchange, and the boundary as soon as the ghosts have arrived.
 template <class QueueGhosts, class QueueRows>
-void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
-                                  HaloClock* clock) {
+void CudaItems::queue_overlapping_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
+                                       HaloClock* clock) {
   if (ranks.alone()) {
     queue_ghosts(device());
     queue_rows(device(), 0, owned);
@@ -162,20 +164,20 @@ void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRo
       [&](Device on) { queue_rows(on, interior, owned); }, clock);
 }
 
-// The same for several ranks, where queue_early(device) queues the interior and queue_late(device) the
+// The same for several ranks, where queue_interior(device) queues the interior and queue_boundary(device) the
 // boundary. At the call both streams are ordered after what the pass reads; afterwards the halo stream is
 // ordered after the interior, so that the next halo exchange starts before the next rows fill the GPU. clock:
 // measures the exchange, if not null.
-template <class QueueGhosts, class QueueEarly, class QueueLate>
-void CudaItems::queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
-                                  const QueueLate& queue_late, HaloClock* clock) {
-  if (clock != nullptr) clock->begin(lane.stream);
-  queue_early(device());
+template <class QueueGhosts, class QueueInterior, class QueueBoundary>
+void CudaItems::queue_around_halo(const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
+                                  const QueueBoundary& queue_boundary, HaloClock* clock) {
+  if (clock != nullptr) clock->begin(halo_stream.stream);
+  queue_interior(device());
   if (clock != nullptr) clock->interior_done(stream);
-  queue_ghosts({lane.stream});
-  if (clock != nullptr) clock->end(lane.stream);
-  queue_late({lane.stream});
-  fork_lane();
+  queue_ghosts({halo_stream.stream});
+  if (clock != nullptr) clock->end(halo_stream.stream);
+  queue_boundary({halo_stream.stream});
+  fork_halo_stream();
 }
 
 }  // namespace scree

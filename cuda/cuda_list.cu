@@ -28,13 +28,13 @@ struct WrapItem {
 struct CellKeyItem {
   const Vec4* position;
   const std::uint8_t* drifting;
-  BrickGrid grid;
+  CellBlockGrid grid;
   unsigned outside;
   unsigned* keys;
 
   SCREE_HD void operator()(Index i) const {
-    const CellPlace c = grid.cells.place(xyz(position[i]));
-    keys[i] = drifting[i] == kGone          ? outside + 1
+    const CellIndex c = grid.cells.cell_index(xyz(position[i]));
+    keys[i] = drifting[i] == kMigrated      ? outside + 1
               : drifting[i] != 0 || c.x < 0 ? outside
                                             : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
@@ -55,11 +55,11 @@ struct GhostNameItem {
 
 struct GhostKeyItem {
   const Vec4* position;  // of the ghosts
-  BrickGrid grid;
+  CellBlockGrid grid;
   unsigned outside;
   unsigned* keys;
   SCREE_HD void operator()(Index g) const {
-    const CellPlace c = grid.cells.place(xyz(position[g]));
+    const CellIndex c = grid.cells.cell_index(xyz(position[g]));
     keys[g] = c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
@@ -90,22 +90,22 @@ struct GhostItem {
 }  // namespace
 
 // An open step of an explicit run is first copied into the state.
-void CudaList::settle() {
-  if (items_.open_run != nullptr) items_.open_run->settle();
+void CudaList::commit_open_step() {
+  if (items_.open_run != nullptr) items_.open_run->commit_open_step();
 }
 
 // After the poses and ghosts were refreshed: the keys of contacts depend on positions.
-void CudaList::leave_slots() {
+void CudaList::pack_history() {
   if (!items_.history.at_slots()) return;
   items_.refresh_ghosts();
   bodies_.put();
-  items_.ranks.together([&] { items_.history.leave_slots(items_.listed()); });
+  items_.ranks.collectively([&] { items_.history.pack_history(items_.listed()); });
 }
 
-void CudaList::place_bodies(std::span<const BodyMotion> motion) {
+void CudaList::set_body_motion(std::span<const BodyMotion> motion) {
   bodies_.side().set_motion(motion);
   if (!current_) return;
-  bodies_.side().place();
+  bodies_.side().update_poses();
   // An explicit run copies the poses of the surfaces itself, concurrently with its steps.
   if (items_.open_run == nullptr) bodies_.put();
 }
@@ -121,14 +121,14 @@ void CudaList::wrap_positions() {
 // particles: number over all ranks.
 void CudaList::sort_cells(Real skin, std::int64_t particles) {
   const Ranks& ranks = items_.ranks;
-  grid_ = make_brick_grid(ranks.alone()
-                              ? builder_.cells(skin, particles)
-                              : builder_.cells(skin, particles,
-                                               owners_.decomposition().box(ranks.rank(), items_.subdomain),
-                                               items_.owned));
+  grid_ = make_cell_block_grid(
+      ranks.alone()
+          ? builder_.cells(skin, particles)
+          : builder_.cells(skin, particles, owners_.decomposition().box(ranks.rank(), items_.subdomain),
+                           items_.owned));
   const auto outside = static_cast<unsigned>(grid_.count());
   const auto owned = static_cast<std::size_t>(items_.owned);
-  particle_sort_.work_in(items_.list.take_room(CellSort::kNumbers * owned), owned);
+  particle_sort_.use_scratch(items_.list.scratch_space(CellSort::kNumbers * owned), owned);
   for_each(items_.device(), items_.owned,
            CellKeyItem{items_.now.position.data(), items_.now.drifting.data(), grid_, outside,
                        particle_sort_.keys(owned)});
@@ -146,13 +146,13 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
 }
 
 // Lays out particles and ghosts, sizes their arrays, and sets the keys of the ghosts.
-void CudaList::find_ghosts(Real width) {
+void CudaList::collect_ghosts(Real width) {
   ItemLayout& layout = items_.layout;
-  DeviceHalo& halo = items_.lane.halo;
+  DeviceHalo& halo = items_.halo_stream.halo;
   ParticleArrays& now = items_.now;
   halo.count(items_.device(), HaloPlan(items_.ranks, owners_.decomposition(), items_.subdomain, width),
              now.position.data(), layout.active);
-  items_.ranks.together([&] {
+  items_.ranks.collectively([&] {
     const auto owned = static_cast<std::size_t>(items_.owned);
     layout.items = countable(owned + static_cast<std::size_t>(halo.size()), kTooManyItems);
     halo.list(items_.device(), now.position.data(), layout.active);
@@ -162,12 +162,12 @@ void CudaList::find_ghosts(Real width) {
     // those that arrived.
     now.trim(owned, items_.stream), items_.other.trim(items_.stream);
   });
-  name_ghosts();
+  set_ghost_keys();
 }
 
-void CudaList::name_ghosts() {
-  constexpr unsigned kKinds = kNames | kGhostCopies;
-  DeviceHalo& halo = items_.lane.halo;
+void CudaList::set_ghost_keys() {
+  constexpr unsigned kKinds = kKeys | kGhostCopies;
+  DeviceHalo& halo = items_.halo_stream.halo;
   GhostNameItem item{halo.ghosts(), {}};
   std::vector<HaloMessage> messages;
   for_each_array<kKinds>(
@@ -181,15 +181,15 @@ void CudaList::name_ghosts() {
 }
 
 void CudaList::lay_out_items(Real skin) {
-  find_ghosts(builder_.cutoff(skin));
+  collect_ghosts(builder_.cutoff(skin));
   items_.refresh_ghosts();
   bodies_.side().bring_into_box();
-  bodies_.side().place();
+  bodies_.side().update_poses();
 }
 
 // Index of ghosts by cell.
 void CudaList::index_ghosts() {
-  const Index ghosts = items_.lane.halo.size();
+  const Index ghosts = items_.halo_stream.halo.size();
   if (ghosts == 0) return;
   const auto outside = static_cast<unsigned>(grid_.count());
   for_each(items_.device(), ghosts,
@@ -206,11 +206,11 @@ void CudaList::search(Real skin) {
   in.position = now.position.data(), in.row_key = now.row_key.data();
   in.grid = grid_;
   in.particle_starts = particle_sort_.starts();
-  const bool ghosts = items_.lane.halo.size() > 0;
+  const bool ghosts = items_.halo_stream.halo.size() > 0;
   in.ghost_starts = ghosts ? ghost_sort_.starts() : nullptr;
   in.ghost_items = ghosts ? ghost_items_.data() : nullptr;
   in.active = items_.layout.active, in.owned = items_.owned;
-  in.skin = builder_.past_touch(skin);
+  in.skin = builder_.search_margin(skin);
   items_.list.build(items_.device(), in);
   const DeviceSurfaces::Particles particles{now.position.data(),
                                             now.material.data(),
@@ -219,30 +219,30 @@ void CudaList::search(Real skin) {
                                             &grid_,
                                             particle_sort_.starts(),
                                             builder_.largest_radius(),
-                                            items_.numbers_while_listing(),
-                                            items_.history.remembered()};
-  items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
+                                            items_.list_scratch(),
+                                            items_.history.stored_contacts()};
+  items_.surfaces.build(items_.device(), particles, bodies_.side().poses(), builder_.search_margin(skin));
 }
 
 // Arrays of explicit steps that depend on the list. Forces, and with rotation all other values at an instant,
 // belong to the synchronous state: no step reads them and the last step of a run writes them all, so that
 // until then their memory serves other arrays.
-void CudaList::make_room_for_steps() {
+void CudaList::reserve_for_steps() {
   ParticleArrays& now = items_.now;
   const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
   const bool rotates = items_.model.rotates();
-  const RoomFor<RowPlace> places = items_.list.room_for_places();
-  const RoomFor fraction{items_.mixed.fraction, in_mixed};
-  const RoomFor rest{items_.mixed.rest, in_mixed};
-  const RoomFor spin_rest{items_.mixed.spin_rest, rotates ? in_mixed : 0};
-  const bool in_forces = places.fits(now.force);  // unless rows are long
-  items_.room.lay_out(RoomFor{built_at_, static_cast<std::size_t>(items_.layout.active)},
-                      items_.list.room_for_pruned(), places.unless(in_forces), fraction.unless(rotates),
-                      rest.unless(rotates), spin_rest.unless(rotates));
-  if (in_forces) places.stand_in(now.force);
+  const ArenaArray<RowIndex> row_indices = items_.list.reserve_row_indices();
+  const ArenaArray fraction{items_.mixed.fraction, in_mixed};
+  const ArenaArray rest{items_.mixed.rest, in_mixed};
+  const ArenaArray spin_rest{items_.mixed.spin_rest, rotates ? in_mixed : 0};
+  const bool in_forces = row_indices.fits(now.force);  // unless rows are long
+  items_.arena.lay_out(ArenaArray{built_at_, static_cast<std::size_t>(items_.layout.active)},
+                       items_.list.reserve_pruned(), row_indices.unless(in_forces), fraction.unless(rotates),
+                       rest.unless(rotates), spin_rest.unless(rotates));
+  if (in_forces) row_indices.alias(now.force);
   if (rotates) {
-    fraction.stand_in(now.loss_power), rest.stand_in(now.acceleration);
-    spin_rest.stand_in(now.angular_acceleration);
+    fraction.alias(now.loss_power), rest.alias(now.acceleration);
+    spin_rest.alias(now.angular_acceleration);
   }
 }
 
@@ -253,10 +253,10 @@ void CudaList::find_rows(Real skin) {
   owners_.note_rows();
   if (items_.model.integrator.particles == ParticleIntegrator::hht) {
     built_at_.resize(static_cast<std::size_t>(items_.layout.active)), step_arrays_.resize(items_);
-    items_.history.take_slots(items_.listed());
+    items_.history.unpack_history(items_.listed());
   } else {
-    items_.history.take_slots(items_.listed());  // the packed history leaves the scratch memory
-    make_room_for_steps();
+    items_.history.unpack_history(items_.listed());  // the packed history leaves the scratch memory
+    reserve_for_steps();
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
   for_each(items_.device(), items_.layout.active, BuiltAtItem{items_.now.position.data(), built_at_.data()});
@@ -265,9 +265,9 @@ void CudaList::find_rows(Real skin) {
 // Where an allocation fails the particles are unchanged. Phases in which that is likely end with `together`,
 // so that all ranks fail at once and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
-  settle();
+  commit_open_step();
   current_ = false;
-  leave_slots();
+  pack_history();
   std::int64_t particles = 0;
   {
     const auto scope = timers.time(Stage::migrate);
@@ -284,9 +284,9 @@ void CudaList::build(Real skin, StageTimers& timers) {
     lay_out_items(skin);
   }
   const auto scope = timers.time(Stage::neighbors);
-  items_.ranks.together([&] { find_rows(skin); });
+  items_.ranks.collectively([&] { find_rows(skin); });
   bodies_.side().build_list(skin);
-  items_.seen_velocity = items_.seen_spin = nullptr;
+  items_.law_velocity = items_.law_spin = nullptr;
   skin_ = skin, bound_ = 0;
   current_ = true;
   ++builds_;
@@ -295,7 +295,7 @@ void CudaList::build(Real skin, StageTimers& timers) {
 
 Real CudaList::displacement() {
   if (!current_) return 2;
-  settle();
+  commit_open_step();
   const MovedItem moved{built_at_.data(), items_.now.position.data()};
   DeviceResults& results = items_.results;
   max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));

@@ -21,7 +21,7 @@ class CudaList : public RankList {
         builder_(items.model),
         owners_(items, builder_) {}
 
-  void place_bodies(std::span<const BodyMotion> motion) override;
+  void set_body_motion(std::span<const BodyMotion> motion) override;
   Real displacement() override;
   void build(Real skin, StageTimers& timers) override;
   std::int64_t entries() const override { return items_.list.entries(); }
@@ -39,15 +39,15 @@ class CudaList : public RankList {
 
  private:
   // Phases of build(), in order.
-  void settle();
-  void leave_slots();
+  void commit_open_step();
+  void pack_history();
   void wrap_positions();
   void sort_cells(Real skin, std::int64_t particles);
   void lay_out_items(Real skin);
-  void find_ghosts(Real width);
-  void name_ghosts();
+  void collect_ghosts(Real width);
+  void set_ghost_keys();
   void find_rows(Real skin);
-  void make_room_for_steps();
+  void reserve_for_steps();
   void index_ghosts();
   void search(Real skin);
 
@@ -57,7 +57,7 @@ class CudaList : public RankList {
   NeighborBuilder builder_;  // grid and range of the search, which runs on the device
   CudaOwners owners_;
   CellSort particle_sort_, ghost_sort_;
-  BrickGrid grid_;
+  CellBlockGrid grid_;
   DeviceArray<Index> ghost_items_;
   DeviceArray<Vec3> built_at_;  // positions of the searched particles when the list was built
   bool current_ = false;

@@ -26,7 +26,7 @@ struct MigrantItem {
   SCREE_HD void operator()(Index k) const {
     const Index i = departing[k];
     out[k] = particle_at(in, i);
-    in.drifting[i] = kGone;
+    in.drifting[i] = kMigrated;
   }
 };
 
@@ -53,7 +53,7 @@ void CudaOwners::decompose() {
 void CudaOwners::migrate() {
   if (!decomposition_.exists() || items_.balance.imbalance > items_.model.parallel.imbalance) decompose();
   items_.other.grow(items_.now.position.size(), static_cast<std::size_t>(items_.owned));
-  Index* departing = items_.numbers_while_listing();  // valid until the sort
+  Index* departing = items_.list_scratch();  // valid until the sort
   const DepartsItem departs{decomposition_.grid(), cuts_.data(), items_.now.position.data(),
                             items_.ranks.rank()};
   with_space(items_.space, [&](void* at, std::size_t& bytes) {
@@ -71,8 +71,8 @@ void CudaOwners::migrate() {
   for (Index part = 0; part < parts; ++part) {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
     std::vector<std::vector<Particle>> to(static_cast<std::size_t>(items_.ranks.size()));
-    const KeptContacts contacts = items_.history.rows(departing + first, n);
-    std::vector<KeptContacts> contacts_to(to.size(), no_contacts(contacts.numbers, 0));
+    const PackedHistory contacts = items_.history.rows(departing + first, n);
+    std::vector<PackedHistory> contacts_to(to.size(), no_contacts(contacts.numbers, 0));
     std::int64_t k = 0;
     for (const Particle& p : pack_migrants(departing + first, n)) {
       const auto owner = static_cast<std::size_t>(decomposition_.owner(p.position));
@@ -80,8 +80,8 @@ void CudaOwners::migrate() {
       if (items_.history.exists()) contacts_to[owner].add_row(contacts, k++);
     }
     const Index before = items_.owned;
-    add_migrants(items_.ranks.deal_out(to));
-    if (items_.history.exists()) items_.history.append(deal_out(items_.ranks, contacts_to), before);
+    add_migrants(items_.ranks.all_to_all(to));
+    if (items_.history.exists()) items_.history.append(all_to_all(items_.ranks, contacts_to), before);
   }
 }
 
@@ -114,7 +114,7 @@ void CudaOwners::note_rows() {
 
 void CudaOwners::measure_balance() {
   HaloSize& size = items_.balance.halo;
-  const DeviceHalo& halo = items_.lane.halo;
+  const DeviceHalo& halo = items_.halo_stream.halo;
   size.owned = items_.owned, size.ghosts = halo.size(), size.neighbors = halo.plan().receivers();
   size.bytes = std::int64_t{halo.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4));
   if (items_.ranks.alone()) return;

@@ -1,5 +1,5 @@
-// Assignment of the particles to the ranks, if there are several: src/dem/cpu_list.cpp for the GPU backend.
-// Particles that migrate to another rank, few after the first list, go through the host.
+// Assignment of the particles to the ranks, if there are several: src/dem/cpu/cpu_list.cpp for the GPU
+// backend. Particles that migrate to another rank, few after the first list, go through the host.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace scree {
 
 // Mark in `ParticleArrays::drifting`: another rank owns the particle from now on.
-inline constexpr std::uint8_t kGone = 2;
+inline constexpr std::uint8_t kMigrated = 2;
 
 class CudaOwners {
  public:

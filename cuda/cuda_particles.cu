@@ -18,7 +18,7 @@ struct EscapedItem {
   OpenBox box;
   Vec3 gravity, period;
   Real verlet_step;  // [s]
-  Leaver* out;
+  EscapedParticle* out;
   Index capacity;
   Index* count;
 
@@ -107,7 +107,7 @@ std::vector<Particle> CudaParticles::records() {
   return out;
 }
 
-KeptContacts CudaParticles::contacts() {
+PackedHistory CudaParticles::contacts() {
   if (!items_.history.exists()) return {};
   std::vector<std::int64_t> key(static_cast<std::size_t>(items_.owned));
   copy_async(key.data(), items_.now.row_key.data(), key.size(), items_.stream);
@@ -127,57 +127,58 @@ void CudaParticles::initial_forces() {
   for_each(items_.device(), items_.owned,
            StartAccelerationItem{now.force.data(), now.velocity.data(), now.acceleration.data()});
   if (is_verlet(items_.model))
-    bodies_.side().book_losses(0);
+    bodies_.side().accumulate_losses(0);
   else
     now.loss_power.zero(items_.stream);
 }
 
-// Stores particles that have just escaped in leavers_, as many as there is space for; returns their number.
-std::size_t CudaParticles::find_leavers() {
-  Index* count = items_.results.at(&Results::leavers);
+// Stores particles that have just escaped in escaped_particles_, as many as there is space for; returns their
+// number.
+std::size_t CudaParticles::find_escaped_particles() {
+  Index* count = items_.results.at(&Results::escaped_particles);
   require_cuda(cudaMemsetAsync(count, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
   for_each(items_.device(), items_.owned,
            EscapedItem{views_of(items_.now), items_.subdomain.box(), items_.model.gravity,
-                       items_.subdomain.period(), verlet_step(items_.model), leavers_.data(),
-                       static_cast<Index>(leavers_.size()), count});
-  return static_cast<std::size_t>(items_.results.fetch(&Results::leavers));
+                       items_.subdomain.period(), verlet_step(items_.model), escaped_particles_.data(),
+                       static_cast<Index>(escaped_particles_.size()), count});
+  return static_cast<std::size_t>(items_.results.fetch(&Results::escaped_particles));
 }
 
-std::vector<Leaver> CudaParticles::outside() {
+std::vector<EscapedParticle> CudaParticles::outside() {
   constexpr std::size_t kInitialCapacity = 1024;
-  if (leavers_.size() == 0) leavers_.resize_clean(kInitialCapacity, items_.stream);
-  std::vector<Leaver> escaped(find_leavers());
+  if (escaped_particles_.size() == 0) escaped_particles_.resize_clean(kInitialCapacity, items_.stream);
+  std::vector<EscapedParticle> escaped(find_escaped_particles());
   if (!items_.ranks.any(!escaped.empty())) return escaped;
-  if (escaped.size() > leavers_.size()) {  // not all were stored; there is space for all now
-    leavers_.resize_clean(escaped.size(), items_.stream);
-    find_leavers();
+  if (escaped.size() > escaped_particles_.size()) {  // not all were stored; there is space for all now
+    escaped_particles_.resize_clean(escaped.size(), items_.stream);
+    find_escaped_particles();
   }
   bodies_.find_loads();
-  items_.kernels->leavers(items_.device(), items_.views(), items_.subdomain.box(),
-                          static_cast<Index>(escaped.size()), leavers_.data());
-  copy_async(escaped.data(), leavers_.data(), escaped.size(), items_.stream);
+  items_.kernels->escaped_particles(items_.device(), items_.views(), items_.subdomain.box(),
+                                    static_cast<Index>(escaped.size()), escaped_particles_.data());
+  copy_async(escaped.data(), escaped_particles_.data(), escaped.size(), items_.stream);
   wait_for(items_.stream);
-  for (Leaver& particle : escaped)
-    particle.lost = items_.subdomain.beyond_wall(particle.position), particle.rank = items_.ranks.rank();
-  escaped = items_.ranks.gather_everywhere(std::move(escaped));
+  for (EscapedParticle& particle : escaped)
+    particle.lost = items_.subdomain.is_beyond_wall(particle.position), particle.rank = items_.ranks.rank();
+  escaped = items_.ranks.all_gather(std::move(escaped));
   std::sort(escaped.begin(), escaped.end(),
-            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+            [](const EscapedParticle& a, const EscapedParticle& b) { return a.global_id < b.global_id; });
   return escaped;
 }
 
-void CudaParticles::take_out(const std::vector<Leaver>& escaped) {
+void CudaParticles::remove_escaped(const std::vector<EscapedParticle>& escaped) {
   if (escaped.empty()) return;
   std::vector<Index> particles;
-  for (const Leaver& particle : escaped)
+  for (const EscapedParticle& particle : escaped)
     if (particle.rank == items_.ranks.rank()) particles.push_back(particle.local_index);
-  const bool remove = items_.model.space.leaving == Leaving::remove;
+  const bool remove = items_.model.space.leaving == OutsidePolicy::remove;
   const auto n = remove ? static_cast<std::size_t>(items_.owned) : 0;
   // The arrays are sized first: if memory does not suffice, nothing has changed yet.
   DeviceArray<Index> d_particles, iota(n), remaining(n), row_length(items_.ranks.alone() ? 0 : n);
   DeviceArray<std::uint8_t> remains(n);
   d_particles.upload(particles, items_.stream);
-  take_contacts_out();
-  items_.history.leave_slots(items_.listed());
+  remove_escaped_contacts();
+  items_.history.pack_history(items_.listed());
   for_each(
       items_.device(), static_cast<Index>(particles.size()),
       MarkItem{d_particles.data(), views_of(items_.now), items_.model.space.min, items_.subdomain.period()});
@@ -203,11 +204,11 @@ void CudaParticles::take_out(const std::vector<Leaver>& escaped) {
 }
 
 // Before the escaped particles are wrapped and marked.
-void CudaParticles::take_contacts_out() {
+void CudaParticles::remove_escaped_contacts() {
   ParticleArrays& now = items_.now;
   const bool verlet = is_verlet(items_.model);
-  const Vec4* law_velocity = items_.seen_velocity != nullptr ? items_.seen_velocity : now.velocity.data();
-  const Vec4* law_spin = items_.seen_spin != nullptr ? items_.seen_spin : now.angular_velocity.data();
+  const Vec4* law_velocity = items_.law_velocity != nullptr ? items_.law_velocity : now.velocity.data();
+  const Vec4* law_spin = items_.law_spin != nullptr ? items_.law_spin : now.angular_velocity.data();
   items_.kernels->departures(
       items_.device(), items_.views(now.position.data(), law_velocity, law_spin), items_.model.gravity,
       items_.subdomain.box(), items_.owned,

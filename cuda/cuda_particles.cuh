@@ -14,8 +14,8 @@ class CudaParticles : public RankParticles {
 
   void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
   std::vector<Particle> records() override;
-  void load_contacts(const KeptContacts& contacts) override { items_.history.load(contacts, items_.owned); }
-  KeptContacts contacts() override;
+  void load_contacts(const PackedHistory& contacts) override { items_.history.load(contacts, items_.owned); }
+  PackedHistory contacts() override;
   ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
   void load_shape_contacts(const ShapeContacts& contacts) override { bodies_.side().load_contacts(contacts); }
   ShapeContacts shape_contacts() override { return bodies_.side().shape_contacts(); }
@@ -23,25 +23,25 @@ class CudaParticles : public RankParticles {
     items_.surfaces.works().load(words, items_.stream);
   }
   std::vector<std::int64_t> works() override {
-    std::vector<std::int64_t> words = items_.surfaces.works().words(items_.stream);
+    std::vector<std::int64_t> words = items_.surfaces.works().limbs(items_.stream);
     bodies_.side().add_works(words);
     return words;
   }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
-  std::vector<Leaver> outside() override;
-  void take_out(const std::vector<Leaver>& escaped) override;
+  std::vector<EscapedParticle> outside() override;
+  void remove_escaped(const std::vector<EscapedParticle>& escaped) override;
 
  private:
   RecordItem record_item(Index first);
-  std::size_t find_leavers();
-  void take_contacts_out();
+  std::size_t find_escaped_particles();
+  void remove_escaped_contacts();
 
   CudaItems& items_;
   CudaBodies& bodies_;
   CudaList& list_;
   DeviceArray<Particle> records_;  // records in transit between host and device
-  DeviceArray<Leaver> leavers_;
+  DeviceArray<EscapedParticle> escaped_particles_;
 };
 
 }  // namespace scree

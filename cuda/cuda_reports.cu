@@ -39,12 +39,12 @@ CudaReports::CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), 
 void CudaReports::queue_energies() {
   const auto n = static_cast<std::size_t>(items_.owned);
   const bool rotates = items_.now.rotates;
-  const bool attracts = items_.model.attracts();
-  cohesion_.resize(attracts ? n : 0);
+  const bool is_cohesive = items_.model.is_cohesive();
+  cohesion_.resize(is_cohesive ? n : 0);
   elastic_.resize(n), pairs_.resize(n), contacts_.resize(n), springs_.resize(rotates ? n : 0);
   items_.kernels->energies(items_.device(), items_.views(), items_.owned,
                            {elastic_.data(), contacts_.data(), pairs_.data(),
-                            rotates ? springs_.data() : nullptr, attracts ? cohesion_.data() : nullptr});
+                            rotates ? springs_.data() : nullptr, is_cohesive ? cohesion_.data() : nullptr});
 }
 
 ParticleLedger CudaReports::ledger(Real verlet_step) {
@@ -57,7 +57,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   items_.queue_sums(item, &Results::ledger);
   items_.queue_sums(InsideItem{item.in, item.gravity, item.period, verlet_step}, &Results::inside);
   if (now.rotates) items_.queue_sums(RotationItem{views_of(now), springs_.data()}, &Results::rotation);
-  if (items_.model.attracts()) items_.queue_sums(CohesionItem{cohesion_.data()}, &Results::cohesion);
+  if (items_.model.is_cohesive()) items_.queue_sums(CohesionItem{cohesion_.data()}, &Results::cohesion);
   Index* drifting = results.at(&Results::index);
   require_cuda(cudaMemsetAsync(drifting, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
   for_each(items_.device(), items_.owned, CountDriftingItem{now.drifting.data(), drifting});
@@ -68,7 +68,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   if (now.rotates)
     out.rotation =
         make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data(), bodies_.side());
-  if (items_.model.attracts()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
+  if (items_.model.is_cohesive()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
 }
@@ -216,9 +216,9 @@ std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> reques
   return found;
 }
 
-std::vector<ContactSum> CudaReports::carrier_contacts() {
+std::vector<ContactSum> CudaReports::parent_contacts() {
   need_loads();
-  return bodies_.side().carrier_contacts();
+  return bodies_.side().parent_contacts();
 }
 
 std::vector<ContactSum> CudaReports::surface_contacts() {
@@ -233,7 +233,9 @@ std::vector<TriangleLoad> CudaReports::triangle_loads() {
 }
 
 std::vector<ContactSum> CudaReports::wall_contacts(std::span<const int> walls) {
-  const auto share = [&](Real* largest) { items_.lane.halo.max(items_.device(), largest, kWallTerms); };
+  const auto share = [&](Real* largest) {
+    items_.halo_stream.halo.max(items_.device(), largest, kWallTerms);
+  };
   std::vector<ContactSum> contacts;
   need_loads();
   for (const int wall : walls) {

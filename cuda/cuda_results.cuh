@@ -19,7 +19,7 @@ inline constexpr long long kNoId = 0x7f7f7f7f7f7f7f7f;
 struct Results {
   StepNorms norms;
   Real largest;
-  Index index, leavers;
+  Index index, escaped_particles;
   ExactSums<1> slope;
   ExactSums<kLedgerTerms> ledger;
   // All blocks of a step add to its first members and read the others. As placed here, a cache line ends

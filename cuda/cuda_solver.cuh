@@ -1,5 +1,5 @@
-// The schedule of the linear solves of implicit steps: `iterate_chebyshev` of dem/block_solver.hpp on the
-// device.
+// The schedule of the linear solves of implicit steps: `iterate_chebyshev` of dem/implicit/block_solver.hpp
+// on the device.
 #pragma once
 
 #include <algorithm>
@@ -52,14 +52,14 @@ __global__ void __launch_bounds__(256, 3)
 // directions, and item(product, weights), with the weights of the next directions, computes a particle's part
 // and returns the square of its residual. Returns the number of products.
 template <class Begin, class Ghosts, class MakeItem>
-int solve_on_device(CudaItems& items, SolverProgress& progress, Real largest_stiffening, Real tolerance,
+int solve_on_device(CudaItems& items, SolverProgress& progress, Real largest_stiffness_ratio, Real tolerance,
                     const Begin& begin, const Ghosts& ghosts, const MakeItem& item) {
   constexpr int kBatch = 8;
   SolverControl* control = progress.device.data();
   SolverControl& h_control = progress.host[0];
   h_control = {tolerance, 0, 0, 0, 0, items.ranks.alone()};
   copy_async(control, &h_control, 1, items.stream);
-  ChebyshevWeights weights = solver_weights(largest_stiffening);
+  ChebyshevWeights weights = solver_weights(largest_stiffness_ratio);
   begin(weights);
   items.halo_after_rows();
   for (int product = 0; product < kMostProducts; ++product) {
@@ -70,10 +70,10 @@ int solve_on_device(CudaItems& items, SolverProgress& progress, Real largest_sti
       const unsigned blocks = std::max(1u, blocks_for(end - first));
       solver_kernel<Item><<<blocks, launches().block, 0, on.stream>>>(first, end, of_product, control);
     };
-    items.queue_beside_halo([&](Device on) { ghosts(on, product); }, queue_rows, nullptr);
+    items.queue_overlapping_halo([&](Device on) { ghosts(on, product); }, queue_rows, nullptr);
     if (!items.ranks.alone()) {
-      items.lane.halo.max({items.lane.stream}, &control->largest, 1);
-      decide_kernel<Item><<<1, 1, 0, items.lane.stream>>>(control);
+      items.halo_stream.halo.max({items.halo_stream.stream}, &control->largest, 1);
+      decide_kernel<Item><<<1, 1, 0, items.halo_stream.stream>>>(control);
       items.rows_after_halo();
     }
     require_cuda(cudaGetLastError(), "linear solve");

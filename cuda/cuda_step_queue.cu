@@ -30,7 +30,7 @@ struct RunSpinGhostItem {
 
 struct MixedGhostItem {
   const Ghost* ghosts;
-  GhostField<MixedPlace> place[2];
+  GhostField<FixedPointPosition> position[2];
   GhostField<MixedMotion> motion[2];
   QuantumGrid grid;
   const VerletControl* control;
@@ -38,7 +38,7 @@ struct MixedGhostItem {
   __device__ void operator()(Index entry) const {
     const bool first = control->parity[0] == 0;
     const Ghost ghost = ghosts[entry];
-    const GhostField<MixedPlace>& places = first ? place[0] : place[1];
+    const GhostField<FixedPointPosition>& places = first ? position[0] : position[1];
     const GhostField<MixedMotion>& motions = first ? motion[0] : motion[1];
     places.put(entry, shifted(grid, places.field[ghost.source], ghost.shift));
     motions.put(entry, motions.field[ghost.source]);
@@ -65,7 +65,8 @@ void hold_until(const Event* event, Device on) {
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
   PrunedViews views =
       items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
-  views.history = items_.history.views_in_run(), views.reach = items_.model.contact.reach;
+  views.history = items_.history.views_in_run(),
+  views.interaction_range = items_.model.contact.interaction_range;
   return views;
 }
 
@@ -97,7 +98,7 @@ VerletRequest StepQueue::request() {
   return r;
 }
 
-OpenStepLook StepQueue::surface_look(const VerletRequest& r) {
+OpenStepQuery StepQueue::surface_query(const VerletRequest& r) {
   return {r.control,
           r.first_step,
           {r.position[0], r.position[1]},
@@ -130,7 +131,7 @@ void StepQueue::convert_from_mixed() {
   mixed_.reset();
 }
 
-void StepQueue::bring_home() {
+void StepQueue::gather_open_step() {
   if (mixed_) {
     convert_from_mixed();
   } else {
@@ -138,54 +139,54 @@ void StepQueue::bring_home() {
     if (control_.velocity_parity() == 1) {
       std::swap(items_.now.velocity, items_.other.velocity);
       std::swap(items_.now.angular_velocity, items_.other.angular_velocity);
-      items_.history.take_ahead();
+      items_.history.commit_next();
     }
   }
-  control_.at_home();
+  control_.reset_parity();
 }
 
 // queue_surfaces(device): what rows near surfaces wait for; queue_ghosts(device, k): the halo exchange of the
 // k-th step from now; queue_rows(device, rows): the kernel of a step for these rows; key: everything that the
 // launches depend on.
 template <class QueueSurfaces, class QueueGhosts, class QueueRows>
-void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
-                              const QueueGhosts& queue_ghosts, const QueueRows& queue_rows) {
-  const Device rows = items_.device(), lane{items_.lane.stream};
+void StepQueue::queue_successively(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                                   const QueueGhosts& queue_ghosts, const QueueRows& queue_rows) {
+  const Device rows = items_.device(), lane{items_.halo_stream.stream};
   const StepParts& parts = items_.parts;
-  const auto queue_late = [&](Device on) {
+  const auto queue_boundary = [&](Device on) {
     if (parts.apart()) queue_surfaces(on);
-    queue_rows(on, parts.late());
+    queue_rows(on, parts.boundary());
   };
   if (!items_.ranks.alone()) {
-    const auto queue_early = [&](Device on) {
-      if (parts.early().launched > 0) queue_rows(on, parts.early());
+    const auto queue_interior = [&](Device on) {
+      if (parts.interior().launched > 0) queue_rows(on, parts.interior());
     };
-    return queue_with_ranks(steps, queue_surfaces, queue_ghosts, queue_early, queue_late);
+    return queue_with_ranks(steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
   }
   workspace_.graph.queue(items_.stream, key, steps, [&] {
     queue_ghosts(rows, 0);
     if (!parts.apart()) return queue_surfaces(rows), queue_rows(rows, parts.whole());
-    items_.fork_lane();
-    queue_late(lane);
-    queue_rows(rows, parts.early());
-    items_.join_lane();
+    items_.fork_halo_stream();
+    queue_boundary(lane);
+    queue_rows(rows, parts.interior());
+    items_.join_halo_stream();
   });
 }
 
 // The same for several ranks. After each step they reduce what decides whether the next one may be taken.
-template <class QueueSurfaces, class QueueGhosts, class QueueEarly, class QueueLate>
+template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
 void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces,
-                                 const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
-                                 const QueueLate& queue_late) {
-  const Device halo{items_.lane.stream};
+                                 const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
+                                 const QueueBoundary& queue_boundary) {
+  const Device halo{items_.halo_stream.stream};
   items_.halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
     if (!items_.parts.apart()) queue_surfaces(items_.device()), items_.halo_after_rows();
     // The clock measures the second step: the first one waits for the host, and later ones may be past a
     // stop, where nothing hides the halo exchange.
-    HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.lane.clock : nullptr;
-    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_early, queue_late, clock);
-    items_.lane.halo.max(halo, control_.on_device()->shared, 2);
+    HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.halo_stream.clock : nullptr;
+    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_interior, queue_boundary, clock);
+    items_.halo_stream.halo.max(halo, control_.on_device()->shared, 2);
     control_.close(halo);
     items_.rows_after_halo();
   }
@@ -194,7 +195,7 @@ void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surface
 
 // The host knows where queued steps read their ghosts: after a stop nothing is read any more.
 void StepQueue::queue_double(Index steps, const Event* loads_found) {
-  DeviceHalo& halo = items_.lane.halo;
+  DeviceHalo& halo = items_.halo_stream.halo;
   const VerletRequest r = request();
   const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
     return halo.field(buffer, of[parity], items_.owned);
@@ -219,22 +220,23 @@ void StepQueue::queue_double(Index steps, const Event* loads_found) {
     of_rows.rows = rows;
     items_.kernels->verlet_advance(on, of_rows);
   };
-  const std::string key = key_of(r) + key_of(items_.parts.early()) + key_of(ghosts) + key_of(halo.entries());
+  const std::string key =
+      key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
   const DeviceContactKernels& kernels = *items_.kernels;
   DeviceSurfaces& surfaces = items_.surfaces;
-  if (!surfaces.any_at_rest())
-    return queue_in_turn(
+  if (!surfaces.all_placed_static())
+    return queue_successively(
         key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
-  surfaces.make_room_in_run(items_.device(), steps);
-  const OpenStepLook query = surface_look(r);
-  queue_in_turn(
+  surfaces.reserve_in_run(items_.device(), steps);
+  const OpenStepQuery query = surface_query(r);
+  queue_successively(
       key + surfaces.key_of_loads(kernels, query, h_), steps,
       [&](Device on) { surfaces.find_loads_in_run(on, kernels, query, h_); }, queue_ghosts, queue_rows);
 }
 
 void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   if (!mixed_) convert_to_mixed();
-  DeviceHalo& halo = items_.lane.halo;
+  DeviceHalo& halo = items_.halo_stream.halo;
   MixedRequest r{};
   r.in = pruned_views(items_.now.position.data()), r.rows = items_.parts.whole();
   r.active = items_.layout.active;
@@ -245,7 +247,7 @@ void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   r.first_step = items_.history.first_step();
   const auto field = [&](int buffer, auto* of) { return halo.field(buffer, of, items_.owned); };
   const MixedGhostItem ghosts{halo.ghosts(),
-                              {field(0, r.state.place[0]), field(0, r.state.place[1])},
+                              {field(0, r.state.position[0]), field(0, r.state.position[1])},
                               {field(1, r.state.motion[0]), field(1, r.state.motion[1])},
                               r.grid,
                               r.control};
@@ -255,17 +257,18 @@ void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   const auto queue_ghosts = [&](Device on, Index k) {
     for_each(on, halo.entries(), ghosts);
     const Index parity = (control_.position_parity() + k) % 2;
-    if (!rotates) return halo.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
+    if (!rotates) return halo.exchange(on, ghosts.position[parity], ghosts.motion[parity]);
     for_each(on, halo.entries(), spins);
-    halo.exchange(on, ghosts.place[parity], ghosts.motion[parity], spins.spin[parity]);
+    halo.exchange(on, ghosts.position[parity], ghosts.motion[parity], spins.spin[parity]);
   };
   const auto queue_rows = [&](Device on, const StepRows& rows) {
     MixedRequest of_rows = r;
     of_rows.rows = rows;
     items_.kernels->mixed_advance(on, of_rows);
   };
-  const std::string key = key_of(r) + key_of(items_.parts.early()) + key_of(ghosts) + key_of(halo.entries());
-  queue_in_turn(
+  const std::string key =
+      key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
+  queue_successively(
       key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
 }
 

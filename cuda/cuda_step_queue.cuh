@@ -31,7 +31,7 @@ class StepQueue {
   VerletRequest request();
   bool in_mixed() const { return mixed_.has_value(); }
   // Copies the open step into the arrays of the state, after the host has read the control block.
-  void bring_home();
+  void gather_open_step();
 
  private:
   // Arrays that hold the open step in mixed precision.
@@ -43,12 +43,12 @@ class StepQueue {
   void queue_double(Index steps, const Event* loads_found);
   void queue_mixed(Index steps, const Event* loads_found);
   template <class QueueSurfaces, class QueueGhosts, class QueueRows>
-  void queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
-                     const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
-  template <class QueueSurfaces, class QueueGhosts, class QueueEarly, class QueueLate>
+  void queue_successively(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                          const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
+  template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
   void queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces, const QueueGhosts& queue_ghosts,
-                        const QueueEarly& queue_early, const QueueLate& queue_late);
-  OpenStepLook surface_look(const VerletRequest& step);
+                        const QueueInterior& queue_interior, const QueueBoundary& queue_boundary);
+  OpenStepQuery surface_query(const VerletRequest& step);
   Vec4* spins() const;
   MixedViews mixed_views() { return items_.mixed.views(items_.other); }
   void convert_to_mixed();

@@ -48,7 +48,7 @@ namespace {
 
 __global__ void trial_kernel() {}
 
-std::string trouble_of(cudaError_t status) {
+std::string convergence_error(cudaError_t status) {
   int driver = 0, runtime = 0;
   cudaDriverGetVersion(&driver), cudaRuntimeGetVersion(&runtime);
   const auto version = [](int v) { return std::to_string(v / 1000) + "." + std::to_string(v % 1000 / 10); };
@@ -76,7 +76,7 @@ std::string trouble_of(cudaError_t status) {
 
 }  // namespace
 
-std::string device_trouble() {
+std::string device_error() {
   int devices = 0;
   cudaError_t status = chosen;
   if (status == cudaSuccess) status = cudaGetDeviceCount(&devices);
@@ -86,7 +86,7 @@ std::string device_trouble() {
     status = cudaGetLastError();
     if (status == cudaSuccess) status = cudaDeviceSynchronize();
   }
-  return status == cudaSuccess ? "" : trouble_of(status);
+  return status == cudaSuccess ? "" : convergence_error(status);
 }
 
 std::string device_name() { return this_properties().name; }

@@ -178,7 +178,7 @@ class DeviceArray {
   }
   // Shrinks to twice the reserve if it is larger; keeps the first `keep` values. Waits if it shrinks.
   void trim(std::size_t keep, cudaStream_t stream) {
-    if (borrowed_ || capacity_ <= size_ + 2 * (size_ / kSpare)) return;
+    if (is_alias_ || capacity_ <= size_ + 2 * (size_ / kSpare)) return;
     DeviceArray smaller(size_ + size_ / kSpare);
     copy_async(smaller.data_, data_, keep, stream);
     wait_for(stream);
@@ -187,26 +187,26 @@ class DeviceArray {
   }
   // From now on the n values are at `data`, in memory that another array owns. If the array has to grow it
   // allocates its own.
-  void borrow(T* data, std::size_t size) {
+  void alias_memory(T* data, std::size_t size) {
     release();
-    data_ = data, size_ = capacity_ = size, borrowed_ = true;
+    data_ = data, size_ = capacity_ = size, is_alias_ = true;
   }
   // The array is empty afterwards.
   void release() {
-    if (data_ != nullptr && !borrowed_) {
+    if (data_ != nullptr && !is_alias_) {
       cudaFree(data_);
       device_bytes_in_use() -= capacity_ * sizeof(T);
     }
-    data_ = nullptr, size_ = capacity_ = 0, borrowed_ = false;
+    data_ = nullptr, size_ = capacity_ = 0, is_alias_ = false;
   }
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
-  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // none for an alias [B]
+  std::size_t bytes() const { return is_alias_ ? 0 : capacity_ * sizeof(T); }  // none for an alias [B]
   T* data() { return data_; }
   const T* data() const { return data_; }
   void swap(DeviceArray& other) noexcept {
     std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(capacity_, other.capacity_);
-    std::swap(borrowed_, other.borrowed_);
+    std::swap(is_alias_, other.is_alias_);
   }
   void zero(cudaStream_t stream) {
     if (size_ > 0) require_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "cudaMemsetAsync");
@@ -232,7 +232,7 @@ class DeviceArray {
 
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
-  bool borrowed_ = false;
+  bool is_alias_ = false;
 };
 
 // A library call with scratch memory on the device: call(nullptr, bytes) sets the size that it needs,

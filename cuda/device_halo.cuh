@@ -123,7 +123,7 @@ class DeviceHalo {
   DeviceArray<unsigned long long> counts_;
   // Messages of the motion, and of what ghosts get once per list.
   static constexpr std::size_t kBuffers =
-      std::max(count_arrays<kMotion | kSpins>(), count_arrays<kNames | kGhostCopies>());
+      std::max(count_arrays<kMotion | kSpins>(), count_arrays<kKeys | kGhostCopies>());
   DeviceArray<Vec4> packed_[kBuffers];
 };
 

@@ -6,7 +6,7 @@
 #include "dem/particles/particle_fields.hpp"
 #include "device_history.cuh"
 #include "for_each.cuh"
-#include "kept_rows.cuh"
+#include "packed_history_rows.cuh"
 
 namespace scree {
 namespace {
@@ -33,25 +33,26 @@ constexpr std::size_t kPackedReserve = 32, kEntriesReserve = 32;
 
 // All rows in one contiguous part.
 template <class Rows>
-KeptViews views_of_rows(Rows& rows, int numbers) {
-  KeptViews views{rows.offsets.data(), numbers, {}};
+PackedHistoryViews views_of_rows(Rows& rows, int numbers) {
+  PackedHistoryViews views{rows.offsets.data(), numbers, {}};
   views.part[0] = {rows.keys.data(), rows.values.data(), 0, static_cast<Index>(rows.keys.size())};
   return views;
 }
 
 // Queues the copies of all contacts from their parts to contiguous memory, and back.
-void join_parts(const KeptViews& parts, std::int64_t* keys, Real* values, cudaStream_t stream) {
+void join_parts(const PackedHistoryViews& parts, std::int64_t* keys, Real* values, cudaStream_t stream) {
   const auto numbers = static_cast<std::size_t>(parts.numbers);
-  for (const KeptViews::Part& part : parts.part) {
+  for (const PackedHistoryViews::Part& part : parts.part) {
     if (part.size() == 0) continue;
     copy_async(keys + part.first, part.keys, part.size(), stream);
     copy_async(values + static_cast<std::size_t>(part.first) * numbers, part.values, part.size() * numbers,
                stream);
   }
 }
-void fill_parts(const KeptViews& parts, const std::int64_t* keys, const Real* values, cudaStream_t stream) {
+void fill_parts(const PackedHistoryViews& parts, const std::int64_t* keys, const Real* values,
+                cudaStream_t stream) {
   const auto numbers = static_cast<std::size_t>(parts.numbers);
-  for (const KeptViews::Part& part : parts.part) {
+  for (const PackedHistoryViews::Part& part : parts.part) {
     if (part.size() == 0) continue;
     copy_async(part.keys, keys + part.first, part.size(), stream);
     copy_async(part.values, values + static_cast<std::size_t>(part.first) * numbers, part.size() * numbers,
@@ -59,7 +60,7 @@ void fill_parts(const KeptViews& parts, const std::int64_t* keys, const Real* va
   }
 }
 
-NamedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
+KeyedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
                      int numbers) {
   return {at.position, at.row_key, at.list.rows(), at.surfaces.list(),
           box,         history,    numbers,        records_of(numbers)};
@@ -67,17 +68,18 @@ NamedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box, co
 
 }  // namespace
 
-DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, const Rooms& rooms)
-    : numbers_(numbers), box_(box), stream_(stream), rooms_(rooms) {
+DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream,
+                             const ScratchArrays& scratch)
+    : numbers_(numbers), box_(box), stream_(stream), scratch_arrays_(scratch) {
   if (width() > 0) first_step_.resize(1), h_first_step_.resize(1);
 }
 
 HistoryViews DeviceHistory::views(bool ahead) {
   if (!exists()) return {};
-  HistoryViews views{neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
-                     features_.data(),  features_ahead_.data(), step_};
-  if (is_alone()) views.neighbors = views.ground = views.bodies = views.ahead = nullptr;
-  if (ahead) std::swap(views.bodies, views.ahead), std::swap(views.features, views.features_ahead);
+  HistoryViews views{neighbors_.data(), ground_.data(),        bodies_.data(), ahead_.data(),
+                     features_.data(),  next_features_.data(), step_};
+  if (sides_only()) views.neighbors = views.ground = views.bodies = views.ahead = nullptr;
+  if (ahead) std::swap(views.bodies, views.ahead), std::swap(views.features, views.next_features);
   return views;
 }
 
@@ -118,7 +120,7 @@ std::size_t DeviceHistory::add_up(Rows& rows, Index count) {
   return static_cast<std::size_t>(h_count_[0]);
 }
 
-void DeviceHistory::make_room(Rows& rows, std::size_t contacts) const {
+void DeviceHistory::reserve_entries(Rows& rows, std::size_t contacts) const {
   rows.keys.resize_with_spare(contacts);
   rows.values.resize_with_spare(contacts * static_cast<std::size_t>(width()));
 }
@@ -131,32 +133,34 @@ std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first,
   return add_up(rows, count);
 }
 
-void DeviceHistory::fill_rows(const KeptViews& rows, const Listed& at, Index first, Index count) {
-  for_each({stream_}, count, KeepItem{keyed_rows(at, box_, views(), width()), first, rows});
+void DeviceHistory::fill_rows(const PackedHistoryViews& rows, const Listed& at, Index first, Index count) {
+  for_each({stream_}, count, PackHistoryItem{keyed_rows(at, box_, views(), width()), first, rows});
 }
 
-KeptViews DeviceHistory::kept_views() { return parts_ ? *parts_ : views_of_rows(kept_, width()); }
+PackedHistoryViews DeviceHistory::packed_history_views() {
+  return parts_ ? *parts_ : views_of_rows(stored_, width());
+}
 
 // Memory for that many contacts in parts, while the slots' records are in use: the second arrays, which are
 // free before and after the sort, then the arrays of explicit steps.
-KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
+PackedHistoryViews DeviceHistory::lay_out_parts(std::size_t contacts) {
   constexpr std::size_t kSizeMultiple = 4;  // multiple of the sizes of parts, which aligns the values to 32 B
                                             // sectors
   const auto numbers = static_cast<std::size_t>(width());
-  KeptViews parts{kept_.offsets.data(), width(), {}};
+  PackedHistoryViews parts{stored_.offsets.data(), width(), {}};
   std::size_t first = 0, next = 0;
   const auto add = [&](std::int64_t* keys, Real* values, std::size_t size) {
     parts.part[next++] = {keys, values, static_cast<Index>(first), static_cast<Index>(first + size)};
     first += size;
   };
-  for (DeviceArray<Vec4>* array : rooms_.second.motion()) {
+  for (DeviceArray<Vec4>* array : scratch_arrays_.second.motion()) {
     const std::size_t fit = array->size() * sizeof(Vec4) / (sizeof(std::int64_t) + numbers * sizeof(Real)) /
                             kSizeMultiple * kSizeMultiple;
     auto* const keys = reinterpret_cast<std::int64_t*>(array->data());
     add(keys, reinterpret_cast<Real*>(keys + fit), std::min(fit, contacts - first));
   }
   const std::size_t rest = contacts - first;
-  rooms_.of_steps.lay_out(RoomFor{rest_keys_, rest}, RoomFor{rest_values_, rest * numbers});
+  scratch_arrays_.of_steps.lay_out(ArenaArray{rest_keys_, rest}, ArenaArray{rest_values_, rest * numbers});
   add(rest_keys_.data(), rest_values_.data(), rest);
   return parts;
 }
@@ -165,31 +169,32 @@ KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
 // more. False where it does not suffice.
 bool DeviceHistory::lay_out_in_records(std::size_t contacts) {
   const auto numbers = static_cast<std::size_t>(width());
-  const RoomFor keys{kept_.keys, contacts};
-  const RoomFor values{kept_.values, contacts * numbers};
+  const ArenaArray keys{stored_.keys, contacts};
+  const ArenaArray values{stored_.values, contacts * numbers};
   if (keys.bytes() + values.bytes() > neighbors_.size() * sizeof(Vec4)) return false;
   auto* const at = reinterpret_cast<std::byte*>(neighbors_.data());
-  kept_.keys.borrow(reinterpret_cast<std::int64_t*>(at), keys.size);
-  kept_.values.borrow(reinterpret_cast<Real*>(at + keys.bytes()), values.size);
+  stored_.keys.alias_memory(reinterpret_cast<std::int64_t*>(at), keys.size);
+  stored_.values.alias_memory(reinterpret_cast<Real*>(at + keys.bytes()), values.size);
   return true;
 }
 
 // While a list is built, the packed history of a packed bed fits into the memory of the slots' records: from
 // when they are packed until they are unpacked. Before and after that it is in parts. With few neighbours and
 // many surfaces it does not fit.
-void DeviceHistory::leave_slots(const Listed& at) {
+void DeviceHistory::pack_history(const Listed& at) {
   if (!at_slots_) return;
   row_of_.resize(static_cast<std::size_t>(at.owned));
-  const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
+  const std::size_t contacts = count_rows(stored_, at, 0, at.owned),
                     numbers = static_cast<std::size_t>(width()),
                     reserved = contacts + contacts / kPackedReserve;  // for arriving particles
   in_records_ = lay_out_in_records(reserved);
   if (!in_records_)
-    rooms_.of_steps.lay_out(RoomFor{kept_.keys, reserved}, RoomFor{kept_.values, reserved * numbers});
-  kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
-  const KeptViews parts = in_records_ ? lay_out_parts(contacts) : kept_views();
+    scratch_arrays_.of_steps.lay_out(ArenaArray{stored_.keys, reserved},
+                                     ArenaArray{stored_.values, reserved * numbers});
+  stored_.keys.resize(contacts), stored_.values.resize(contacts * numbers);
+  const PackedHistoryViews parts = in_records_ ? lay_out_parts(contacts) : packed_history_views();
   fill_rows(parts, at, 0, at.owned);
-  if (in_records_) join_parts(parts, kept_.keys.data(), kept_.values.data(), stream_);
+  if (in_records_) join_parts(parts, stored_.keys.data(), stored_.values.data(), stream_);
   for_each({stream_}, at.owned, CountUpItem{row_of_.data(), 0});
   at_slots_ = false;
 }
@@ -197,13 +202,13 @@ void DeviceHistory::leave_slots(const Listed& at) {
 // Moves the packed history out of the memory of the slots' records.
 void DeviceHistory::clear_records() {
   if (!in_records_) return;
-  const KeptViews parts = lay_out_parts(kept_.keys.size());
-  fill_parts(parts, kept_.keys.data(), kept_.values.data(), stream_);
+  const PackedHistoryViews parts = lay_out_parts(stored_.keys.size());
+  fill_parts(parts, stored_.keys.data(), stored_.values.data(), stream_);
   parts_ = parts, in_records_ = false;
-  kept_.keys.release(), kept_.values.release();
+  stored_.keys.release(), stored_.values.release();
 }
 
-void DeviceHistory::take_slots(const Listed& at) {
+void DeviceHistory::unpack_history(const Listed& at) {
   if (!exists()) return;
   clear_records();
   const auto records = static_cast<std::size_t>(records_of(width()));
@@ -211,29 +216,29 @@ void DeviceHistory::take_slots(const Listed& at) {
     neighbors_.resize(needed + needed / kEntriesReserve);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
-  for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})
+  for (DeviceArray<Index>* of_meshes : {&features_, &next_features_})
     of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
   ahead_.zero(stream_);
-  for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), features_ahead_.data()});
+  for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), next_features_.data()});
   for_each({stream_}, at.owned,
-           TakeItem{keyed_rows(at, box_, views(), width()), kept_views(), row_of_.data()});
-  parts_.reset(), kept_.keys.release(), kept_.values.release();
+           UnpackHistoryItem{keyed_rows(at, box_, views(), width()), packed_history_views(), row_of_.data()});
+  parts_.reset(), stored_.keys.release(), stored_.values.release();
   at_slots_ = true;
 }
 
-RememberedRows DeviceHistory::remembered() {
+StoredRows DeviceHistory::stored_contacts() {
   if (!exists()) return {};
-  return {kept_views(), row_of_.data()};
+  return {packed_history_views(), row_of_.data()};
 }
 
-void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
+void DeviceHistory::load(const PackedHistory& contacts, Index owned) {
   if (!exists()) return;
   at_slots_ = false;
-  kept_.offsets.resize(1), kept_.offsets.zero(stream_);
-  in_records_ = false, parts_.reset(), kept_.keys.release(), kept_.values.release();
+  stored_.offsets.resize(1), stored_.offsets.zero(stream_);
+  in_records_ = false, parts_.reset(), stored_.keys.release(), stored_.values.release();
   row_of_.resize(0);
   const auto at_once = static_cast<std::size_t>(std::min(owned, kRowsAtOnce));
-  packed_.offsets.resize(at_once + 1), make_room(packed_, at_once * kRoomInRows);
+  packed_.offsets.resize(at_once + 1), reserve_entries(packed_, at_once * kContactsPerRow);
   append(contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned), 0);
 }
 
@@ -245,28 +250,28 @@ void DeviceHistory::reorder(const Index* order, Index n, Index* numbers) {
   copy_async(row_of_.data(), numbers, row_of_.size(), stream_);
 }
 
-void DeviceHistory::append(const KeptContacts& arriving, Index owned) {
-  const std::size_t rows = kept_.offsets.size() - 1, contacts = kept_.keys.size(),
-                    values = kept_.values.size(), more = static_cast<std::size_t>(arriving.particles());
+void DeviceHistory::append(const PackedHistory& arriving, Index owned) {
+  const std::size_t rows = stored_.offsets.size() - 1, contacts = stored_.keys.size(),
+                    values = stored_.values.size(), more = static_cast<std::size_t>(arriving.particles());
   const Index last = countable(contacts + arriving.keys.size(), "stage migrate: more contacts");
   std::vector<Index> offsets;
   for (const std::int64_t offset : arriving.offsets)
     offsets.push_back(static_cast<Index>(static_cast<std::int64_t>(contacts) + offset));
   offsets.back() = last;
-  kept_.offsets.grow(rows + 1 + more, rows, stream_);
-  kept_.keys.grow(static_cast<std::size_t>(last), contacts, stream_);
-  kept_.values.grow(values + arriving.values.size(), values, stream_);
+  stored_.offsets.grow(rows + 1 + more, rows, stream_);
+  stored_.keys.grow(static_cast<std::size_t>(last), contacts, stream_);
+  stored_.values.grow(values + arriving.values.size(), values, stream_);
   row_of_.grow(static_cast<std::size_t>(owned) + more, static_cast<std::size_t>(owned), stream_);
-  copy_async(kept_.offsets.data() + rows, offsets.data(), offsets.size(), stream_);
-  copy_async(kept_.keys.data() + contacts, arriving.keys.data(), arriving.keys.size(), stream_);
-  copy_async(kept_.values.data() + values, arriving.values.data(), arriving.values.size(), stream_);
+  copy_async(stored_.offsets.data() + rows, offsets.data(), offsets.size(), stream_);
+  copy_async(stored_.keys.data() + contacts, arriving.keys.data(), arriving.keys.size(), stream_);
+  copy_async(stored_.values.data() + values, arriving.values.data(), arriving.values.size(), stream_);
   for_each({stream_}, static_cast<Index>(more),
            CountUpItem{row_of_.data() + owned, static_cast<Index>(rows)});
   wait_for(stream_);  // the copies above read `offsets`
 }
 
-KeptContacts DeviceHistory::download(const Rows& rows, const KeptViews& parts) const {
-  KeptContacts out;
+PackedHistory DeviceHistory::download(const Rows& rows, const PackedHistoryViews& parts) const {
+  PackedHistory out;
   out.numbers = numbers_;
   const std::vector<Index> offsets = rows.offsets.download(stream_);
   out.offsets.assign(offsets.begin(), offsets.end());
@@ -277,26 +282,26 @@ KeptContacts DeviceHistory::download(const Rows& rows, const KeptViews& parts) c
   return out;
 }
 
-KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
+PackedHistory DeviceHistory::rows(const Index* particles, Index n) {
   if (!exists()) return {};
   if (n == 0) return no_contacts(numbers_, 0);
   packed_.offsets.resize(static_cast<std::size_t>(n) + 1);
   for_each({stream_}, n,
-           RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
-  make_room(packed_, add_up(packed_, n));
+           RowLengthItem{stored_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
+  reserve_entries(packed_, add_up(packed_, n));
   for_each({stream_}, n,
-           CopyRowItem{kept_views(), row_of_.data(), particles, views_of_rows(packed_, width())});
+           CopyRowItem{packed_history_views(), row_of_.data(), particles, views_of_rows(packed_, width())});
   return download(packed_, views_of_rows(packed_, width()));
 }
 
-KeptContacts DeviceHistory::contacts(const Listed& at) {
+PackedHistory DeviceHistory::contacts(const Listed& at) {
   if (!exists()) return {};
-  if (!at_slots_) return download(kept_, kept_views()).rows(row_of_.download(stream_));
+  if (!at_slots_) return download(stored_, packed_history_views()).rows(row_of_.download(stream_));
   // In batches of rows: the scratch memory of the packed history is in use by steps.
-  KeptContacts out = no_contacts(numbers_, 0);
+  PackedHistory out = no_contacts(numbers_, 0);
   for (Index first = 0; first < at.owned; first += kRowsAtOnce) {
     const Index count = std::min(kRowsAtOnce, at.owned - first);
-    make_room(packed_, count_rows(packed_, at, first, count));
+    reserve_entries(packed_, count_rows(packed_, at, first, count));
     fill_rows(views_of_rows(packed_, width()), at, first, count);
     out.append(download(packed_, views_of_rows(packed_, width())));
   }

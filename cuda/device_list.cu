@@ -33,7 +33,7 @@ template <class Visit>
 __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const Vec4 p = in.position[i];
   const CellGrid& cells = in.grid.cells.own;
-  const CellPlace c = in.grid.cells.place(xyz(p));
+  const CellIndex c = in.grid.cells.entry_index(xyz(p));
   if (c.x < 0) return;
   const auto in_range = [&](Index j) {
     const Vec4 q = in.position[j];
@@ -44,7 +44,7 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Neighbouring cells in x of one cell block are contiguous: one range of items, or two where a cell block
   // ends.
-  const Index split = min(x1 + 1, in.grid.next_brick(x0));
+  const Index split = min(x1 + 1, in.grid.next_block_start(x0));
   for (Index z = max(c.z - 1, 0); z <= min(c.z + 1, cells.cells[2] - 1); ++z)
     for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y) {
       const Index key = in.grid.key(x0, y, z), second = split <= x1 ? in.grid.key(split, y, z) : key;
@@ -163,19 +163,19 @@ constexpr int kShortRow = 16, kLongRow = 48;
 
 }  // namespace
 
-DeviceList::DeviceList(bool remembers, double slots)
-    : remembers_(remembers), slots_at_start_(slots), totals_(1), h_totals_(1) {
+DeviceList::DeviceList(bool has_history, double slots)
+    : has_history_(has_history), slots_at_start_(slots), totals_(1), h_totals_(1) {
   h_totals_[0] = {};
 }
 
-Index* DeviceList::take_room(std::size_t n) {
+Index* DeviceList::scratch_space(std::size_t n) {
   neighbors_.resize(std::max(neighbors_.size(), n));
   return neighbors_.data();
 }
 
 PrunedRows<0> DeviceList::pruned_rows() {
   pruned_counts_.resize(counts_.size());
-  return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0, places_.data()};
+  return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0, entry_indices_.data()};
 }
 
 void DeviceList::search(Device device, const ListInput& in) {
@@ -194,8 +194,9 @@ void DeviceList::search(Device device, const ListInput& in) {
 void DeviceList::build(Device device, const ListInput& in) {
   const auto owned = static_cast<std::size_t>(in.owned);
   const bool first = slice_start_.size() == 0;
-  slice_start_.resize(owned / kSlice + 1), counts_.resize(owned), first_entry_.resize(remembers_ ? owned : 0);
-  if (first) take_room(static_cast<std::size_t>(slots_at_start_ * static_cast<double>(owned)) + kSlice);
+  slice_start_.resize(owned / kSlice + 1), counts_.resize(owned),
+      first_entry_.resize(has_history_ ? owned : 0);
+  if (first) scratch_space(static_cast<std::size_t>(slots_at_start_ * static_cast<double>(owned)) + kSlice);
   h_totals_[0].entries = h_totals_[0].used = 0;
   if (in.owned == 0) return;
   search(device, in);
@@ -205,12 +206,12 @@ void DeviceList::build(Device device, const ListInput& in) {
     search(device, in);
     wait_for(device.stream);
   }
-  if (!remembers_) return;
+  if (!has_history_) return;
   countable(h_totals_[0].entries, "stage neighbors: more neighbours");
-  if (h_totals_[0].longest > std::numeric_limits<RowPlace>::max())
+  if (h_totals_[0].longest > std::numeric_limits<RowIndex>::max())
     throw SimulationError("stage neighbors: a particle with " + std::to_string(h_totals_[0].longest) +
                           " neighbours; with a contact history a particle can have at most " +
-                          std::to_string(std::numeric_limits<RowPlace>::max()));
+                          std::to_string(std::numeric_limits<RowIndex>::max()));
 }
 
 }  // namespace scree

@@ -1,9 +1,10 @@
-// Neighbour list on the device: the same rows as in src/dem/neighbor_list.hpp, laid out for coalesced reads.
+// Neighbour list on the device: the same rows as in src/dem/search/neighbor_list.hpp, laid out for coalesced
+// reads.
 #pragma once
 
-#include "brick_grid.cuh"
+#include "cell_block_grid.cuh"
 #include "dem/contact/contact_walk.hpp"
-#include "device_room.cuh"
+#include "device_arena.cuh"
 
 namespace scree {
 
@@ -26,20 +27,22 @@ struct SlicedRows {
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
-    if constexpr (kAsksForSlot<Evaluate>) {
+    if constexpr (kTakesSlot<Evaluate>) {
       const std::int64_t number = first_entry[i];
-      const auto evaluate_at = [&](Index j, std::int64_t place) { return evaluate(j, number + place); };
-      for_each_place(i, touches, evaluate_at, add);
+      const auto evaluate_at = [&](Index j, std::int64_t entry_index) {
+        return evaluate(j, number + entry_index);
+      };
+      for_each_entry_index(i, touches, evaluate_at, add);
     } else {
-      for_each_place(i, touches, evaluate, add);
+      for_each_entry_index(i, touches, evaluate, add);
     }
   }
 
   // The same, and passes the index of an entry in its row. Tests two entries at once while the next two are
   // loaded: independent loads hide latency.
   template <class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_place(Index i, const Touches& touches, const Evaluate& evaluate,
-                               const Add& add) const {
+  SCREE_HD void for_each_entry_index(Index i, const Touches& touches, const Evaluate& evaluate,
+                                     const Add& add) const {
     const Index* row = neighbors + first(i);
     const Index count = counts[i];
     Index left = count;
@@ -58,8 +61,8 @@ struct SlicedRows {
   // The same for launches with few threads, which hide no latency by themselves: `kAtOnce` entries are tested
   // and evaluated at once, whether they touch or not.
   template <int kAtOnce, class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_place_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
-                                       const Add& add) const {
+  SCREE_HD void for_each_entry_index_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
+                                             const Add& add) const {
     const Index* row = neighbors + first(i);
     const Index count = counts[i];
     Index left = count;
@@ -90,7 +93,7 @@ enum class RowUse : int {
 };
 
 // Index of an entry in its row.
-using RowPlace = std::uint16_t;
+using RowIndex = std::uint16_t;
 
 // Rows of an explicit step. Most entries of a list with a skin do not touch. A step that tests all of them
 // stores those within a small margin of touching, and the next steps walk only these until a particle has
@@ -102,9 +105,9 @@ struct PrunedRows {
   SlicedRows rows;
   Index *counts, *neighbors;  // the pruned rows, `counts` per item and `neighbors` per slot
   RowUse use;
-  Real margin;  // pruning margin [m]
-  RowPlace*
-      places{};  // index of the pruned rows' entries in the whole rows, for the contact history: [slots]
+  Real margin;                // pruning margin [m]
+  RowIndex* entry_indices{};  // index of the pruned rows' entries in the whole rows, for the contact history:
+                              // [slots]
 
   // test: as in `PackedRows`, with near(j, margin). Slots are those of the whole rows.
   template <class Test, class Evaluate, class Add>
@@ -112,10 +115,10 @@ struct PrunedRows {
     if (use == RowUse::prune) return prune(i, test, evaluate, add);
     const bool all = use == RowUse::all;
     const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
-    if constexpr (kAsksForSlot<Evaluate>) {
+    if constexpr (kTakesSlot<Evaluate>) {
       const std::int64_t number = rows.first_entry[i], start = rows.first(i);
-      const auto evaluate_at = [&](Index j, std::int64_t place) {
-        return evaluate(j, number + (all ? place : places[start + kSlice * place]));
+      const auto evaluate_at = [&](Index j, std::int64_t entry_index) {
+        return evaluate(j, number + (all ? entry_index : entry_indices[start + kSlice * entry_index]));
       };
       walk(walked, i, test, evaluate_at, add);
     } else {
@@ -128,21 +131,21 @@ struct PrunedRows {
   SCREE_HD static void walk(const SlicedRows& walked, Index i, const Test& test, const Evaluate& evaluate,
                             const Add& add) {
     if constexpr (kAtOnce > 0)
-      walked.for_each_place_eagerly<kAtOnce>(i, test, evaluate, add);
+      walked.for_each_entry_index_eagerly<kAtOnce>(i, test, evaluate, add);
     else
-      walked.for_each_place(i, test, evaluate, add);
+      walked.for_each_entry_index(i, test, evaluate, add);
   }
   template <class Test, class Evaluate, class Add>
   SCREE_HD void prune(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     const Index* row = rows.neighbors + rows.first(i);
     Index *const pruned_begin = neighbors + rows.first(i), *pruned_end = pruned_begin;
     std::int64_t number = 0;
-    if constexpr (kAsksForSlot<Evaluate>) number = rows.first_entry[i];
+    if constexpr (kTakesSlot<Evaluate>) number = rows.first_entry[i];
     for (Index left = rows.counts[i]; left > 0; --left, row += kSlice, ++number) {
       const Index j = *row;
       if (test.near(j, margin)) {
-        if constexpr (kAsksForSlot<Evaluate>)
-          places[pruned_end - neighbors] = static_cast<RowPlace>(rows.counts[i] - left);
+        if constexpr (kTakesSlot<Evaluate>)
+          entry_indices[pruned_end - neighbors] = static_cast<RowIndex>(rows.counts[i] - left);
         *pruned_end = j, pruned_end += kSlice;
       }
       if (test(j)) add(evaluate_entry(evaluate, j, number));
@@ -155,33 +158,35 @@ struct PrunedRows {
 struct ListInput {
   const Vec4* position;         // all items
   const std::int64_t* row_key;  // sort key of entries per item: global id and image
-  BrickGrid grid;
+  CellBlockGrid grid;
   const Index* particle_starts;  // [cells + 1] first active particle of each cell
   const Index* ghost_starts;     // [cells + 1] first of ghost_items of each cell; null without ghosts
   const Index* ghost_items;
   Index active, owned;  // number of owned particles, which have rows; rows of inactive ones are empty
-  Real skin;            // `NeighborBuilder::past_touch` [m]
+  Real skin;            // `NeighborBuilder::search_margin` [m]
 };
 
 class DeviceList {
  public:
   // remembers: whether contacts have a history. slots: initial capacity per particle.
-  DeviceList(bool remembers, double slots);
+  DeviceList(bool has_history, double slots);
 
   // Fills the list. Waits for the device once, to learn whether the capacity sufficed, and repeats with more
   // if not. Throws `DeviceError` where memory does not suffice, and `SimulationError` where contacts have a
-  // history and a row is too long for `RowPlace` or there are more entries than an `Index` can count.
+  // history and a row is too long for `RowIndex` or there are more entries than an `Index` can count.
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const {
     return {slice_start_.data(), counts_.data(), neighbors_.data(), first_entry_.data()};
   }
   // Scratch memory for n values while the list is not needed.
-  Index* take_room(std::size_t n);
+  Index* scratch_space(std::size_t n);
   // Arrays of pruned rows besides those of the list. After a build they are undefined until a step with
   // `RowUse::prune`.
-  RoomFor<Index> room_for_pruned() { return {pruned_, neighbors_.size()}; }
-  RoomFor<RowPlace> room_for_places() { return {places_, remembers_ ? neighbors_.size() : 0}; }
+  ArenaArray<Index> reserve_pruned() { return {pruned_, neighbors_.size()}; }
+  ArenaArray<RowIndex> reserve_row_indices() {
+    return {entry_indices_, has_history_ ? neighbors_.size() : 0};
+  }
   PrunedRows<0> pruned_rows();
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
   std::size_t bytes() const {
@@ -198,11 +203,11 @@ class DeviceList {
   };
   void search(Device device, const ListInput& in);
 
-  const bool remembers_;
+  const bool has_history_;
   const double slots_at_start_;  // initial slots per particle
   DeviceArray<std::int64_t> slice_start_;
   DeviceArray<Index> counts_, first_entry_, neighbors_, pruned_counts_, pruned_;
-  DeviceArray<RowPlace> places_;
+  DeviceArray<RowIndex> entry_indices_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;
   friend struct RowOutputs;

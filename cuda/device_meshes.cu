@@ -48,11 +48,11 @@ struct FindNearItem {
     const std::int64_t c = first_cell + k;
     const Index owner = searched.owner(c);
     const CellsNear& cells = searched.cells[owner];
-    const PlacedSurface& surface = in.placed[cells.placed];
+    const SurfacePose& surface = in.placed[cells.placed];
     const SurfaceFrame& frame = in.frames[surface.frame];
     cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
-      const MeshSight query{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
+      const MeshQuery query{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
       constexpr Index kStored = 24;  // long enough that few rows are searched twice
       Index near_triangles[kStored], found = 0;
       query.for_each_triangle([&](Index t) {
@@ -72,7 +72,7 @@ struct FindNearItem {
         query.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
       const RowKind kind = kind_of_row(query.mesh, triangles + first, found);
-      const Index stored_contacts = in.remembered.contacts_with(i, cells.number);
+      const Index stored_contacts = in.stored_contacts.contacts_with(i, cells.number);
       groups[g] = {0, query.entries(kind, triangles + first, found, stored_contacts), first, found, kind};
     });
   }
@@ -114,7 +114,7 @@ struct GroupItem {
   const Index *offsets, *surfaces;
   const std::int8_t* images;
   MeshGroup* groups;
-  Standing* standings;
+  CachedContact* cached_contacts;
   MeshTouch* touches;
 
   __device__ void operator()(Index g) const {
@@ -122,7 +122,7 @@ struct GroupItem {
     Index entry = offsets[of.particle];
     while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
-    standings[g] = kNoStanding;
+    cached_contacts[g] = kNoCachedContact;
     touches[entry].triangle = -1;  // no triangle to start the first query at
   }
 };
@@ -141,10 +141,10 @@ struct StateQuery {
 // search their triangles are redistributed over its lanes, so that no warp waits for a few of its lanes:
 // smooth rows by lane groups, each of which searches one row of triangles together; the full search of other
 // rows by single lanes.
-template <bool kReaches, bool kSheets, class Query>
+template <bool kHasRange, bool kOpenSurfaces, class Query>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Query query,
-                 MeshTouch* touches, Standing* standings) {
+                 MeshTouch* touches, CachedContact* cached_contacts) {
   __shared__ TouchRecords::Shared shared;
   // Groups of triangles that must be searched: those for lane groups from the front, those for single lanes
   // from the back.
@@ -153,12 +153,12 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   if (!query.open(now)) return;
   if (threadIdx.x == 0) for_teams = for_lanes = 0;
   __syncthreads();
-  const MeshTouchItem<kReaches, kSheets> item{now, touches, standings};
+  const MeshTouchItem<kHasRange, kOpenSurfaces> item{now, touches, cached_contacts};
   const TouchRecords records(shared);
   const Index g = thread_index();
   Index entry = -1;
   if (g < groups) {
-    const Nearest found = item.stay(g, records.own());
+    const Nearest found = item.use_cached(g, records.own());
     const MeshGroup& group = now.meshes.groups[g];
     if (found == Nearest::one) entry = group.entry;
     if (found == Nearest::unclear) {
@@ -169,23 +169,23 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   records.store(touches, entry);
   __syncthreads();
   const auto thread = static_cast<Index>(threadIdx.x);
-  if (thread < for_lanes) item.look(pending[kTouchThreads - 1 - thread], Alone{});
-  using Team = LaneTeam<kTeamLanes>;
+  if (thread < for_lanes) item.kinematics(pending[kTouchThreads - 1 - thread], SingleLane{});
+  using LaneGroup = LaneTeam<kTeamLanes>;
   for (Index k = thread / kTeamLanes; k < for_teams; k += kTouchThreads / kTeamLanes)
-    item.look(pending[k], Team{});
+    item.kinematics(pending[k], LaneGroup{});
 }
 
-template <bool kSheets, class Query>
+template <bool kOpenSurfaces, class Query>
 void queue_touches(Device device, Index groups, const SurfaceViews& views, const Query& query,
-                   MeshTouch* touches, Standing* standings) {
+                   MeshTouch* touches, CachedContact* cached_contacts) {
   if (groups == 0) return;
   const unsigned blocks = blocks_for(groups, kTouchThreads);
-  if (views.reach > 0)
-    touch_kernel<true, kSheets>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, standings);
+  if (views.interaction_range > 0)
+    touch_kernel<true, kOpenSurfaces>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, cached_contacts);
   else
-    touch_kernel<false, kSheets>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, standings);
+    touch_kernel<false, kOpenSurfaces>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, cached_contacts);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
@@ -208,7 +208,7 @@ const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStrea
 }  // namespace
 
 DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream)
-    : surfaces_(model), sheets_(has_sheets(model)), cursors_(kCursors) {
+    : surfaces_(model), open_surfaces_(has_open_surfaces(model)), cursors_(kCursors) {
   std::vector<MeshView> views;
   meshes_.reserve(model.meshes.size());
   for (const ModelMesh& mesh : model.meshes) {
@@ -231,15 +231,15 @@ DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream)
 }
 
 // The boxes of cells to search, per mesh and image.
-std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
+std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search, const SurfacePoses& poses,
                                                        Real largest_radius) const {
   std::vector<CellsNear> near;
   for (const Index s : instances_) {
-    const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
-    const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+    const SurfacePose& surface = poses.placed[static_cast<std::size_t>(s)];
+    const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
     const Real skin = surfaces_.skin_of(s, search.skin);
     for_each_shift(search.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
-      const Box box = box_near(places, s, shift, largest_radius, skin);
+      const Box box = box_near(poses, s, shift, largest_radius, skin);
       if (overlaps(search.grid.cells.space, box))
         near.push_back(
             {s, surfaces_.number_of(s), skin, shift, image, cells_near(search.grid.cells.own, box)});
@@ -248,11 +248,11 @@ std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search,
   return near;
 }
 
-void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePlaces& places,
+void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePoses& poses,
                         Real largest_radius, Index* counts) {
   count_ = 0;
   if (instances_.empty()) return;
-  const std::vector<CellsNear> near = cells_near_meshes(search, places, largest_radius);
+  const std::vector<CellsNear> near = cells_near_meshes(search, poses, largest_radius);
   if (!find_groups(device, search, near)) find_groups(device, search, near);
   for_each(device, count_, CountItem{near_.data(), groups_.data(), counts});
 }
@@ -288,7 +288,8 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
   const auto groups = static_cast<std::size_t>(count_),
              triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
   const bool complete = groups <= capacity && triangles <= triangles_.capacity();
-  near_.resize_with_spare(groups), groups_.resize_with_spare(groups), standings_.resize_with_spare(groups);
+  near_.resize_with_spare(groups), groups_.resize_with_spare(groups),
+      cached_contacts_.resize_with_spare(groups);
   triangles_.resize_with_spare(triangles);
   return complete;
 }
@@ -299,41 +300,43 @@ void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t
 
 void DeviceMeshes::group(Device device, const Index* offsets, const Index* surfaces,
                          const std::int8_t* images) {
-  for_each(
-      device, count_,
-      GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), standings_.data(), touches_.data()});
+  for_each(device, count_,
+           GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), cached_contacts_.data(),
+                     touches_.data()});
 }
 
-void DeviceMeshes::make_room(Index entries) {
+void DeviceMeshes::reserve_entries(Index entries) {
   if (exist()) touches_.resize_with_spare(static_cast<std::size_t>(entries));
 }
 
-void DeviceMeshes::make_room_over_step(Index entries) {
+void DeviceMeshes::reserve_over_step(Index entries) {
   if (exist()) before_.resize_with_spare(static_cast<std::size_t>(entries));
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  if (sheets_)
-    queue_touches<true>(device, count_, views, StateQuery{}, touches_.data(), standings_.data());
+  if (open_surfaces_)
+    queue_touches<true>(device, count_, views, StateQuery{}, touches_.data(), cached_contacts_.data());
   else
-    queue_touches<false>(device, count_, views, StateQuery{}, touches_.data(), standings_.data());
+    queue_touches<false>(device, count_, views, StateQuery{}, touches_.data(), cached_contacts_.data());
 }
 
-void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& query) {
-  if (sheets_)
-    queue_touches<true>(device, count_, views, query, touches_.data(), standings_.data());
+void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query) {
+  if (open_surfaces_)
+    queue_touches<true>(device, count_, views, query, touches_.data(), cached_contacts_.data());
   else
-    queue_touches<false>(device, count_, views, query, touches_.data(), standings_.data());
+    queue_touches<false>(device, count_, views, query, touches_.data(), cached_contacts_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
-                                   const PlacedSurface* start_placed) {
-  if (sheets_)
-    for_each(device, count_,
-             MeshStepTouchItem<true>{views, start_position, start_placed, touches_.data(), before_.data()});
+                                   const SurfacePose* start_surface_poses) {
+  if (open_surfaces_)
+    for_each(
+        device, count_,
+        MeshStepTouchItem<true>{views, start_position, start_surface_poses, touches_.data(), before_.data()});
   else
     for_each(device, count_,
-             MeshStepTouchItem<false>{views, start_position, start_placed, touches_.data(), before_.data()});
+             MeshStepTouchItem<false>{views, start_position, start_surface_poses, touches_.data(),
+                                      before_.data()});
 }
 
 }  // namespace scree

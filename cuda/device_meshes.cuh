@@ -4,16 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "brick_grid.cuh"
+#include "cell_block_grid.cuh"
 #include "contact_kernels.cuh"
 #include "dem/search/surface_rows.hpp"
 #include "dem/surface_contact/surface_items.hpp"
 #include "dem/surfaces/mesh_rows.hpp"
 #include "dem/surfaces/surfaces.hpp"
 #include "device.cuh"
-#include "kept_views.cuh"
-#include "mesh/standing.hpp"
+#include "mesh/cached_contact.hpp"
 #include "model/data/model.hpp"
+#include "packed_history_views.cuh"
 
 namespace scree {
 
@@ -26,13 +26,13 @@ struct NearMesh {
 // Where the search finds particles, sorted by cell, and the poses of surfaces; device pointers.
 struct MeshSearch {
   const Vec4* position;
-  BrickGrid grid;
+  CellBlockGrid grid;
   const Index* starts;  // [cells + 1]
   Real skin;            // range past touching of the search at static surfaces [m]
   Vec3 period;
-  const PlacedSurface* placed;
+  const SurfacePose* placed;
   const SurfaceFrame* frames;
-  RememberedRows remembered;
+  StoredRows stored_contacts;
 };
 
 // Cells whose particles may be near a mesh image, which is displaced by the shift.
@@ -66,7 +66,7 @@ class DeviceMeshes {
   // entries to counts[particle], and waits; poses: those on the host; largest_radius: of the particles [m].
   // The second writes these entries to the rows, from next[particle] on, which it advances. The third, with
   // the rows sorted, finds which entries belong together.
-  void find(Device device, const MeshSearch& search, const SurfacePlaces& places, Real largest_radius,
+  void find(Device device, const MeshSearch& search, const SurfacePoses& poses, Real largest_radius,
             Index* counts);
   void fill(Device device, Index* next, Index* surfaces, std::int8_t* images);
   void group(Device device, const Index* offsets, const Index* surfaces, const std::int8_t* images);
@@ -74,13 +74,13 @@ class DeviceMeshes {
   // Queues the contacts at the present instant, into the entries' arrays.
   void touch(Device device, const SurfaceViews& views);
   // The same for the explicit step that is open when the kernel runs.
-  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& query);
+  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query);
   // The same over an implicit step.
   void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
-                       const PlacedSurface* start_placed);
+                       const SurfacePose* start_surface_poses);
   // Size the arrays for that many entries; the second one those of implicit steps.
-  void make_room(Index entries);
-  void make_room_over_step(Index entries);
+  void reserve_entries(Index entries);
+  void reserve_over_step(Index entries);
 
   // Host copies of what `triangle_sums` reads; waits.
   std::vector<MeshGroup> download_groups(cudaStream_t stream) const { return groups_.download(stream); }
@@ -102,21 +102,21 @@ class DeviceMeshes {
     DeviceArray<MeshBox> boxes;
   };
 
-  std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
+  std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePoses& poses,
                                            Real largest_radius) const;
   bool find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near);
 
   std::vector<Arrays> meshes_;
   DeviceArray<MeshView> views_;
   SurfaceSet surfaces_;
-  bool sheets_;
+  bool open_surfaces_;
   std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
   Index count_ = 0;               // number of groups
   DeviceArray<CellsNear> cells_;
   DeviceArray<std::int64_t> first_cell_;
   DeviceArray<NearMesh> near_;
   DeviceArray<MeshGroup> groups_;
-  DeviceArray<Standing> standings_;
+  DeviceArray<CachedContact> cached_contacts_;
   DeviceArray<Index> triangles_, cursors_;
   PinnedArray<Index> h_counts_{2};
   DeviceArray<MeshTouch> touches_;

@@ -16,11 +16,11 @@ constexpr Index kChunk = 128;  // entries
 struct EntrySearch {
   const Vec4* position;
   Index active;
-  BrickGrid grid;
+  CellBlockGrid grid;
   const Index* starts;
   Real reach, skin;  // reach: largest particle radius + skin [m]
   SurfaceNumbers numbers;
-  const PlacedSurface* placed;
+  const SurfacePose* placed;
   Vec3 period;
 };
 
@@ -36,7 +36,7 @@ struct GroundCountItem {
     Index count = 0;
     if (i < in.active)
       for (Index w = 0; w < in.numbers.ground; ++w)
-        count += in.numbers.at_rest(w) && is_near(in, in.position[i], in.numbers.planes[w]);
+        count += in.numbers.is_static(w) && is_near(in, in.position[i], in.numbers.planes[w]);
     counts[i] = count;
   }
 };
@@ -55,8 +55,8 @@ struct GroundFillItem {
     Index slot = offsets[i];
     if (offsets[i + 1] > slot)  // most particles have none, and need not read the offsets
       for (Index w = 0; w < in.numbers.ground; ++w)
-        if (in.numbers.at_rest(w) && is_near(in, in.position[i], in.numbers.planes[w])) {
-          out.surfaces[slot] = w, out.images[slot] = kNoShift;
+        if (in.numbers.is_static(w) && is_near(in, in.position[i], in.numbers.planes[w])) {
+          out.surfaces[slot] = w, out.images[slot] = kZeroShift;
           ++slot;
         }
     next[i] = slot;
@@ -67,11 +67,11 @@ struct GroundFillItem {
 template <class Visit>
 __device__ void visit_near(const EntrySearch& in, const Visit& visit) {
   const auto s = static_cast<Index>(blockIdx.x);
-  const PlacedSurface surface = in.placed[s];
+  const SurfacePose surface = in.placed[s];
   if (surface.kind != SurfaceKind::sphere) return;
   const CellGrid& cells = in.grid.cells.own;
   for_each_shift(in.period, [&](Vec3 shift, std::int8_t image) {
-    const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.reach);
+    const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.interaction_range);
     const Index nx = range.upper.x - range.lower.x + 1, ny = range.upper.y - range.lower.y + 1,
                 nz = range.upper.z - range.lower.z + 1;
     for (Index c = static_cast<Index>(threadIdx.x); c < nx * ny * nz; c += kSearchThreads) {
@@ -116,7 +116,7 @@ struct PlaneFillItem {
   __device__ void operator()(Index i) const {
     if (!of.near(i)) return;
     const Index slot = next[i]++;
-    out.surfaces[slot] = number, out.images[slot] = kNoShift;
+    out.surfaces[slot] = number, out.images[slot] = kZeroShift;
   }
 };
 
@@ -147,7 +147,7 @@ struct SurfaceKeyItem {
   unsigned* keys;
   SCREE_HD void operator()(Index entry) const {
     const Index number = surfaces[entry];
-    keys[entry] = numbers.at_rest(number) ? last : static_cast<unsigned>(numbers.placed(number));
+    keys[entry] = numbers.is_static(number) ? last : static_cast<unsigned>(numbers.placed(number));
   }
 };
 
@@ -163,32 +163,32 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
     : box_{model.space.min, period},
-      reach_(model.contact.reach),
+      interaction_range_(model.contact.interaction_range),
       meshes_(model, stream),
       works_(model, stream),
       moves_(model.rotates()),
       h_index_(1) {
   const SurfaceSet surfaces(model);
-  ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), at_rest_ = surfaces.at_rest();
+  ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), all_static_ = surfaces.is_static();
   planes_.upload(wall_planes(model), stream);
   for (Index s = 0; s < placed_count_; ++s)
     if (surfaces.at(s).kind == SurfaceKind::plane)
       placed_planes_.push_back(s), plane_numbers_.push_back(surfaces.number_of(s));
 }
 
-void DeviceSurfaces::build(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin) {
+void DeviceSurfaces::build(Device device, const Particles& particles, const SurfacePoses& poses, Real skin) {
   material_ = particles.material;
-  place(device, poses);
+  upload(device, poses);
   find_entries(device, particles, poses, skin);
   if (any_placed()) group_by_surface(device);
 }
 
-void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& poses, Real skin) {
+void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePoses& poses, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
   Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
-  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
-                       skin,       numbers(), places_.data(), box_.period};
+  const EntrySearch in{p.position, p.active,  *p.grid,       p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), poses_.data(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The scan also reads the entry past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -199,8 +199,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
   meshes_.find(
       device,
-      {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data(), p.remembered}, poses,
-      p.largest_radius, counts);
+      {p.position, *p.grid, p.starts, skin, box_.period, poses_.data(), frames_.data(), p.stored_contacts},
+      poses, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
                  "scan");
@@ -210,7 +210,7 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   entries_ = h_index_[0];
   const auto entries = static_cast<std::size_t>(entries_);
   surfaces_.resize(entries), particles_.resize(entries), images_.resize(entries);
-  meshes_.make_room(entries_);
+  meshes_.reserve_entries(entries_);
   if (entries_ == 0) return;
   const EntryOutputs out{surfaces_.data(), particles_.data(), images_.data()};
   for_each(device, p.owned, GroundFillItem{in, offsets_.data(), next, out});
@@ -246,31 +246,31 @@ void DeviceSurfaces::group_by_surface(Device device) {
   steps_.resize(entries);
 }
 
-void DeviceSurfaces::place(Device device, const SurfacePlaces& poses) {
+void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
   if (!any_placed()) return;
   placed_.wait();  // waits for the previous copy from pinned memory
-  h_placed_.resize(poses.placed.size()), places_.resize(poses.placed.size());
-  std::copy(poses.placed.begin(), poses.placed.end(), h_placed_.data());
-  copy_async(places_.data(), h_placed_.data(), poses.placed.size(), device.stream);
+  h_poses_.resize(poses.placed.size()), poses_.resize(poses.placed.size());
+  std::copy(poses.placed.begin(), poses.placed.end(), h_poses_.data());
+  copy_async(poses_.data(), h_poses_.data(), poses.placed.size(), device.stream);
   h_frames_.resize(poses.frames.size()), frames_.resize(poses.frames.size());
   std::copy(poses.frames.begin(), poses.frames.end(), h_frames_.data());
   copy_async(frames_.data(), h_frames_.data(), poses.frames.size(), device.stream);
   placed_.record(device.stream);
 }
 
-void DeviceSurfaces::keep_start(Device device) {
+void DeviceSurfaces::store_start(Device device) {
   if (!any_placed()) return;
-  start_places_.resize(places_.size());
-  copy_async(start_places_.data(), places_.data(), places_.size(), device.stream);
+  start_poses_.resize(poses_.size());
+  copy_async(start_poses_.data(), poses_.data(), poses_.size(), device.stream);
 }
 
 SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
-                                         const SurfaceLook& query) const {
+                                         const SurfaceQuery& query) const {
   return {query.position,
           query.velocity,
           material_,
           {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
-          places_.data(),
+          poses_.data(),
           frames_.data(),
           numbers(),
           meshes_.rows(),
@@ -281,11 +281,11 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           records_of(kernels.history()),
           query.spin,
           query.h,
-          reach_};
+          interaction_range_};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const SurfaceLook& query) {
+                                const SurfaceQuery& query) {
   h_load_sums_.resize(h_chunks_.size());
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch(device, views);
@@ -293,47 +293,47 @@ void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kerne
                         h_load_sums_.data());
 }
 
-void DeviceSurfaces::make_room_in_run(Device device, Index steps) {
-  works_.make_room(device, std::int64_t{steps} * placed_entries_);
+void DeviceSurfaces::reserve_in_run(Device device, Index steps) {
+  works_.reserve_entries(device, std::int64_t{steps} * placed_entries_);
 }
 
 void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels& kernels,
-                                       const OpenStepLook& query, Real h) {
+                                       const OpenStepQuery& query, Real h) {
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
   meshes_.touch_in_run(device, views, query);
   kernels.surface_loads_in_run(device, views, query, placed_entries_, loads_[0].data());
-  works_.book_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, query.control);
+  works_.accumulate_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, query.control);
 }
 
-std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& query,
+std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepQuery& query,
                                          Real h) const {
   return key_of(entry_views(kernels, {nullptr, nullptr, nullptr, {}, h})) + key_of(query) +
          key_of(meshes_.groups()) + key_of(placed_entries_);
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
-                                const SurfaceLook& query) {
+                                const SurfaceQuery& query) {
   h_step_sums_.resize(h_chunks_.size());
-  meshes_.make_room_over_step(entries_);
+  meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch_over_step(device, views, start.position, start_places_.data());
-  kernels.surface_steps(device, views, chunk_list(), {start, start_places_.data()}, steps_.data(),
+  meshes_.touch_over_step(device, views, start.position, start_poses_.data());
+  kernels.surface_steps(device, views, chunk_list(), {start, start_poses_.data()}, steps_.data(),
                         h_step_sums_.data());
 }
 
-void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
-                               const SurfaceLook& query) {
-  rubs_.resize(static_cast<std::size_t>(entries_));
+void DeviceSurfaces::find_friction_steps(Device device, const DeviceContactKernels& kernels,
+                                         const FrictionStart& start, const SurfaceQuery& query) {
+  friction_steps_.resize(static_cast<std::size_t>(entries_));
   h_step_sums_.resize(h_chunks_.size());
-  meshes_.make_room_over_step(entries_);
+  meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch_over_step(device, views, start.step.position, start_places_.data());
-  kernels.surface_rubs(device, views, chunk_list(), {start, start_places_.data(), rubs_.data()},
-                       h_step_sums_.data());
+  meshes_.touch_over_step(device, views, start.step.position, start_poses_.data());
+  kernels.surface_friction_steps(device, views, chunk_list(),
+                                 {start, start_poses_.data(), friction_steps_.data()}, h_step_sums_.data());
 }
 
 const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
-                                               const SurfaceLook& query) {
+                                               const SurfaceQuery& query) {
   if (!any_placed()) return nullptr;
   shown_.resize(static_cast<std::size_t>(entries_));
   kernels.shown_surfaces(device, entry_views(kernels, query), placed_entries_, loads_[0].data(),
@@ -341,19 +341,21 @@ const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContac
   return shown_.data();
 }
 
-void DeviceSurfaces::book_loads(Device device, const DeviceContactKernels& kernels, Real h) {
-  works_.make_room(device, placed_entries_);
-  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ExplicitWorks{loads_[0].data(), h, moves_});
+void DeviceSurfaces::accumulate_load_works(Device device, const DeviceContactKernels& kernels, Real h) {
+  works_.reserve_entries(device, placed_entries_);
+  works_.accumulate(device, entry_views(kernels, {}), meshes_.groups(),
+                    ExplicitWorks{loads_[0].data(), h, moves_});
 }
 
-void DeviceSurfaces::book_steps(Device device, const DeviceContactKernels& kernels) {
-  works_.make_room(device, placed_entries_);
-  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitWorks{steps_.data()});
+void DeviceSurfaces::accumulate_step_works(Device device, const DeviceContactKernels& kernels) {
+  works_.reserve_entries(device, placed_entries_);
+  works_.accumulate(device, entry_views(kernels, {}), meshes_.groups(), ImplicitWorks{steps_.data()});
 }
 
-void DeviceSurfaces::book_rubs(Device device, const DeviceContactKernels& kernels) {
-  works_.make_room(device, placed_entries_);
-  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitRubbingWorks{rubs_.data()});
+void DeviceSurfaces::accumulate_friction_works(Device device, const DeviceContactKernels& kernels) {
+  works_.reserve_entries(device, placed_entries_);
+  works_.accumulate(device, entry_views(kernels, {}), meshes_.groups(),
+                    ImplicitFrictionWorks{friction_steps_.data()});
 }
 
 std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "brick_grid.cuh"
+#include "cell_block_grid.cuh"
 #include "cell_sort.cuh"
 #include "contact_kernels.cuh"
 #include "dem/surfaces/surface_sums.hpp"
@@ -22,7 +22,7 @@ namespace scree {
 struct SurfaceList {
   const Index *offsets, *surfaces;  // [particles + 1] first entry of each, [entries]
   const std::int8_t* images;        // [entries]
-  const PlacedSurface* placed;      // present poses
+  const SurfacePose* placed;        // present poses
   const SurfaceFrame* frames;
   const MeshView* meshes;
   SurfaceNumbers numbers;
@@ -35,59 +35,61 @@ class DeviceSurfaces {
     const Vec4* position;  // x, y, z, radius
     const int* material;
     Index owned, active;
-    const BrickGrid* grid;
+    const CellBlockGrid* grid;
     const Index* starts;  // [cells + 1] first active particle of each cell
     Real largest_radius;  // [m]
     Index* numbers;       // scratch for one value per owned particle
-    RememberedRows remembered;
+    StoredRows stored_contacts;
   };
 
   // period: of the domain [m].
   DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream);
 
   // Fills the rows. poses: the present ones of the surfaces. Waits for the device.
-  void build(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin);
+  void build(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   bool any_placed() const { return placed_count_ > 0; }
-  bool any_at_rest() const { return any_placed() && at_rest_; }  // as `SurfaceSet::at_rest`
+  bool all_placed_static() const { return any_placed() && all_static_; }  // as `SurfaceSet::at_rest`
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(),      images_.data(), places_.data(),
+    return {offsets_.data(), surfaces_.data(),      images_.data(), poses_.data(),
             frames_.data(),  meshes_.rows().meshes, numbers()};
   }
 
   // Selects one of two sets of loads: that of the step, which the particles read, or of a second evaluation
   // for the bodies.
-  enum class Loads { of_step, of_look };
+  enum class Loads { of_step, of_query };
   // Queues the copy of the surfaces' new poses; the next call waits for it.
-  void place(Device device, const SurfacePlaces& poses);
-  void keep_start(Device device);  // at the start of an implicit step
+  void upload(Device device, const SurfacePoses& poses);
+  void store_start(Device device);  // at the start of an implicit step
   // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
   // poses, and the copy of the sums to the host.
-  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& query);
+  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query);
   // For static surfaces in a run of explicit steps of length h: queues the loads of the step that is open
   // when the kernels run, and the losses at triangles. key: everything that the launches depend on.
-  void make_room_in_run(Device device, Index steps);  // before that many steps are queued
-  void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& query,
+  void reserve_in_run(Device device, Index steps);  // before that many steps are queued
+  void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepQuery& query,
                          Real h);
-  std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& query, Real h) const;
+  std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepQuery& query, Real h) const;
   // Over an implicit step; `query` is its end, with the history that results if the step is accepted.
   void find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
-                  const SurfaceLook& query);
+                  const SurfaceQuery& query);
   // The same for laws with friction.
-  void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
-                 const SurfaceLook& query);
+  void find_friction_steps(Device device, const DeviceContactKernels& kernels, const FrictionStart& start,
+                           const SurfaceQuery& query);
   // Queues output values per entry from the loads of the step, which were evaluated at an instant for
   // particles in the state of `query`.
   const ShownContact* find_shown(Device device, const DeviceContactKernels& kernels,
-                                 const SurfaceLook& query);
+                                 const SurfaceQuery& query);
   // Queues the losses at triangles over a closed step from the contacts evaluated last: over the explicit
   // step of length h, over the implicit step, and the same with friction.
-  void book_loads(Device device, const DeviceContactKernels& kernels, Real h);
-  void book_steps(Device device, const DeviceContactKernels& kernels);
-  void book_rubs(Device device, const DeviceContactKernels& kernels);
+  void accumulate_load_works(Device device, const DeviceContactKernels& kernels, Real h);
+  void accumulate_step_works(Device device, const DeviceContactKernels& kernels);
+  void accumulate_friction_works(Device device, const DeviceContactKernels& kernels);
   DeviceTriangleWorks& works() { return works_; }
-  const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, from the last find_rubs()
+  const SurfaceFriction* friction_steps() const {
+    return friction_steps_.data();
+  }  // per entry, from the last find_friction_steps()
   // Sums of the contacts evaluated last, once the stream is done: a surface may appear in several parts.
   std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
@@ -104,16 +106,16 @@ class DeviceSurfaces {
   }
 
  private:
-  void find_entries(Device device, const Particles& particles, const SurfacePlaces& poses, Real skin);
+  void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
-  SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& query) const;
+  SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
 
   PeriodicBox box_;
-  Real reach_;  // `Contact::reach` [m]
+  Real interaction_range_;  // `Contact::reach` [m]
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
-  bool at_rest_;
+  bool all_static_;
   std::vector<Index> placed_planes_, plane_numbers_;  // of planes: index among the placed surfaces, number
   DeviceMeshes meshes_;
   DeviceTriangleWorks works_;
@@ -126,15 +128,15 @@ class DeviceSurfaces {
   std::vector<SurfaceChunk> h_chunks_;
   DeviceArray<SurfaceChunk> chunks_;
   const int* material_ = nullptr;
-  PinnedArray<PlacedSurface> h_placed_;
+  PinnedArray<SurfacePose> h_poses_;
   PinnedArray<SurfaceFrame> h_frames_;
   Event placed_;
-  DeviceArray<PlacedSurface> places_, start_places_;
+  DeviceArray<SurfacePose> poses_, start_poses_;
   DeviceArray<SurfaceFrame> frames_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
-  DeviceArray<ShownContact> shown_;  // empty unless output values were asked for
-  DeviceArray<SurfaceRub> rubs_;     // empty unless implicit steps have friction
+  DeviceArray<ShownContact> shown_;              // empty unless output values were asked for
+  DeviceArray<SurfaceFriction> friction_steps_;  // empty unless implicit steps have friction
   // Written by the device for chunks with contacts; the number of contacts is written for all.
   PinnedArray<InstantSums> h_load_sums_;
   PinnedArray<StepSums> h_step_sums_;

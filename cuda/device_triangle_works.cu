@@ -12,7 +12,7 @@ struct AtomicAdd {
 };
 
 template <class Works>
-using WorkItem = TriangleBookItem<Works, AtomicAdd>;
+using WorkItem = TriangleWorkItem<Works, AtomicAdd>;
 
 struct WorkInRunItem {
   WorkItem<ExplicitWorks> work;
@@ -31,21 +31,23 @@ DeviceTriangleWorks::DeviceTriangleWorks(const Model& model, cudaStream_t stream
   load({}, stream);
 }
 
-void DeviceTriangleWorks::make_room(Device device, std::int64_t contacts) {
+void DeviceTriangleWorks::reserve_entries(Device device, std::int64_t contacts) {
   if (exist() && !terms_.take(contacts))
     for_each(device, static_cast<Index>(works_.triangles()), NormalizeItem{sums_.data()});
 }
 
 template <class Works>
-void DeviceTriangleWorks::book(Device device, const SurfaceViews& in, Index groups, const Works& works) {
+void DeviceTriangleWorks::accumulate(Device device, const SurfaceViews& in, Index groups,
+                                     const Works& works) {
   if (exist()) for_each(device, groups, WorkItem<Works>{in, table(), works, sums_.data()});
 }
-template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ExplicitWorks&);
-template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitWorks&);
-template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitRubbingWorks&);
+template void DeviceTriangleWorks::accumulate(Device, const SurfaceViews&, Index, const ExplicitWorks&);
+template void DeviceTriangleWorks::accumulate(Device, const SurfaceViews&, Index, const ImplicitWorks&);
+template void DeviceTriangleWorks::accumulate(Device, const SurfaceViews&, Index,
+                                              const ImplicitFrictionWorks&);
 
-void DeviceTriangleWorks::book_in_run(Device device, const SurfaceViews& in, Index groups,
-                                      const ExplicitWorks& works, const VerletControl* control) {
+void DeviceTriangleWorks::accumulate_in_run(Device device, const SurfaceViews& in, Index groups,
+                                            const ExplicitWorks& works, const VerletControl* control) {
   if (exist()) for_each(device, groups, WorkInRunItem{{in, table(), works, sums_.data()}, control});
 }
 
@@ -53,8 +55,8 @@ void DeviceTriangleWorks::load(const std::vector<std::int64_t>& words, cudaStrea
   if (exist()) sums_.upload(works_.sums(words), stream);
 }
 
-std::vector<std::int64_t> DeviceTriangleWorks::words(cudaStream_t stream) const {
-  return exist() ? works_.words(sums_.download(stream)) : std::vector<std::int64_t>{};
+std::vector<std::int64_t> DeviceTriangleWorks::limbs(cudaStream_t stream) const {
+  return exist() ? works_.limbs(sums_.download(stream)) : std::vector<std::int64_t>{};
 }
 
 }  // namespace scree

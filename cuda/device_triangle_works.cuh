@@ -18,17 +18,17 @@ class DeviceTriangleWorks {
   bool exist() const { return works_.exist(); }
 
   // Sizes the arrays before that many contacts are added.
-  void make_room(Device device, std::int64_t contacts);
+  void reserve_entries(Device device, std::int64_t contacts);
   // Queues the losses over a closed step, of the contacts of these groups as they were evaluated last.
   template <class Works>
-  void book(Device device, const SurfaceViews& in, Index groups, const Works& works);
+  void accumulate(Device device, const SurfaceViews& in, Index groups, const Works& works);
   // The same for the explicit step that is open when the kernel runs; the next kernel of the run closes it.
-  void book_in_run(Device device, const SurfaceViews& in, Index groups, const ExplicitWorks& works,
-                   const VerletControl* control);
+  void accumulate_in_run(Device device, const SurfaceViews& in, Index groups, const ExplicitWorks& works,
+                         const VerletControl* control);
 
   // In the format of `RankParticles`; both wait.
   void load(const std::vector<std::int64_t>& words, cudaStream_t stream);
-  std::vector<std::int64_t> words(cudaStream_t stream) const;
+  std::vector<std::int64_t> limbs(cudaStream_t stream) const;
 
  private:
   TriangleWorkTable table() const {

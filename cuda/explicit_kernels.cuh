@@ -38,8 +38,8 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_posi
 __device__ inline bool is_outside(const MixedRequest& r, Index i, int parity, Real d_squared) {
   const MixedFraction part = r.state.fraction[i];
   const Real margin = r.control->half_skin;
-  if (!part.near_side && !(d_squared > margin * margin)) return false;
-  const MixedPlace fixed_position = (parity == 0 ? r.state.place[1] : r.state.place[0])[i];
+  if (!part.near_open_side && !(d_squared > margin * margin)) return false;
+  const FixedPointPosition fixed_position = (parity == 0 ? r.state.position[1] : r.state.position[0])[i];
   return !r.drifting[i] && !r.box.inside(mixed_position(r.grid, r.in.position[i], fixed_position, part));
 }
 
@@ -135,12 +135,12 @@ template <class Word, class Laws>
 using WarpRowsOf = WarpRows<Word, kWordsOf<Laws>>;
 
 // Blocks per multiprocessor: registers are limited so that the evaluation of a contact does not spill.
-inline constexpr int kRubbingBlocks = 4;
+inline constexpr int kFrictionBlocks = 4;
 
-// The same for laws with `kMoves`: the lanes of a warp share its contacts.
+// The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts.
 template <class Laws>
-__global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
-    rubbing_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
+__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks)
+    friction_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
@@ -213,11 +213,11 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
-inline constexpr int kMixedRubbingBlocks = 5;
+inline constexpr int kMixedFrictionBlocks = 5;
 
 template <class Laws>
-__global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
-    mixed_rubbing_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
+__global__ void __launch_bounds__(kStepBlock, kMixedFrictionBlocks)
+    mixed_friction_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
   const int parity = r.control->parity[0];
@@ -228,10 +228,10 @@ __global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
   const bool idle = i >= r.rows.end;
   const auto views = at_open_step<Laws>(
       warp_views(r.in, r.control->rows, r.control->margin, &contacts[threadIdx.x / kSlice], idle), r);
-  const MixedPlace* fixed_position = parity == 0 ? r.state.place[0] : r.state.place[1];
+  const FixedPointPosition* fixed_position = parity == 0 ? r.state.position[0] : r.state.position[1];
   const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
   const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
-  const MixedRubbingItem<Laws, WarpRowsOf<float, Laws>> item{
+  const MixedFrictionItem<Laws, WarpRowsOf<float, Laws>> item{
       {views, laws, {{fixed_position, motion, r.state.fraction, r.grid}, spin, r.h}},
       r.gravity,
       r.state,

@@ -125,7 +125,7 @@ class NcclTransport : public HaloTransport {
 
 // Whether two ranks use the same GPU: NCCL allows one rank per GPU.
 bool gpus_are_shared(const Ranks& ranks) {
-  auto all = ranks.gather_everywhere(std::vector{device_uuid()});
+  auto all = ranks.all_gather(std::vector{device_uuid()});
   std::sort(all.begin(), all.end());
   return std::adjacent_find(all.begin(), all.end()) != all.end();
 }

@@ -1,4 +1,4 @@
-// Lanes of a warp that search the triangles of a row together: mesh/team.hpp on the device.
+// Lanes of a warp that search the triangles of a row together: mesh/lane_group.hpp on the device.
 #pragma once
 
 #include <cstring>
@@ -15,9 +15,9 @@ struct LaneTeam {
 
   __device__ static Index first() { return static_cast<Index>(threadIdx.x % kLanes); }
   __device__ static constexpr Index stride() { return kLanes; }
-  __device__ static bool leads() { return first() == 0; }
+  __device__ static bool is_leader() { return first() == 0; }
   template <class T, class Merge>
-  __device__ static T agree(T value, const Merge& merge) {
+  __device__ static T reduce(T value, const Merge& merge) {
 #pragma unroll
     for (int across = kLanes / 2; across > 0; across /= 2)
       value = merge(
@@ -25,7 +25,7 @@ struct LaneTeam {
     return value;
   }
   template <class T>
-  __device__ static T of_leader(const T& value) {
+  __device__ static T from_leader(const T& value) {
     return moved(value, [](unsigned word) { return __shfl_sync(lanes(), word, 0, kLanes); });
   }
 

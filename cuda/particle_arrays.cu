@@ -51,7 +51,7 @@ MixedViews MixedArrays::views(SecondArrays& scratch) {
     halves[0] = reinterpret_cast<std::remove_reference_t<decltype(halves[0])>>(whole.data());
     halves[1] = halves[0] + whole.size();
   };
-  halve(scratch.position, views.place), halve(scratch.velocity, views.motion);
+  halve(scratch.position, views.position), halve(scratch.velocity, views.motion);
   halve(scratch.angular_velocity, views.spin);
   views.fraction = fraction.data(), views.rest = rest.data(), views.spin_rest = spin_rest.data();
   return views;
@@ -74,7 +74,7 @@ void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Ind
     for_each(device, n, ReorderItem{stored, state, nullptr});
     stored = {}, scratch.clear();
   };
-  for_each_array<kNames | kGhostCopies | kOwnedArrays>(
+  for_each_array<kKeys | kGhostCopies | kOwnedArrays>(
       FieldsThere(now),
       [&](auto*& array) {
         using T = std::remove_reference_t<decltype(*array)>;

@@ -5,7 +5,7 @@
 
 #include "dem/explicit/mixed_items.hpp"
 #include "dem/particles/particle_fields.hpp"
-#include "device_room.cuh"
+#include "device_arena.cuh"
 
 namespace scree {
 
@@ -61,7 +61,7 @@ struct SecondArrays {
   static constexpr std::size_t whole(std::size_t n) { return (n + 31) / 32 * 32; }
 };
 
-// Particles in mixed precision, between two lists. Arrays of their own are in the `DeviceRoom` or, where
+// Particles in mixed precision, between two lists. Arrays of their own are in the `DeviceArena` or, where
 // particles rotate, alias arrays of values at an instant; double-buffered ones alias the second arrays of the
 // state, which are not needed meanwhile.
 struct MixedArrays {

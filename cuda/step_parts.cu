@@ -22,7 +22,7 @@ struct InteriorItem {
     const Index first = block * kStepBlock, end = min(first + kStepBlock, owned);
     bool waits = end > interior;
     for (Index k = surfaces.offsets[first]; k < surfaces.offsets[end] && !waits; ++k)
-      waits = !surfaces.numbers.at_rest(surfaces.surfaces[k]);
+      waits = !surfaces.numbers.is_static(surfaces.surfaces[k]);
     is_interior[block] = !waits;
   }
 };
@@ -32,22 +32,22 @@ struct InteriorItem {
 void StepParts::find(Device device, const DeviceSurfaces& surfaces, Index owned, Index interior, bool alone) {
   owned_ = owned, alone_ = alone, apart_ = false;
   all_ = std::max(1u, blocks_for(owned, kStepBlock));
-  early_ = alone ? 0 : static_cast<unsigned>(interior / kStepBlock);
+  interior_blocks_ = alone ? 0 : static_cast<unsigned>(interior / kStepBlock);
   if (!surfaces.any_placed() || owned == 0) return;
   const auto blocks = static_cast<Index>(all_);
-  blocks_.resize(all_), early_flags_.resize(all_);
+  blocks_.resize(all_), is_interior_.resize(all_);
   for_each(device, blocks,
-           InteriorItem{surfaces.list(), owned, alone ? owned : interior, early_flags_.data()});
+           InteriorItem{surfaces.list(), owned, alone ? owned : interior, is_interior_.data()});
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
-        cub::DevicePartition::Flagged(at, bytes, thrust::counting_iterator<Index>(0), early_flags_.data(),
+        cub::DevicePartition::Flagged(at, bytes, thrust::counting_iterator<Index>(0), is_interior_.data(),
                                       blocks_.data(), count_.data(), blocks, device.stream),
         "partition");
   });
   const auto found = static_cast<unsigned>(count_.download(device.stream)[0]);
   const bool pays = found >= kLeastBlocks * multiprocessors_;
   apart_ = found > 0 && found < all_ && launches().in_parts.value_or(pays);
-  if (apart_) early_ = found;
+  if (apart_) interior_blocks_ = found;
 }
 
 }  // namespace scree

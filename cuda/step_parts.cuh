@@ -20,24 +20,26 @@ class StepParts {
   bool apart() const { return apart_; }
   // Launches: the whole step, for a single rank, or its two parts; the interior may be empty.
   StepRows whole() const { return {nullptr, 0, all_, owned_, alone_, all_}; }
-  StepRows early() const {
-    return {apart_ ? blocks_.data() : nullptr, 0, early_, owned_, false, early_ + late_blocks()};
+  StepRows interior() const {
+    return {apart_ ? blocks_.data() : nullptr,   0, interior_blocks_, owned_, false,
+            interior_blocks_ + boundary_blocks()};
   }
-  StepRows late() const {
-    if (apart_) return {blocks_.data() + early_, 0, late_blocks(), owned_, false, all_};
-    return {nullptr, static_cast<Index>(early_), late_blocks(), owned_, false, early_ + late_blocks()};
+  StepRows boundary() const {
+    if (apart_) return {blocks_.data() + interior_blocks_, 0, boundary_blocks(), owned_, false, all_};
+    return {nullptr, static_cast<Index>(interior_blocks_), boundary_blocks(), owned_,
+            false,   interior_blocks_ + boundary_blocks()};
   }
 
  private:
   // The last block of a step closes it, so a step needs at least one.
-  unsigned late_blocks() const { return all_ > early_ ? all_ - early_ : 1; }
+  unsigned boundary_blocks() const { return all_ > interior_blocks_ ? all_ - interior_blocks_ : 1; }
 
   Index owned_ = 0;
-  unsigned all_ = 1, early_ = 0;  // number of blocks
+  unsigned all_ = 1, interior_blocks_ = 0;  // number of blocks
   bool alone_ = true, apart_ = false;
   DeviceArray<Index> blocks_;  // block numbers: the interior first, then the boundary
   DeviceArray<Index> count_{1};
-  DeviceArray<unsigned char> early_flags_, space_;
+  DeviceArray<unsigned char> is_interior_, space_;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 

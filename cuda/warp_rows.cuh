@@ -12,12 +12,12 @@ namespace scree {
 // row. Words: of a result.
 template <class Word, int kWords>
 struct WarpContacts {
-  static constexpr int kRoom = 12;            // entries of a row that are distributed at a time
+  static constexpr int kCapacity = 12;        // entries of a row that are distributed at a time
   static constexpr int kStride = kWords | 1;  // odd, so that results stored by different lanes fall into
                                               // different banks
   // Entries of a lane are contiguous, and lanes an odd number of banks apart.
-  Index neighbor[kSlice][kRoom | 1];
-  RowPlace place[kSlice][kRoom + (kRoom % 4 == 0 ? 2 : 0)];
+  Index neighbor[kSlice][kCapacity | 1];
+  RowIndex entry_index[kSlice][kCapacity + (kCapacity % 4 == 0 ? 2 : 0)];
   Word result[kSlice][kStride];
   double sum[kSlice][kStride];
 };
@@ -60,20 +60,20 @@ struct WarpRows {
       constexpr Index kAtOnce = 4;
       struct Entries {
         Index j[kAtOnce];
-        RowPlace place[kAtOnce];
+        RowIndex entry_index[kAtOnce];
       };
       const auto entries = [&](Index first) {
         Entries at;
         for (Index k = 0; k < kAtOnce; ++k) {
           const bool is_entry = first + k < count;
           at.j[k] = is_entry ? row[(first + k) * kSlice] : i;
-          at.place[k] = whole || !is_entry ? static_cast<RowPlace>(first + k)
-                                           : rows.places[start + (first + k) * kSlice];
+          at.entry_index[k] = whole || !is_entry ? static_cast<RowIndex>(first + k)
+                                                 : rows.entry_indices[start + (first + k) * kSlice];
         }
         return at;
       };
       Entries at = entries(next);
-      for (; next < count && found + kAtOnce <= Contacts::kRoom; next += kAtOnce) {
+      for (; next < count && found + kAtOnce <= Contacts::kCapacity; next += kAtOnce) {
         const Entries ahead = entries(next + kAtOnce);
         bool touches[kAtOnce];
         for (Index k = 0; k < kAtOnce; ++k) touches[k] = test(at.j[k]) & (next + k < count);
@@ -85,8 +85,8 @@ struct WarpRows {
         for (Index k = 0; k < kAtOnce; ++k) {
           if (!touches[k]) continue;
           shared->neighbor[lane][found] = at.j[k];
-          evaluate.prepare(std::int64_t{number} + at.place[k]);
-          shared->place[lane][found] = at.place[k];
+          evaluate.prepare(std::int64_t{number} + at.entry_index[k]);
+          shared->entry_index[lane][found] = at.entry_index[k];
           ++found;
         }
         at = ahead;
@@ -108,7 +108,7 @@ struct WarpRows {
     reinterpret_cast<Result&>(words) = result;
   }
   __device__ void store_pruned(std::int64_t slot, Index j, Index row_index) const {
-    rows.places[slot] = static_cast<RowPlace>(row_index), rows.neighbors[slot] = j;
+    rows.entry_indices[slot] = static_cast<RowIndex>(row_index), rows.neighbors[slot] = j;
   }
 
   // Contacts that a lane has found in this round, and in earlier ones.
@@ -135,7 +135,7 @@ struct WarpRows {
         if (__shfl_sync(~0u, before, owner + step) <= index) owner += step;
       const Index k = index - __shfl_sync(~0u, before, owner);
       const std::int64_t number_of_first = __shfl_sync(~0u, first_entry, owner);
-      const auto slot = [&] { return number_of_first + shared->place[owner][k]; };
+      const auto slot = [&] { return number_of_first + shared->entry_index[owner][k]; };
       if constexpr (std::is_invocable_v<const Evaluate&, Index, Index, std::int64_t, Index>) {
         const Index among = k + __shfl_sync(~0u, found.earlier, owner);
         if (index < all)

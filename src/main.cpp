@@ -21,7 +21,7 @@ namespace {
 
 ExitCode guarded(const std::function<ExitCode()>& body) {
   const auto report = [](const char* what, ExitCode code) {
-    Ranks::world().meet(what, static_cast<int>(code));
+    Ranks::world().error_barrier(what, static_cast<int>(code));
     if (Ranks::world().is_root()) std::cerr << message_line("error", what);
     return code;
   };
@@ -68,8 +68,8 @@ int main(int count, char** values) {
   const bool is_run = count > 1 && std::string_view(values[1]) == "run";
   if (is_run) scree::catch_signals();  // already before MPI starts, which takes a while
   if (scree::launched_with_others()) scree::start_mpi();
-  const scree::ExitCode code =
-      scree::guarded([&] { return scree::carry_out(scree::read_words(count, values, scree::version_text)); });
+  const scree::ExitCode code = scree::guarded(
+      [&] { return scree::carry_out(scree::parse_command_line(count, values, scree::version_text)); });
   scree::end_mpi();
   return static_cast<int>(code);
 }

@@ -17,7 +17,7 @@ struct Box {
            p.z - margin >= min.z && p.z + margin <= max.z;
   }
   // Whether p is inside the box, or outside by at most `width` [m].
-  SCREE_HD bool reaches(Vec3 p, Real width) const { return inside(p, -width); }
+  SCREE_HD bool is_within(Vec3 p, Real width) const { return inside(p, -width); }
   // Whether p is outside a side. False for a NaN.
   SCREE_HD bool beyond(Vec3 p) const {
     return p.x < min.x || p.x > max.x || p.y < min.y || p.y > max.y || p.z < min.z || p.z > max.z;

@@ -18,7 +18,7 @@ namespace scree {
 // by integer addition, atomic or not.
 class FixedSum {
  public:
-  static constexpr int kLimbs = 4, kBad = kLimbs, kWords = kLimbs + 1;
+  static constexpr int kLimbs = 4, kBad = kLimbs, kNumbers = kLimbs + 1;
   static constexpr std::int64_t kMostTerms = (std::int64_t{1} << 31) - 1;  // between two normalize()
 
   // Calls put(limb, integer) for what the term adds to the limbs.
@@ -46,7 +46,7 @@ class FixedSum {
     for_each_piece(term, [this](int k, std::int64_t piece) { word[k] += piece; });
   }
   void add(const FixedSum& part) {
-    for (int k = 0; k < kWords; ++k) word[k] += part.word[k];
+    for (int k = 0; k < kNumbers; ++k) word[k] += part.word[k];
   }
   // Carries the digits beyond the size of a limb to the next limb; the result is the unique normalized form
   // of the number.
@@ -69,7 +69,7 @@ class FixedSum {
     return std::ldexp(static_cast<Real>(whole | (sum.word[0] != 0)), -2 * kLimbBits);
   }
 
-  std::int64_t word[kWords] = {};  // limbs, the lowest first; number of invalid terms
+  std::int64_t word[kNumbers] = {};  // limbs, the lowest first; number of invalid terms
 
  private:
   static constexpr int kMantissaBits = 52, kLimbBits = 32, kExponentBias = 1023, kExponentMask = 0x7ff;

@@ -19,7 +19,7 @@ constexpr std::string_view kLfsBeginning = "version https://git-lfs.github.com/s
 
 bool is_lfs_pointer(std::string_view beginning) { return beginning.starts_with(kLfsBeginning); }
 
-std::string input_file_trouble(const std::string& path) {
+std::string input_file_error(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return "cannot be read: " + error.message();
@@ -31,7 +31,7 @@ std::string input_file_trouble(const std::string& path) {
   std::array<char, kLfsBeginning.size()> beginning{};
   file.read(beginning.data(), beginning.size());
   if (file.bad()) return std::string("cannot be read: ") + std::strerror(errno);
-  if (is_lfs_pointer({beginning.data(), as_size(file.gcount())})) return kLfsPointerTrouble;
+  if (is_lfs_pointer({beginning.data(), as_size(file.gcount())})) return kLfsPointerError;
   return "";
 }
 

@@ -87,7 +87,7 @@ void Log::warning(const std::string& message) {
   complain("warning", message);
 }
 
-void Log::tell_left_out() {
+void Log::report_suppressed() {
   for (auto& [words, kind] : kinds_) {
     if (kind.left_out == 0) continue;
     warnings_.push_back(std::to_string(kind.left_out) +

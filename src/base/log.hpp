@@ -17,10 +17,10 @@ class Log {
 
   void info(const std::string& message);  // to standard output
   // To standard error, and stored. Of warnings that differ only in names and numbers the first ten are shown
-  // and stored; tell_left_out() issues a warning with the number of the others per kind, and resets the
+  // and stored; report_suppressed() issues a warning with the number of the others per kind, and resets the
   // counts.
   void warning(const std::string& message);
-  void tell_left_out();
+  void report_suppressed();
   void error(const std::string& message);  // to standard error
   // Rewrites the progress line on a terminal; elsewhere prints a line only with `force`.
   void progress(const std::string& line, bool force = false);

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "base/twist.hpp"
+#include "base/spatial_velocity.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 

@@ -20,6 +20,6 @@ struct Rotation {
 };
 
 // Velocity [m/s] at `arm` [m] from the centre of a body that rotates with `rate` [rad/s]: A' s for arm = A s.
-inline Vec3 turning_velocity(Real rate, Vec3 arm) { return {-rate * arm.y, rate * arm.x, 0}; }
+inline Vec3 rotational_velocity(Real rate, Vec3 arm) { return {-rate * arm.y, rate * arm.x, 0}; }
 
 }  // namespace scree

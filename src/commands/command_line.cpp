@@ -33,7 +33,7 @@ std::vector<std::string> split(int count, char** values, Order& order) {
     if (!petsc && argument == "--")
       petsc = true;
     else
-      (petsc ? order.petsc_words : arguments).push_back(argument);
+      (petsc ? order.petsc_arguments : arguments).push_back(argument);
   }
   return arguments;
 }
@@ -161,7 +161,7 @@ std::string usage_message(const CLI::App& app, const std::string& first, const s
 
 }  // namespace
 
-Order read_words(int count, char** values, const std::function<std::string()>& version) {
+Order parse_command_line(int count, char** values, const std::function<std::string()>& version) {
   Order order;
   const std::vector<std::string> arguments = split(count, values, order);
   refuse_empty_values(arguments);

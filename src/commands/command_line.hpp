@@ -21,12 +21,12 @@ struct Order {
   std::optional<std::string> about;  // print the keys on this word instead of all keys
   std::string example, file;         // name and file of a new deck
   std::vector<std::string> folders;
-  std::vector<std::string> petsc_words;  // arguments after --
-  std::string text;                      // all arguments, separated by blanks
+  std::vector<std::string> petsc_arguments;  // arguments after --
+  std::string text;                          // all arguments, separated by blanks
 };
 
 // Parses the arguments. Throws InputError if one is unknown or incomplete. version: returns the text for
 // --version.
-Order read_words(int count, char** values, const std::function<std::string()>& version);
+Order parse_command_line(int count, char** values, const std::function<std::string()>& version);
 
 }  // namespace scree

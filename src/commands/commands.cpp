@@ -27,11 +27,11 @@
 #include "run/check/examples.hpp"
 #include "run/check/start_picture.hpp"
 #include "run/loop/simulation.hpp"
-#include "run/record/still_fields.hpp"
+#include "run/record/constant_fields.hpp"
+#include "run/report/rebound_check.hpp"
 #include "run/report/scree_post.hpp"
 #include "run/report/signals.hpp"
 #include "run/report/status.hpp"
-#include "run/report/step_trials.hpp"
 #include "run/report/surfaces_outside.hpp"
 
 namespace scree {
@@ -81,7 +81,7 @@ void log_chosen(const std::vector<ChosenValue>& chosen, Log& log) {
 }
 
 void warn_of_run(const Model& model, Log& log) {
-  for (const std::string& warning : {step_warning(model), outside_at_start(model), still_fields(model)})
+  for (const std::string& warning : {step_warning(model), outside_at_start(model), constant_fields(model)})
     if (!warning.empty()) log.warning(warning);
 }
 
@@ -101,7 +101,7 @@ ExitCode run(const Order& order) {
   const std::string directory = output_directory(order, deck);
   ranks.on_root([&] { ResultsFolder({directory, order.restart, order.overwrite}).check(); });
   std::vector<ChosenValue> chosen;
-  const Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  const Model model = build_model(deck, log, RankShare(ranks), chosen);
   enter_chosen(chosen, deck);
   log_chosen(chosen, log);
   if (is_stopped(ranks, "before the first step, without a new checkpoint", log))
@@ -110,7 +110,7 @@ ExitCode run(const Order& order) {
   const std::string too_much = disk_warning(model, disk_use(model, length_of(deck)), directory);
   if (!too_much.empty()) log.warning(too_much);
   std::optional<PetscSession> petsc;  // on rank 0, which has the bodies
-  ranks.on_root([&] { petsc.emplace("scree", order.petsc_words); });
+  ranks.on_root([&] { petsc.emplace("scree", order.petsc_arguments); });
   const Deck whole = with_fitting_segments(deck);
   RunOptions options{
       order.backend,       directory,  order.restart, order.allow_changes, order.deck, whole.resolved_text(),
@@ -121,7 +121,7 @@ ExitCode run(const Order& order) {
   if (petsc)
     for (const std::string& option : petsc->unused_options())
       log.warning("PETSc option " + option + " was not used");
-  log.tell_left_out();
+  log.report_suppressed();
   return code;
 }
 
@@ -132,7 +132,7 @@ std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
   ranks.on_root([&] {
     Multibody multibody(model);
     for (const std::string& warning : multibody.start_warnings()) log.warning(warning);
-    log.tell_left_out();
+    log.report_suppressed();
     const std::string& change = multibody.start_change();
     report = "solver         " + multibody.solver_description();
     if (!multibody.redundancy().empty())
@@ -152,7 +152,7 @@ ExitCode check(const Order& order) {
   if (draws) ranks.on_root([&] { drawer = find_scree_post(); });
   Deck deck = checked_deck(order, log);
   std::vector<ChosenValue> chosen;
-  Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  Model model = build_model(deck, log, RankShare(ranks), chosen);
   enter_chosen(chosen, deck);
   warn_of_run(model, log);
   const std::string directory = output_directory(order, deck);

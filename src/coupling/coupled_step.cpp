@@ -39,36 +39,36 @@ struct CoupledStep::Iteration {
   IterationNorms bodies;
 };
 
-CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
+CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyCoupling& link, StageTimers& timers)
     : model_(model),
       backend_(backend),
-      link_(link),
+      body_coupling_(link),
       timers_(timers),
-      something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()),
+      has_contacts_(model.particles.totals.count > 0 || !pair_limits(model).empty()),
       largest_radius_(radius_range(model).largest > 0 ? radius_range(model).largest
                                                       : largest_corner_radius(model)) {}
 
 void CoupledStep::rebuild_list(Real skin) { backend_.list().build(skin, timers_); }
 
 void CoupledStep::start(MultibodyState& bodies) {
-  link_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
+  body_coupling_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
   resume(bodies, 0);
   backend_.particles().initial_forces();
   // The contact wrenches at the start are known only now.
-  link_.reduce_end_wrench(backend_.particles());
-  link_.set_initial_state(bodies, link_.wrench_of_bodies());
-  link_.take_wrench(bodies);
+  body_coupling_.reduce_end_wrench(backend_.particles());
+  body_coupling_.set_initial_state(bodies, body_coupling_.wrench_of_bodies());
+  body_coupling_.take_wrench(bodies);
 }
 
 void CoupledStep::resume(const MultibodyState& bodies, Real t) {
-  link_.broadcast_motion(backend_.list(), bodies, 0, t);
+  body_coupling_.broadcast_motion(backend_.list(), bodies, 0, t);
   rebuild_list(model_.contact.skin);
 }
 
 void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
   backend_.particles().initial_forces();
-  link_.reduce_end_wrench(backend_.particles());
-  link_.solve_acceleration(bodies, t);
+  body_coupling_.reduce_end_wrench(backend_.particles());
+  body_coupling_.solve_acceleration(bodies, t);
 }
 
 void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
@@ -76,26 +76,26 @@ void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t
     const auto scope = timers_.time(Stage::predict);
     // After the previous step the walls have the pose of its end, which round-off makes another instant than
     // t.
-    if (link_.has_driven_walls()) link_.broadcast_motion(backend_.list(), bodies, 0, t);
-    link_.predict(bodies, t, h, t + h);
+    if (body_coupling_.has_driven_walls()) body_coupling_.broadcast_motion(backend_.list(), bodies, 0, t);
+    body_coupling_.predict(bodies, t, h, t + h);
     step = backend_.open_step(h);
     step->predict();
   }
   const auto scope = timers_.time(Stage::broadcast_motion);
-  link_.broadcast_motion(backend_.list());
+  body_coupling_.broadcast_motion(backend_.list());
 }
 
 void CoupledStep::undo_step(OpenStep& step, const MultibodyState& bodies, Real t) {
   if (step) step->undo();
   step.reset();
-  link_.broadcast_motion(backend_.list(), bodies, 0, t);
+  body_coupling_.broadcast_motion(backend_.list(), bodies, 0, t);
 }
 
 // Whether the neighbour list covers every pair that can touch in this iterate. If not, undoes the step and
 // builds the list with a sufficient skin; the step is then repeated with the same h, so that the list does
 // not affect the result.
 bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds) {
-  if (!something_touches_ || backend_.list().displacement() <= 1) return true;
+  if (!has_contacts_ || backend_.list().displacement() <= 1) return true;
   const Real moved = step->step_displacement(), widest = kMostSkin * largest_radius_;
   if (builds == kMostListBuilds)
     throw SimulationError(fmt::format(
@@ -129,23 +129,23 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   OpenStep step;
   try {
     solve_step(step, bodies, t, h);
-    for (const Leaver& l : backend_.particles().outside())
+    for (const EscapedParticle& l : backend_.particles().outside())
       if (l.lost) check_inside();  // a shorter step may avoid the penetration of the wall
   } catch (const DeviceError& error) {
-    link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
+    body_coupling_.ranks().error_barrier(error.what(), static_cast<int>(ExitCode::simulation_failed));
     counts_ = before;
     undo_step(step, bodies, t);
     throw;
   } catch (const SimulationError& error) {
-    link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
+    body_coupling_.ranks().error_barrier(error.what(), static_cast<int>(ExitCode::simulation_failed));
     undo_step(step, bodies, t);
-    link_.check_reactions();
+    body_coupling_.check_reactions();
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
   }
   const auto scope = timers_.time(Stage::accept);
   if (model_.time.control == StepControl::adaptive) {
-    outcome.error = std::max(step->error(), link_.error());
+    outcome.error = std::max(step->error(), body_coupling_.error());
     outcome.error /= model_.time.tolerance;
     if (!(outcome.error <= 1)) {
       undo_step(step, bodies, t);
@@ -157,23 +157,23 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   MultibodyState end = bodies;
   try {
     check_inside();
-    link_.book_walls(end, t, t + h, link_.step_wrench());
-    link_.accept(end);
+    body_coupling_.account_walls(end, t, t + h, body_coupling_.step_wrench());
+    body_coupling_.accept(end);
   } catch (const SimulationError&) {
     undo_step(step, bodies, t);
     throw;
   }
   step->accept();
   bodies = std::move(end);
-  ++counts_.steps, counts_.frozen_steps += frozen_;
+  ++counts_.steps, counts_.lagged_steps += lagged_;
   return outcome;
 }
 
-std::vector<Leaver> CoupledStep::check_inside() const {
-  const Leaving policy = model_.space.leaving;
-  std::vector<Leaver> leavers = backend_.particles().outside();
-  for (const Leaver& l : leavers) {
-    if (!l.lost && policy != Leaving::error) continue;
+std::vector<EscapedParticle> CoupledStep::check_inside() const {
+  const OutsidePolicy policy = model_.space.leaving;
+  std::vector<EscapedParticle> escaped_particles = backend_.particles().outside();
+  for (const EscapedParticle& l : escaped_particles) {
+    if (!l.lost && policy != OutsidePolicy::error) continue;
     throw SimulationError(fmt::format(
         "stage accept: particle {} is outside the domain at ({:g}, {:g}, {:g}) m, {}", l.global_id,
         l.position.x, l.position.y, l.position.z,
@@ -181,32 +181,32 @@ std::vector<Leaver> CoupledStep::check_inside() const {
                  "stiffness of the contact or shorten the step"
                : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
   }
-  return leavers;
+  return escaped_particles;
 }
 
 void CoupledStep::iterate(ImplicitStep& step) {
   Iteration last;
-  frozen_ = false;
+  lagged_ = false;
   const int most = model_.integrator.max_iterations;
   for (int iteration = 1; iteration <= most; ++iteration) {
     ++counts_.newton_iterations;
     if (iterate_once(step, last, iteration == most)) return;
-    if (model_.rotates() && iteration == kMostFollowing && iteration < most) freeze(step, last);
+    if (model_.rotates() && iteration == kMostFollowing && iteration < most) lag_friction(step, last);
   }
-  throw SimulationError(trouble_of(step, last, most));
+  throw SimulationError(convergence_error(step, last, most));
 }
 
 // If Newton's method does not determine which contacts slide, adaptive steps are repeated with a smaller
 // length, and fixed steps are solved with lagged friction limits, which no longer follow the normal forces.
-void CoupledStep::freeze(ImplicitStep& step, const Iteration& last) {
+void CoupledStep::lag_friction(ImplicitStep& step, const Iteration& last) {
   if (model_.time.control == StepControl::adaptive)
-    throw SimulationError(trouble_of(step, last, kMostFollowing));
-  step.freeze_limits();
-  frozen_ = model_.particles.totals.count > 0;
+    throw SimulationError(convergence_error(step, last, kMostFollowing));
+  step.lag_limits();
+  lagged_ = model_.particles.totals.count > 0;
 }
 
 // Names the particles or bodies whose residual or correction is above the limit; the particles if both are.
-std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const {
+std::string CoupledStep::convergence_error(ImplicitStep& step, const Iteration& last, int iterations) const {
   const Integrator& limits = model_.integrator;
   const auto trouble = [&](const char* stage, const std::string& what) {
     return fmt::format("stage {}: no convergence in {} iterations; {}", stage, iterations, what);
@@ -217,10 +217,10 @@ std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, i
                                last.residual, step.worst_particle()));
   if (!(last.bodies.residual <= limits.residual_tolerance))
     return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}{}", last.bodies.residual,
-                                              link_.trouble()));
+                                              body_coupling_.trouble()));
   if (!(last.bodies.correction <= limits.correction_tolerance))
     return trouble("mbs_correct", fmt::format("the bodies' last scaled correction is {:.2e}{}",
-                                              last.bodies.correction, link_.trouble()));
+                                              last.bodies.correction, body_coupling_.trouble()));
   return trouble("particle_correct",
                  fmt::format("the last correction of the particles' positions is {:.2e} of a radius",
                              last.judged_correction));
@@ -242,22 +242,22 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
     }
   }
   bool bodies_done = true;
-  if (link_.has_carriers()) {
+  if (body_coupling_.has_parents()) {
     const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_wrench(step);
+    body_coupling_.reduce_wrench(step);
   }
-  if (link_.has_bodies()) {
+  if (body_coupling_.has_bodies()) {
     {
       const auto scope = timers_.time(Stage::mbs_correct);
-      last.bodies = link_.correct();
+      last.bodies = body_coupling_.correct();
       bodies_done = last.bodies.residual <= limits.residual_tolerance &&
                     last.bodies.correction <= limits.correction_tolerance;
     }
   }
   // Also without a correction of bodies, because walls must not count as moved by one.
-  if (link_.carriers_move()) {
+  if (body_coupling_.parents_move()) {
     const auto scope = timers_.time(Stage::broadcast_motion);
-    link_.broadcast_motion(backend_.list());
+    body_coupling_.broadcast_motion(backend_.list());
   }
   const bool within = last.residual <= limits.residual_tolerance;
   const bool particles_done = (within && last.judged_correction <= limits.correction_tolerance) ||

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/timer.hpp"
-#include "coupling/body_link.hpp"
+#include "coupling/body_coupling.hpp"
 #include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
 #include "model/data/model.hpp"
@@ -26,12 +26,12 @@ struct StepOutcome {
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
-  std::int64_t frozen_steps = 0;  // accepted with lagged friction limits: ImplicitStep::freeze_limits
+  std::int64_t lagged_steps = 0;  // accepted with lagged friction limits: ImplicitStep::lag_limits
 };
 
 class CoupledStep {
  public:
-  CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers);
+  CoupledStep(const Model& model, Backend& backend, BodyCoupling& link, StageTimers& timers);
 
   // Computes forces, accelerations and multipliers at the start.
   void start(MultibodyState& bodies);
@@ -45,14 +45,14 @@ class CoupledStep {
   // (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Why no step from this state can succeed, if a driver is at a dead point; otherwise empty. Collective.
-  std::string dead_point() { return link_.dead_point(); }
+  std::string dead_point() { return body_coupling_.dead_point(); }
   // Advances particles and bodies by up to times.size() steps of length h [s], the particles in substeps.
   // times: start of each step [s]; end: end of the last step [s]. Returns the number of steps taken, which is
   // less if a particle is outside the domain after one of them.
   std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h, Real end);
   // The particles outside the domain now. Throws SimulationError for the first one beyond a wall, or for the
   // first one at all if the deck makes that an error.
-  std::vector<Leaver> check_inside() const;
+  std::vector<EscapedParticle> check_inside() const;
   // Rebuilds the neighbour list for the current particles and bodies. skin [m].
   void rebuild_list(Real skin);
 
@@ -71,9 +71,9 @@ class CoupledStep {
   bool covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds);
   void solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
   void iterate(ImplicitStep& step);
-  void freeze(ImplicitStep& step, const Iteration& last);
+  void lag_friction(ImplicitStep& step, const Iteration& last);
   bool iterate_once(ImplicitStep& step, Iteration& last, bool final);
-  std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
+  std::string convergence_error(ImplicitStep& step, const Iteration& last, int iterations) const;
   bool explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
   // A step of the bodies within an explicit step, or all of it: from `first` to `last` substeps after its
   // start.
@@ -88,12 +88,12 @@ class CoupledStep {
 
   const Model& model_;
   Backend& backend_;
-  BodyLink& link_;
+  BodyCoupling& body_coupling_;
   StageTimers& timers_;
-  const bool something_touches_;  // otherwise no contact detection is needed
-  const Real largest_radius_;     // of particles and shapes, otherwise of meshes that touch planes [m]
+  const bool has_contacts_;    // otherwise no contact detection is needed
+  const Real largest_radius_;  // of particles and shapes, otherwise of meshes that touch planes [m]
   StepCounts counts_;
-  bool frozen_ = false;                 // friction limits are lagged in the open step
+  bool lagged_ = false;                 // friction limits are lagged in the open step
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };
 

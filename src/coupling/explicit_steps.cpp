@@ -31,7 +31,7 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
     run = backend_.start_run(h / substeps);
   }
   std::size_t taken = 0;
-  if (link_.has_bodies() || link_.has_driven_walls()) {
+  if (body_coupling_.has_bodies() || body_coupling_.has_driven_walls()) {
     for (bool open = true; open; ++taken) {
       const bool last = taken + 1 == times.size();
       open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
@@ -54,10 +54,10 @@ bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const 
     BodyStep part{step.t + step.h * done / all, step.h, step.end, done, done};
     open = explicit_substeps(run, bodies, step, part);
     if (part.last < all || part.first > 0) part.h = step.h * (part.last - part.first) / all;
-    if (link_.has_bodies())
+    if (body_coupling_.has_bodies())
       solve_bodies(run, bodies, part);
     else
-      link_.take_wrench(bodies);
+      body_coupling_.take_wrench(bodies);
     done = part.last;
   }
   return open;
@@ -69,7 +69,7 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
   const int substeps = model_.integrator.substeps;
   const std::vector<BodyWrench> start = bodies.wrench;
   std::vector<BodyWrench>& sum = wrench_sum_;
-  sum.assign(link_.end_wrench().size(), BodyWrench{});
+  sum.assign(body_coupling_.end_wrench().size(), BodyWrench{});
   add_wrenches(sum, start, 0.5);
   bool open = true;
   for (bool last = false; !last;) {
@@ -78,17 +78,17 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
     part.end = s < substeps ? step.t + step.h * s / substeps : step.end;
     {
       const auto scope = timers_.time(Stage::broadcast_motion);
-      link_.broadcast_motion(backend_.list(), bodies, tau, part.end);
+      body_coupling_.broadcast_motion(backend_.list(), bodies, tau, part.end);
     }
     open = run.take_steps(1, s < substeps || step.keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_end_wrench(run);
-    last = s == substeps || link_.is_loaded(step.h);
-    add_wrenches(sum, link_.end_wrench(), last ? 0.5 : 1);
-    link_.book_walls(bodies, before, part.end, link_.end_wrench());
+    body_coupling_.reduce_end_wrench(run);
+    last = s == substeps || body_coupling_.is_loaded(step.h);
+    add_wrenches(sum, body_coupling_.end_wrench(), last ? 0.5 : 1);
+    body_coupling_.account_walls(bodies, before, part.end, body_coupling_.end_wrench());
     part.end_of_last = part.end;
   }
-  link_.set_mean_wrench(start, sum, part.last - part.first);
+  body_coupling_.set_mean_wrench(start, sum, part.last - part.first);
   return open;
 }
 
@@ -97,14 +97,14 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
 // the contacts at the position that it has reached, and the wrench follows.
 void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step) {
   const Integrator& limits = model_.integrator;
-  const bool loaded = link_.is_loaded(step.h);
+  const bool loaded = body_coupling_.is_loaded(step.h);
   const auto small = [&](const IterationNorms& norms) {
     return norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance;
   };
   {
     const auto scope = timers_.time(Stage::mbs_correct);
-    link_.predict(bodies, step.t, step.h, step.end);
-    if (loaded) link_.open_loaded(step.h);
+    body_coupling_.predict(bodies, step.t, step.h, step.end);
+    if (loaded) body_coupling_.open_loaded(step.h);
   }
   bool evaluated = false;
   IterationNorms norms;
@@ -112,31 +112,31 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
     if (iteration > limits.max_iterations)
       throw SimulationError(
           fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
-                      limits.max_iterations, link_.trouble()));
+                      limits.max_iterations, body_coupling_.trouble()));
     {
       const auto scope = timers_.time(Stage::mbs_correct);
       ++counts_.newton_iterations;
-      norms = link_.correct();
+      norms = body_coupling_.correct();
     }
     evaluated = loaded && iteration <= kMostEvaluations;
     if (evaluated) evaluate_contacts(run);
-    if (loaded) link_.follow_load(evaluated);
+    if (loaded) body_coupling_.follow_load(evaluated);
   }
   if (!evaluated) evaluate_contacts(run);
   const auto scope = timers_.time(Stage::accept);
-  link_.accept(bodies);
-  if (loaded) link_.average_accelerations(bodies);
+  body_coupling_.accept(bodies);
+  if (loaded) body_coupling_.average_accelerations(bodies);
 }
 
 // Evaluates the contacts with the bodies at their last corrected position.
 void CoupledStep::evaluate_contacts(ExplicitRun& run) {
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
-    link_.broadcast_motion(backend_.list());
+    body_coupling_.broadcast_motion(backend_.list());
   }
   const auto scope = timers_.time(Stage::reduce_wrench);
   run.shape_contacts();
-  link_.reduce_end_wrench(run);
+  body_coupling_.reduce_end_wrench(run);
 }
 
 }  // namespace scree

@@ -2,22 +2,24 @@
 
 namespace scree {
 
-void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out) {
-  carried_out.left += static_cast<std::int64_t>(leavers.size());
-  for (const Leaver& leaver : leavers) carried_out.energy += leaver.elastic;
-  if (policy != Leaving::remove) {
-    for (const Leaver& leaver : leavers) {
-      carried_out.drifting_energy += leaver.energy;
-      carried_out.drifting_integrator_loss += leaver.integrator_loss;
+void account_escaped(const std::vector<EscapedParticle>& escaped_particles, OutsidePolicy policy,
+                     CarriedOut& carried_out) {
+  carried_out.left += static_cast<std::int64_t>(escaped_particles.size());
+  for (const EscapedParticle& escaped_particle : escaped_particles)
+    carried_out.energy += escaped_particle.elastic;
+  if (policy != OutsidePolicy::remove) {
+    for (const EscapedParticle& escaped_particle : escaped_particles) {
+      carried_out.ballistic_energy += escaped_particle.energy;
+      carried_out.ballistic_integrator_loss += escaped_particle.integrator_loss;
     }
     return;
   }
-  carried_out.removed += static_cast<std::int64_t>(leavers.size());
-  for (const Leaver& leaver : leavers) {
-    carried_out.energy += leaver.energy;
-    carried_out.contact_loss += leaver.contact_loss;
-    carried_out.integrator_loss += leaver.integrator_loss;
-    carried_out.losses.add(leaver.losses);
+  carried_out.removed += static_cast<std::int64_t>(escaped_particles.size());
+  for (const EscapedParticle& escaped_particle : escaped_particles) {
+    carried_out.energy += escaped_particle.energy;
+    carried_out.contact_loss += escaped_particle.contact_loss;
+    carried_out.integrator_loss += escaped_particle.integrator_loss;
+    carried_out.losses.add(escaped_particle.losses);
   }
 }
 
@@ -46,8 +48,8 @@ Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const C
   inside.kinetic += particles.inside.kinetic - particles.kinetic;
   inside.gravitational += particles.inside.gravitational - particles.gravitational;
   inside.dissipated_integrator +=
-      particles.inside.integrator_loss - particles.integrator_loss + carried_out.drifting_integrator_loss;
-  inside.carried_out += carried_out.drifting_energy;
+      particles.inside.integrator_loss - particles.integrator_loss + carried_out.ballistic_integrator_loss;
+  inside.carried_out += carried_out.ballistic_energy;
   return inside;
 }
 

@@ -43,14 +43,15 @@ struct CarriedOut {
   std::int64_t removed = 0;
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed particles [J]
-  RubbingLosses losses{};                      // parts of contact_loss
+  TangentialLosses losses{};                   // parts of contact_loss
   // Kinetic and gravitational energy of the ballistic particles when they escaped, and the energy that the
   // integrator had taken out of them by then [J].
-  Real drifting_energy = 0, drifting_integrator_loss = 0;
+  Real ballistic_energy = 0, ballistic_integrator_loss = 0;
 };
 
 // Adds the energies of particles that have just escaped. policy: what happens to them.
-void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);
+void account_escaped(const std::vector<EscapedParticle>& escaped_particles, OutsidePolicy policy,
+                     CarriedOut& carried_out);
 
 // The ledger at time t [s]. bodies: null on ranks other than 0 and in models without bodies.
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,

@@ -35,7 +35,7 @@ void WrenchSlope::begin(Real stiffness, Real reach) {
 }
 
 WrenchSlope::Vector WrenchSlope::moved(const BodyMotion& from, const BodyMotion& to) const {
-  const Vec3 move = to.position - from.position, turn = reach_ * turn_between(from, to);
+  const Vec3 move = to.position - from.position, turn = reach_ * rotation_between(from, to);
   return {move.x, move.y, move.z, turn.x, turn.y, turn.z};
 }
 

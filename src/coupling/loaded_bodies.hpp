@@ -62,7 +62,7 @@ class LoadedBodies {
   // Share of the accelerations at the end of the step that is replaced by their mean over the step. If
   // damping takes nearly all of the bodies' own motion within a step, Newmark's accelerations alternate about
   // that mean.
-  Real averaged_share() const { return averaged_; }
+  Real averaging_weight() const { return averaged_; }
 
   // The warning for the body with the largest phase above kMostLoadedPhase, with its contacts and the remedy;
   // empty if there is none.

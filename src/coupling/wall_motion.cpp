@@ -6,8 +6,8 @@ namespace scree {
 
 WallMotions::WallMotions(const Model& model) {
   for (const Wall& wall : model.walls) {
-    if (!wall.is_placed()) continue;
-    move_ |= wall.moves(), run_ |= wall.runs();
+    if (!wall.has_pose()) continue;
+    move_ |= wall.moves(), run_ |= wall.is_conveyor();
     std::vector<Part>& parts = walls_.emplace_back();
     for (const WallMotion& motion : wall.motions)
       parts.push_back(
@@ -34,19 +34,19 @@ void WallMotions::add(const Part& part, Real t, BodyMotion& motion) {
     return;
   }
   const Quaternion turn = exponential(change * axis);
-  const Vec3 arm = turned(turn, motion.position - part.of.point);
+  const Vec3 arm = rotated(turn, motion.position - part.of.point);
   motion.position = part.of.point + arm;
-  motion.velocity = turned(turn, motion.velocity) + cross(now.rate * axis, arm);
+  motion.velocity = rotated(turn, motion.velocity) + cross(now.rate * axis, arm);
   motion.orientation = normalized(turn * motion.orientation);
-  motion.spin += turned(conjugate(motion.orientation), now.rate * axis);  // in the parent's frame
+  motion.spin += rotated(conjugate(motion.orientation), now.rate * axis);  // in the parent's frame
 }
 
 // Trapezoidal rule, as for the particles' own work.
 Real work_between(const BodyMotion& start, const BodyWrench& start_wrench, const BodyMotion& end,
                   const BodyWrench& wrench, Real h) {
   return Real(0.5) * (dot(start_wrench.force + wrench.force, end.position - start.position) +
-                      dot(start_wrench.torque + wrench.torque, turn_between(start, end)) +
-                      h * (start_wrench.slide_power + wrench.slide_power));
+                      dot(start_wrench.torque + wrench.torque, rotation_between(start, end)) +
+                      h * (start_wrench.belt_power + wrench.belt_power));
 }
 
 }  // namespace scree

@@ -15,17 +15,19 @@ inline constexpr auto kWords<Boundary> = std::to_array<Word<Boundary>>({{"open",
                                                                         {"periodic", Boundary::periodic}});
 
 // Treatment of a particle whose centre leaves through an open side.
-enum class Leaving {
+enum class OutsidePolicy {
   error,   // the simulation fails with a message that names the particle
   remove,  // removed and counted; its energy is accounted as carried out
   drift    // counted; ballistic: moves under gravity alone, excluded from contact detection
 };
 template <>
-inline constexpr auto kWords<Leaving> = std::to_array<Word<Leaving>>({{"error", Leaving::error},
-                                                                      {"remove", Leaving::remove},
-                                                                      {"ballistic", Leaving::drift}});
+inline constexpr auto kWords<OutsidePolicy> =
+    std::to_array<Word<OutsidePolicy>>({{"error", OutsidePolicy::error},
+                                        {"remove", OutsidePolicy::remove},
+                                        {"ballistic", OutsidePolicy::drift}});
 template <>
-inline constexpr auto kFormerWords<Leaving> = std::to_array<Word<Leaving>>({{"drift", Leaving::drift}});
+inline constexpr auto kFormerWords<OutsidePolicy> =
+    std::to_array<Word<OutsidePolicy>>({{"drift", OutsidePolicy::drift}});
 
 // ---- time
 // ----------------------------------------------------------------------------------------------------

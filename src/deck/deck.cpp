@@ -47,10 +47,10 @@ const std::string& DeckTable::word(const std::string& key, const std::type_info&
 void DeckTable::fail(const std::string& key, const std::string& problem) const {
   const std::string full = path_.empty() ? key : path_ + "." + key;
   const auto found = values_.find(key);
-  if (found == values_.end()) throw InputError(fmt::format("{}: {}: {}", place_, full, problem));
+  if (found == values_.end()) throw InputError(fmt::format("{}: {}: {}", location_, full, problem));
   const DeckValue& given = found->second;
-  if (given.place.starts_with("--set ")) throw InputError(fmt::format("{}: {}", given.place, problem));
-  throw InputError(fmt::format("{}: {} = {}: {}", given.place, full, given.shown, problem));
+  if (given.location.starts_with("--set ")) throw InputError(fmt::format("{}: {}", given.location, problem));
+  throw InputError(fmt::format("{}: {} = {}: {}", given.location, full, given.shown, problem));
 }
 
 Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
@@ -94,7 +94,7 @@ Deck load_deck(const std::string& path, const std::vector<std::string>& override
   if (!file) throw IoError(fmt::format("deck {}: cannot be read: {}", path, std::strerror(errno)));
   std::stringstream text;
   text << file.rdbuf();
-  if (is_lfs_pointer(text.view())) throw IoError(fmt::format("deck {}: {}", path, kLfsPointerTrouble));
+  if (is_lfs_pointer(text.view())) throw IoError(fmt::format("deck {}: {}", path, kLfsPointerError));
   if (const std::string kind = kind_of_file(text.view().substr(0, kFileBeginning)); !kind.empty())
     throw InputError(
         fmt::format("{}:1: is {}; a deck is text in TOML{}", path, kind, way_to_a_deck(path, kind)));

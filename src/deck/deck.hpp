@@ -21,7 +21,7 @@ struct DeckValue {
   std::variant<bool, std::int64_t, Real, std::string, Vec3, std::vector<Real>, std::vector<std::int64_t>,
                std::vector<std::string>, std::vector<Vec3>, std::vector<DeckTable>>
       data;
-  std::string place;        // "deck.toml:12:8", or "--set key=value"
+  std::string location;     // "deck.toml:12:8", or "--set key=value"
   std::string shown;        // the value as TOML text, shortened, for messages
   bool is_given = false;    // by the deck or by --set; otherwise a default, or chosen by the program
   std::string reason = {};  // why the program chose the value
@@ -42,8 +42,8 @@ struct ChosenValue {
 class DeckTable {
  public:
   // path: "bodies.net", empty for the whole deck. place: as in DeckValue.
-  DeckTable(const TableKeys& keys, std::string path, std::string place)
-      : keys_(&keys), path_(std::move(path)), place_(std::move(place)) {}
+  DeckTable(const TableKeys& keys, std::string path, std::string location)
+      : keys_(&keys), path_(std::move(path)), location_(std::move(location)) {}
 
   // Whether the key was given or has a default value.
   bool has(const std::string& key) const { return values_.count(key) > 0; }
@@ -77,8 +77,8 @@ class DeckTable {
 
   // path: "bodies.net". label: with the place in front, "deck.toml:12:1: bodies.net".
   const std::string& path() const { return path_; }
-  const std::string& place() const { return place_; }
-  std::string label() const { return place_ + ": " + path_; }
+  const std::string& location() const { return location_; }
+  std::string label() const { return location_ + ": " + path_; }
   // Throws InputError "place: path.key = value: problem", or "place: path.key: problem" where the key has no
   // value.
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
@@ -99,7 +99,7 @@ class DeckTable {
   }
 
   const TableKeys* keys_;
-  std::string path_, place_;
+  std::string path_, location_;
   std::map<std::string, DeckValue> values_;
 };
 

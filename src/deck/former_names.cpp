@@ -55,15 +55,15 @@ void FormerNames::replace_name(toml::table& table, const Key& key, const FormerN
   if (found == table.end()) return;
   toml::node& node = found->second;
   const toml::source_region region = found->first.source().path ? found->first.source() : node.source();
-  const std::string place = place_of(region, path_), value = shown(node, source_);
+  const std::string location = location_of(region, path_), value = shown(node, source_);
   const Paths own = paths.below(former.text, former.text);
   const toml::node* const other = table.get(key.name);
   if (other != nullptr && (!is_override(node) || in_one_override(node, *other)))
-    throw InputError(fmt::format("{}: {} = {}: is the former name of {}, which {} gives, too", place,
-                                 own.path, value, key.name, place_of(other->source(), path_)));
+    throw InputError(fmt::format("{}: {} = {}: is the former name of {}, which {} gives, too", location,
+                                 own.path, value, key.name, location_of(other->source(), path_)));
   if (former.sense == FormerSense::negated && node.is_boolean())
     *node.as_boolean() = !node.as_boolean()->get();
-  add(place, own, value, fmt::format("{} = {}", key.name, shown(node, source_)));
+  add(location, own, value, fmt::format("{} = {}", key.name, shown(node, source_)));
   table.erase(key.name);
   table.insert_or_assign(toml::key(key.name, toml::source_region(region)), std::move(node));
   table.erase(former.text);
@@ -74,13 +74,13 @@ void FormerNames::replace_word(toml::node& node, const Key& key, const Paths& pa
   std::string& text = node.as_string()->get();
   for (const FormerWord& former : key.former_words) {
     if (text != former.text) continue;
-    add(place_of(node.source(), path_), paths, shown(node), '"' + former.now + '"');
+    add(location_of(node.source(), path_), paths, shown(node), '"' + former.now + '"');
     text = former.now;
     return;
   }
 }
 
-void FormerNames::add(const std::string& place, const Paths& former, const std::string& value,
+void FormerNames::add(const std::string& location, const Paths& former, const std::string& value,
                       const std::string& present) {
   const auto known = std::ranges::find(uses_, former.pattern, &Use::pattern);
   if (known != uses_.end()) {
@@ -88,7 +88,7 @@ void FormerNames::add(const std::string& place, const Paths& former, const std::
     return;
   }
   uses_.push_back(
-      {former.pattern, fmt::format("{}: {} = {} is now {}", place, former.path, value, present), 0});
+      {former.pattern, fmt::format("{}: {} = {} is now {}", location, former.path, value, present), 0});
 }
 
 std::vector<std::string> FormerNames::lines() const {

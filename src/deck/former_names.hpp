@@ -41,7 +41,7 @@ class FormerNames {
   void replace(toml::table& table, const TableKeys& keys, const Paths& paths);
   void replace_name(toml::table& table, const Key& key, const FormerName& former, const Paths& paths);
   void replace_word(toml::node& node, const Key& key, const Paths& paths);
-  void add(const std::string& place, const Paths& former, const std::string& value,
+  void add(const std::string& location, const Paths& former, const std::string& value,
            const std::string& present);
 
   SourceText source_;

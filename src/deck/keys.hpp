@@ -141,8 +141,8 @@ Key table(const std::string& name, const TableKeys& keys);
 Key tables(const std::string& name, const TableKeys& keys);
 
 // Keys of an orientation: quaternion, or rotation_axis and rotation_angle, or z_axis with or without x_axis,
-// each after `prefix`; read by read_orientation (model/frames.hpp). what: "the body's frame"; outer: the
-// frame relative to which it is oriented.
+// each after `prefix`; read by read_orientation (model/derived/frames.hpp). what: "the body's frame"; outer:
+// the frame relative to which it is oriented.
 std::vector<Key> orientation_keys(const std::string& prefix, const std::string& what,
                                   const std::string& outer);
 

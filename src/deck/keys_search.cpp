@@ -64,9 +64,9 @@ class Search {
       if (plain(one.said) == word_) words_.emplace_back(one.meant);
     for (const Synonym& one : kKeySynonyms) take(one);
     for (const Synonym& one : kTopics) take(one);
-    look(deck_keys(), "");
-    look(time_function_keys(), "(time function)");
-    look(distribution_keys(), "(distribution)");
+    collect(deck_keys(), "");
+    collect(time_function_keys(), "(time function)");
+    collect(distribution_keys(), "(distribution)");
     std::ranges::stable_sort(found_, {}, &Found::rank);
   }
 
@@ -94,13 +94,13 @@ class Search {
     if (means) return kMeant;
     return has_word(key.sentence, spoken_) ? kMeaning : kNone;
   }
-  void look(const TableKeys& table, const std::string& path) {
+  void collect(const TableKeys& table, const std::string& path) {
     for (const Key& key : table.keys) {
       const std::string own = path.empty() ? key.name : path + "." + key.name;
       paths_.push_back(own);
       if (const int rank = rank_of(own, key); rank < kNone)
         found_.push_back({own, &key, table.selector, rank});
-      if (key.type == ValueType::table || key.type == ValueType::tables) look(*key.table, own);
+      if (key.type == ValueType::table || key.type == ValueType::tables) collect(*key.table, own);
     }
   }
 

@@ -62,8 +62,8 @@ const TableKeys& space_keys() {
        boundary("x_max", "largest x"), boundary("y_min", "smallest y"), boundary("y_max", "largest y"),
        boundary("z_min", "smallest z (3D)"), boundary("z_max", "largest z (3D)"),
        text("wall_material").left_out("the only material").about("Material of the sides that are walls."),
-       choice<Leaving>("leaving")
-           .otherwise_choice(Leaving::error)
+       choice<OutsidePolicy>("leaving")
+           .otherwise_choice(OutsidePolicy::error)
            .about("What happens to a particle whose centre leaves through an open side. error: the run "
                   "fails. remove: the particle is removed and counted. ballistic: the particle is counted "
                   "and moves under gravity alone, without contacts.")},

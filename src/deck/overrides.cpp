@@ -20,7 +20,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::vector<std::string> split_path(const std::string& path, const std::string& place) {
+std::vector<std::string> split_path(const std::string& path, const std::string& location) {
   std::vector<std::string> parts;
   std::size_t start = 0;
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', start)) {
@@ -29,29 +29,29 @@ std::vector<std::string> split_path(const std::string& path, const std::string& 
   }
   parts.push_back(trimmed(path.substr(start)));
   if (parts.size() > kMostKeyParts)
-    throw InputError(fmt::format("{}: a key of more than {} parts", place, kMostKeyParts));
+    throw InputError(fmt::format("{}: a key of more than {} parts", location, kMostKeyParts));
   for (const std::string& part : parts)
-    if (part.empty()) throw InputError(place + ": must have the form key.path=value");
+    if (part.empty()) throw InputError(location + ": must have the form key.path=value");
   return parts;
 }
 
 // A table { value = ... } whose nodes have the override as their source.
-toml::table parse_value(const std::string& text, const std::string& place) {
+toml::table parse_value(const std::string& text, const std::string& location) {
   if (line_of_deep_key(text) > 0)
-    throw InputError(fmt::format("{}: a key of more than {} parts", place, kMostKeyParts));
+    throw InputError(fmt::format("{}: a key of more than {} parts", location, kMostKeyParts));
   try {
-    return toml::parse("value = " + text, std::string_view(place));
+    return toml::parse("value = " + text, std::string_view(location));
   } catch (const toml::parse_error& error) {
     const bool bare = !text.empty() &&
                       std::string_view("\"'[{").find(text.front()) == std::string_view::npos &&
                       text.find_first_of("'\n") == std::string::npos;
-    if (!bare) throw InputError(fmt::format("{}: not a TOML value: {}", place, error.description()));
+    if (!bare) throw InputError(fmt::format("{}: not a TOML value: {}", location, error.description()));
   }
-  return toml::parse(fmt::format("value = '{}'", text), std::string_view(place));
+  return toml::parse(fmt::format("value = '{}'", text), std::string_view(location));
 }
 
 // The element of a list of tables with this `name`, or with this number.
-toml::table& element(toml::array& list, const std::string& id, const std::string& place) {
+toml::table& element(toml::array& list, const std::string& id, const std::string& location) {
   std::vector<std::string> names;
   for (toml::node& node : list) {
     toml::table* table = node.as_table();
@@ -64,32 +64,32 @@ toml::table& element(toml::array& list, const std::string& id, const std::string
   const bool numeric = error == std::errc() && end == id.data() + id.size();
   if (numeric && number < list.size() && list[number].is_table()) return *list[number].as_table();
   const std::string count = list.size() == 1 ? "is 1 element" : fmt::format("are {} elements", list.size());
-  if (numeric) throw InputError(fmt::format("{}: there {}, counted from 0", place, count));
-  throw InputError(fmt::format("{}: no element is named \"{}\"{}", place, id, suggestion(id, names)));
+  if (numeric) throw InputError(fmt::format("{}: there {}, counted from 0", location, count));
+  throw InputError(fmt::format("{}: no element is named \"{}\"{}", location, id, suggestion(id, names)));
 }
 
 }  // namespace
 
 void apply_override(toml::table& deck, const std::string& override_text) {
   constexpr std::size_t kLongest = 200;  // [B]
-  const std::string place = "--set " + shortened(override_text, kLongest);
+  const std::string location = "--set " + shortened(override_text, kLongest);
   const std::size_t equals = override_text.find('=');
-  if (equals == std::string::npos) throw InputError(place + ": must have the form key.path=value");
-  const std::vector<std::string> path = split_path(override_text.substr(0, equals), place);
-  toml::table parsed = parse_value(trimmed(override_text.substr(equals + 1)), place);
-  if (parsed.size() != 1) throw InputError(place + ": must be one value");
+  if (equals == std::string::npos) throw InputError(location + ": must have the form key.path=value");
+  const std::vector<std::string> path = split_path(override_text.substr(0, equals), location);
+  toml::table parsed = parse_value(trimmed(override_text.substr(equals + 1)), location);
+  if (parsed.size() != 1) throw InputError(location + ": must be one value");
   toml::table* table = &deck;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     if (!table->contains(path[i])) {
-      table->insert_or_assign(path[i], std::move(*parse_value("{}", place).get("value")));
+      table->insert_or_assign(path[i], std::move(*parse_value("{}", location).get("value")));
     }
     toml::node* node = table->get(path[i]);
     if (toml::array* list = node->as_array(); list && i + 2 < path.size()) {
-      table = &element(*list, path[++i], place);
+      table = &element(*list, path[++i], location);
     } else if (node->is_table()) {
       table = node->as_table();
     } else {
-      throw InputError(fmt::format("{}: {} has no keys of its own", place, path[i]));
+      throw InputError(fmt::format("{}: {} has no keys of its own", location, path[i]));
     }
   }
   table->insert_or_assign(path.back(), std::move(*parsed.get("value")));

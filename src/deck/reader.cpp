@@ -26,14 +26,14 @@ class Reader {
 
   // quantity_unit: of the quantity that the table represents.
   DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
-                       const std::string& place, const std::string& quantity_unit = "") const;
+                       const std::string& location, const std::string& quantity_unit = "") const;
 
  private:
   // The key whose value is being read.
   struct Context {
     const Key& key;
     std::string path;                // of the key
-    std::string place;               // of the value
+    std::string location;            // of the value
     std::string quantity_unit = "";  // of the quantity whose table has the key
   };
 
@@ -80,8 +80,8 @@ bool is_name(const std::string& text) {
 }
 
 DeckTable Reader::read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
-                             const std::string& place, const std::string& quantity_unit) const {
-  DeckTable table(keys, path, place);
+                             const std::string& location, const std::string& quantity_unit) const {
+  DeckTable table(keys, path, location);
   for (const Key& key : keys.keys) {
     if (key.name == keys.selector) read_key(source, key, table, quantity_unit);
   }
@@ -97,7 +97,7 @@ void Reader::check_key(const toml::key& name, const toml::node& node, const Tabl
                        const DeckTable& table) const {
   const std::string key_name(name.str());
   const std::string path = join_path(table.path(), key_name);
-  const std::string at = place_of(name.source().path ? name.source() : node.source(), table.place());
+  const std::string at = location_of(name.source().path ? name.source() : node.source(), table.location());
   const auto found =
       std::find_if(keys.keys.begin(), keys.keys.end(), [&](const Key& k) { return k.name == key_name; });
   if (found == keys.keys.end()) {
@@ -115,9 +115,9 @@ void Reader::check_key(const toml::key& name, const toml::node& node, const Tabl
 void Reader::read_key(const toml::table& source, const Key& key, DeckTable& table,
                       const std::string& quantity_unit) const {
   if (!key.kinds.empty() && !is_of(table, key.kinds)) return;
-  Context context{key, join_path(table.path(), key.name), table.place(), quantity_unit};
+  Context context{key, join_path(table.path(), key.name), table.location(), quantity_unit};
   if (const toml::node* node = source.get(key.name)) {
-    context.place = place_of(node->source(), table.place());
+    context.location = location_of(node->source(), table.location());
     DeckValue value = read_value(*node, context);
     value.is_given = true;
     table.set(key.name, std::move(value));
@@ -132,8 +132,8 @@ void Reader::fail_missing(const Context& context, const DeckTable& table) const 
   const std::string& selector = table.keys().selector;
   const std::string with =
       context.key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
-  throw InputError(
-      fmt::format("{}: {}: missing; {}it must be {}", context.place, context.path, with, allowed(context)));
+  throw InputError(fmt::format("{}: {}: missing; {}it must be {}", context.location, context.path, with,
+                               allowed(context)));
 }
 
 bool Reader::follows_another_key(const Key& key) const {
@@ -146,13 +146,13 @@ const std::string& Reader::default_value(const Key& key) const {
 
 void Reader::fill_default(const Context& context, DeckTable& table) const {
   const Key& key = context.key;
-  const std::string& place = context.place;
+  const std::string& location = context.location;
   if (key.type == ValueType::tables) {
-    table.set(key.name, {std::vector<DeckTable>{}, place, "[]"});
+    table.set(key.name, {std::vector<DeckTable>{}, location, "[]"});
   } else if (key.type == ValueType::table) {
-    table.set(key.name, {std::vector{read_table({}, *key.table, context.path, place)}, place, "{}"});
+    table.set(key.name, {std::vector{read_table({}, *key.table, context.path, location)}, location, "{}"});
   } else if (key.default_value == "zero") {
-    table.set(key.name, {Vec3{}, place, "zero"});
+    table.set(key.name, {Vec3{}, location, "zero"});
   } else if (!key.default_value.empty()) {
     const toml::table parsed = toml::parse("value = " + default_value(key), std::string_view("default"));
     table.set(key.name, read_value(*parsed.get("value"), context));
@@ -160,7 +160,7 @@ void Reader::fill_default(const Context& context, DeckTable& table) const {
 }
 
 DeckValue Reader::read_value(const toml::node& node, const Context& context) const {
-  DeckValue value{false, context.place, shown(node, source_)};
+  DeckValue value{false, context.location, shown(node, source_)};
   switch (context.key.type) {
     case ValueType::boolean:
       if (!node.is_boolean()) fail(node, context);
@@ -204,7 +204,8 @@ DeckValue Reader::read_value(const toml::node& node, const Context& context) con
       break;
     case ValueType::table:
       if (!node.is_table()) fail(node, context);
-      value.data = std::vector{read_table(*node.as_table(), *context.key.table, context.path, context.place)};
+      value.data =
+          std::vector{read_table(*node.as_table(), *context.key.table, context.path, context.location)};
       break;
     case ValueType::tables:
       value.data = read_tables(node, context);
@@ -223,8 +224,9 @@ std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context
     const toml::node* name = entry.as_table()->get("name");
     const bool named = name && name->is_string();
     const std::string id = named ? name->as_string()->get() : std::to_string(tables.size());
-    const std::string place = place_of(entry.source(), context.place);
-    tables.push_back(read_table(*entry.as_table(), *context.key.table, join_path(context.path, id), place));
+    const std::string location = location_of(entry.source(), context.location);
+    tables.push_back(
+        read_table(*entry.as_table(), *context.key.table, join_path(context.path, id), location));
     if (named && !names.insert(id).second) tables.back().fail("name", "repeated; names must be different");
   }
   return tables;
@@ -232,12 +234,13 @@ std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context
 
 DeckTable Reader::read_quantity(const toml::node& node, const Context& context) const {
   const Key& key = context.key;
-  if (node.is_table()) return read_table(*node.as_table(), *key.table, context.path, context.place, key.unit);
+  if (node.is_table())
+    return read_table(*node.as_table(), *key.table, context.path, context.location, key.unit);
   number(node, node, context);
   toml::table constant;
   constant.insert("kind", "constant");
   constant.insert("value", node);
-  return read_table(constant, *key.table, context.path, context.place, key.unit);
+  return read_table(constant, *key.table, context.path, context.location, key.unit);
 }
 
 Real Reader::number(const toml::node& node, const toml::node& whole, const Context& context) const {
@@ -270,7 +273,7 @@ std::string Reader::text(const toml::node& node, const Context& context) const {
 std::string Reader::file(const std::string& value, const toml::node& node, const Context& context) const {
   const std::filesystem::path folder = std::filesystem::absolute(deck_path_).parent_path();
   const std::string path = (folder / value).lexically_normal().string();
-  if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+  if (const std::string trouble = input_file_error(path); !trouble.empty())
     fail(node, context, fmt::format("; {} {}", path, trouble));
   return path;
 }
@@ -309,11 +312,11 @@ std::string Reader::allowed(const Context& context) const {
 }
 
 void Reader::fail(const toml::node& node, const Context& context, const std::string& detail) const {
-  if (context.place.starts_with("--set "))
+  if (context.location.starts_with("--set "))
     throw InputError(
-        fmt::format("{}: {} must be {}{}", context.place, context.path, allowed(context), detail));
-  throw InputError(fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node, source_),
-                               allowed(context), detail));
+        fmt::format("{}: {} must be {}{}", context.location, context.path, allowed(context), detail));
+  throw InputError(fmt::format("{}: {} = {}: must be {}{}", context.location, context.path,
+                               shown(node, source_), allowed(context), detail));
 }
 
 }  // namespace
@@ -329,7 +332,7 @@ std::string join_path(const std::string& table, const std::string& key) {
   return table.empty() ? key : table + "." + key;
 }
 
-std::string place_of(const toml::source_region& source, const std::string& otherwise) {
+std::string location_of(const toml::source_region& source, const std::string& otherwise) {
   if (!source.path) return otherwise;
   if (source.path->starts_with("--set ")) return *source.path;
   return fmt::format("{}:{}:{}", *source.path, source.begin.line, source.begin.column);

@@ -18,6 +18,6 @@ std::string join_path(const std::string& table, const std::string& key);
 
 // Place of a node: "deck.toml:12:8", or "--set key=value" for a node of an override, or `otherwise` for a
 // node without a source.
-std::string place_of(const toml::source_region& source, const std::string& otherwise);
+std::string location_of(const toml::source_region& source, const std::string& otherwise);
 
 }  // namespace scree

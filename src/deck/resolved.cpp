@@ -163,7 +163,7 @@ void DeckTable::take(const ChosenValue& chosen) {
     DeckTable& inner = std::get<std::vector<DeckTable>>(values_.at(chosen.table).data).front();
     return inner.take({"", chosen.key, chosen.value, chosen.reason});
   }
-  DeckValue value{false, place_, "", false, chosen.reason};
+  DeckValue value{false, location_, "", false, chosen.reason};
   std::visit([&](const auto& of) { value.data = of; }, chosen.value);
   set(chosen.key, std::move(value));
   if (chosen.key != keys_->selector) return;

@@ -33,21 +33,21 @@ Vec3 three(const std::array<Real, 6>& x, std::size_t from) { return {x[from], x[
 BushingElement::BushingElement(const Bushing& bushing, const BodyLayout& layout) : bushing_(bushing) {
   const SpatialPair pair = spatial_pair(layout, bushing.body, bushing.point);
   const Mat3 axes = transposed(rotation_matrix(bushing.marker[0]));
-  for (int k = 0; k < 3; ++k) measures_.push_back(dot2_measure(pair, row_of(axes, k)));
-  if (!bushing.resists_turning()) return;
-  for (int k = 0; k < 3; ++k) measures_.push_back(turn_measure(pair, bushing.marker, k));
+  for (int k = 0; k < 3; ++k) primitives_.push_back(dot2_primitive(pair, row_of(axes, k)));
+  if (!bushing.resists_rotation()) return;
+  for (int k = 0; k < 3; ++k) primitives_.push_back(rotation_vector_primitive(pair, bushing.marker, k));
 }
 
 BushingElement::Deflection BushingElement::deflection(const BodyPoses& poses) const {
   Deflection x;
-  for (std::size_t a = 0; a < measures_.size(); ++a) {
-    x.gradient[a] = measures_[a]->gradient(poses.spatial);
-    x.value[a] = measures_[a]->value(poses.spatial);
-    x.rate[a] = rate_of(x.gradient[a], poses.spatial, measures_[a]->pair());
+  for (std::size_t a = 0; a < primitives_.size(); ++a) {
+    x.gradient[a] = primitives_[a]->gradient(poses.spatial);
+    x.value[a] = primitives_[a]->value(poses.spatial);
+    x.rate[a] = rate_of(x.gradient[a], poses.spatial, primitives_[a]->pair());
   }
-  for (std::size_t a = 0; a < measures_.size(); ++a) {
+  for (std::size_t a = 0; a < primitives_.size(); ++a) {
     x.tension[a] = bushing_.preload[a];
-    for (std::size_t b = 0; b < measures_.size(); ++b)
+    for (std::size_t b = 0; b < primitives_.size(); ++b)
       x.tension[a] += bushing_.stiffness[a][b] * x.value[b] + bushing_.damping[a][b] * x.rate[b];
   }
   return x;
@@ -58,7 +58,7 @@ BushingElement::Deflection BushingElement::deflection(const BodyPoses& poses) co
 BushingLoad BushingElement::load(const BodyPoses& poses) const {
   const Deflection x = deflection(poses);
   BushingLoad load{three(x.value, 0), {}, -three(x.tension, 0), {}};
-  if (measures_.size() == 3) return load;
+  if (primitives_.size() == 3) return load;
   load.turn = three(x.value, 3);
   load.torque = -(inverse_tangent(load.turn) * three(x.tension, 3));
   return load;
@@ -67,15 +67,15 @@ BushingLoad BushingElement::load(const BodyPoses& poses) const {
 Real BushingElement::add_force(const BodyPoses& poses, Real, Real length, std::vector<Real>& force) {
   const Deflection x = deflection(poses);
   const Real rotation_angle = norm(three(x.value, 3));
-  if (!(rotation_angle < kMostBushingTurn))
+  if (!(rotation_angle < kMaxBushingRotation))
     throw SimulationError(fmt::format(
         "mbs_correct, rank 0: bushing '{}' is rotated by {:.4g} rad; its rotation vector is valid "
         "up to {} rad, as it jumps at half a revolution",
-        bushing_.name, rotation_angle, kMostBushingTurn));
+        bushing_.name, rotation_angle, kMaxBushingRotation));
   Real largest = 0;
-  for (std::size_t a = 0; a < measures_.size(); ++a) {
+  for (std::size_t a = 0; a < primitives_.size(); ++a) {
     Real size = std::abs(bushing_.preload[a]);
-    for (std::size_t b = 0; b < measures_.size(); ++b)
+    for (std::size_t b = 0; b < primitives_.size(); ++b)
       size += std::abs(bushing_.stiffness[a][b] * x.value[b]) + std::abs(bushing_.damping[a][b] * x.rate[b]);
     largest = std::max(largest, size * (a < 3 ? length : 1));
     for (std::size_t i = 0; i < 4; ++i) {
@@ -91,15 +91,15 @@ Real BushingElement::add_force(const BodyPoses& poses, Real, Real length, std::v
 void BushingElement::add_derivatives(const BodyPoses& poses, Real, SparseTerm& stiffness,
                                      SparseTerm& damping) const {
   const SpatialMotion& motion = poses.spatial;
-  const SpatialPair& pair = measures_.front()->pair();
+  const SpatialPair& pair = primitives_.front()->pair();
   const Deflection x = deflection(poses);
-  const std::size_t n = measures_.size();
+  const std::size_t n = primitives_.size();
   PairHessian weighted_hessian{};                       // s_a H_a
   std::array<PairGradient, 6> hessian_rate{};           // H_b^T v
   std::array<PairGradient, 6> displacement_gradient{};  // T^-T g_b
   for (std::size_t b = 0; b < n; ++b) {
     PairHessian own{};
-    measures_[b]->add_hessian(motion, 1, own);
+    primitives_[b]->add_hessian(motion, 1, own);
     for (std::size_t j = 0; j < 4; ++j) {
       for (std::size_t m = 0; m < 4; ++m) {
         hessian_rate[b][j] += transposed_times(own[m][j], velocity(motion, pair, m));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mbs/force_elements.hpp"
-#include "mbs/measure.hpp"
+#include "mbs/primitive_function.hpp"
 #include "model/data/bodies.hpp"
 
 namespace scree {
@@ -43,10 +43,11 @@ class BushingElement final : public ForceElement {
     std::array<Real, 6> value{}, rate{}, tension{};  // x, x', s
   };
   Deflection deflection(const BodyPoses& poses) const;
-  int column(std::size_t block) const { return measures_.front()->column(static_cast<int>(block)); }
+  int column(std::size_t block) const { return primitives_.front()->column(static_cast<int>(block)); }
 
   Bushing bushing_;
-  std::vector<std::unique_ptr<Measure>> measures_;  // three, or six where the bushing resists rotation
+  std::vector<std::unique_ptr<PrimitiveFunction>>
+      primitives_;  // three, or six where the bushing resists rotation
 };
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-#include "mbs/measure.hpp"
+#include "mbs/primitive_function.hpp"
 
 namespace scree {
 
@@ -10,9 +10,9 @@ namespace {
 // Hessian  = (r1,pi1) A_1 a~;  (r2,pi1) -A_1 a~;  (pi1,pi2) -a~ A_1^T A_2 s_2~; their transposes;
 //            (pi1,pi1) a~ g~;  (pi2,pi2) s_2~ (A_2^T al)~
 // second   = al''_0.d + 2 al'.d' + al.d''_0
-class Dot2 final : public Measure {
+class Dot2 final : public PrimitiveFunction {
  public:
-  Dot2(const SpatialPair& pair, Vec3 a) : Measure(pair), a_(a), arm_(!(pair.point[1] == Vec3{})) {}
+  Dot2(const SpatialPair& pair, Vec3 a) : PrimitiveFunction(pair), a_(a), arm_(!(pair.point[1] == Vec3{})) {}
 
   bool is_angle() const override { return false; }
   Real value(const SpatialMotion& motion) const override {
@@ -20,11 +20,12 @@ class Dot2 final : public Measure {
   }
   PairGradient gradient(const SpatialMotion& motion) const override {
     const Vec3 al = one(motion).turn(a_);
-    return {-al, cross(a_, to_second_point(motion)), al, cross(pair().point[1], two(motion).turn_back(al))};
+    return {-al, cross(a_, to_second_point(motion)), al, cross(pair().point[1], two(motion).rotate_back(al))};
   }
   Real second(const SpatialMotion& motion) const override {
     const SpatialPose& p = one(motion);
-    return dot(p.turn_second(a_), gap(pair(), motion)) + 2 * dot(p.turn_rate(a_), gap_rate(pair(), motion)) +
+    return dot(p.rotated_second(a_), gap(pair(), motion)) +
+           2 * dot(p.rotated_rate(a_), gap_rate(pair(), motion)) +
            dot(p.turn(a_), gap_second(pair(), motion));
   }
   void add_hessian(const SpatialMotion& motion, Real scale, PairHessian& k) const override {
@@ -38,7 +39,7 @@ class Dot2 final : public Measure {
     k[1][1] = k[1][1] + a * tilde(to_second_point(motion));
     k[1][3] = k[1][3] - mixed;
     k[3][1] = k[3][1] - transposed(mixed);
-    k[3][3] = k[3][3] + scale * (s * tilde(q.turn_back(p.turn(a_))));
+    k[3][3] = k[3][3] + scale * (s * tilde(q.rotate_back(p.turn(a_))));
   }
   bool has_block(int block) const override { return block < 3 || arm_; }
   bool has_block(int row, int column) const override {
@@ -51,7 +52,7 @@ class Dot2 final : public Measure {
   const SpatialPose& two(const SpatialMotion& motion) const { return motion[pair().body[1]]; }
   // The vector g from the first body's centre to the second point, in the first body's frame [m].
   Vec3 to_second_point(const SpatialMotion& motion) const {
-    return one(motion).turn_back(gap(pair(), motion)) + pair().point[0];
+    return one(motion).rotate_back(gap(pair(), motion)) + pair().point[0];
   }
 
   Vec3 a_;
@@ -60,7 +61,7 @@ class Dot2 final : public Measure {
 
 }  // namespace
 
-std::unique_ptr<Measure> dot2_measure(const SpatialPair& pair, Vec3 a) {
+std::unique_ptr<PrimitiveFunction> dot2_primitive(const SpatialPair& pair, Vec3 a) {
   return std::make_unique<Dot2>(pair, a);
 }
 

@@ -5,7 +5,7 @@
 
 namespace scree {
 
-void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end) {
+void account_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end) {
   const Powers p0 = system.powers({t, start.position, start.velocity}, start.multipliers);
   const Powers p1 = system.powers({t + h, end.position, end.velocity}, end.multipliers);
   const Real driver_work = h / 2 * (p0.drivers + p1.drivers);
@@ -17,8 +17,8 @@ void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Rea
   end.integrator_loss = start.integrator_loss + loss;
   MultibodyEnergies energies;
   for (const auto& kind : system.kinds()) kind->add_energies(end, energies);
-  end.least_kinetic = std::min(start.least_kinetic, energies.kinetic);
-  end.most_kinetic = std::max(start.most_kinetic, energies.kinetic);
+  end.min_kinetic = std::min(start.min_kinetic, energies.kinetic);
+  end.max_kinetic = std::max(start.max_kinetic, energies.kinetic);
 }
 
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t) {

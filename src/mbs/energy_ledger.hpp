@@ -6,7 +6,7 @@
 
 namespace scree {
 
-// Updates least_kinetic and most_kinetic of the end state. Adds the contributions of the step from (start,
+// Updates min_kinetic and max_kinetic of the end state. Adds the contributions of the step from (start,
 // t) to (end, t + h) to dissipated, driver_work and integrator_loss of the start and writes the sums to the
 // end state. With P the power at either end [W]:
 //   dissipated  += h/2 (P_0 + P_1) of the dampers
@@ -17,7 +17,7 @@ namespace scree {
 //   energy
 // kinetic + gravitational + elastic + dissipated + integrator_loss - driver_work - (work of the contact
 // wrenches) then stays constant up to O(h^2).
-void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
+void account_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
 
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t);
 // Energy scale of the forces; documented at Multibody::energy_of_forces.

@@ -19,8 +19,8 @@ KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, Syst
   system.differentiate(at, {zero, zero, multipliers}, derivatives);
   // Systems without spatial rotations keep their original order of elimination, so that their results keep
   // their bits.
-  const bool turns_in_space = system.positions() != system.coordinates();
-  return KktMatrix(terms, derivatives, system.coordinates(), system.constraints(), turns_in_space);
+  const bool rotates_in_space = system.positions() != system.coordinates();
+  return KktMatrix(terms, derivatives, system.coordinates(), system.constraints(), rotates_in_space);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ std::vector<Real> HhtMethod::units() const {
     if (mass.row(i) == mass.column(i)) units[count(mass.row(i))] += mass.value(i);
   units.insert(units.end(), compliance().begin(), compliance().end());
   for (std::size_t i = 0; i < units.size(); ++i) {
-    const Real size = i < inertia_force_.size() ? units[i] : units[i] / kComplianceShare;
+    const Real size = i < inertia_force_.size() ? units[i] : units[i] / kRelativeCompliance;
     units[i] = size > 0 ? std::exp2(-std::round(std::log2(size) / 2)) : 1;
   }
   return units;

@@ -91,7 +91,7 @@ class HhtMethod {
   bool change_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
   void apply_change(std::span<const Real> solution, Real share, MultibodyState& state) const;
   // The `share` of apply_change() at the end of a step, 1 + alpha; at an instant it is 1.
-  Real end_share() const { return 1 + coefficients_.hht_alpha; }
+  Real end_weight() const { return 1 + coefficients_.hht_alpha; }
 
   // Whether forces depend on the reactions.
   bool is_loaded() const { return derivatives_.reaction.size() > 0; }

@@ -15,8 +15,8 @@
 namespace scree {
 
 // C = c, one row: the row of a driver (mbs/joints.hpp) with the motion f = 0. joint: its number; wanted: as
-// for coordinate_of (model/joint_coordinates.hpp). Throws InputError, whose text begins with `title`, for a
-// joint without such a coordinate.
+// for coordinate_of (model/derived/joint_coordinates.hpp). Throws InputError, whose text begins with `title`,
+// for a joint without such a coordinate.
 std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Model& model, int joint,
                                              std::optional<JointCoordinate> wanted, const BodyLayout& layout);
 

@@ -62,7 +62,7 @@ void JointForce::find_coordinates() {
   coordinates_.erase(std::unique(coordinates_.begin(), coordinates_.end()), coordinates_.end());
 }
 
-std::size_t JointForce::place(int coordinate) const {
+std::size_t JointForce::local_index(int coordinate) const {
   return scree::at(static_cast<int>(std::lower_bound(coordinates_.begin(), coordinates_.end(), coordinate) -
                                     coordinates_.begin()));
 }
@@ -71,7 +71,7 @@ std::size_t JointForce::place(int coordinate) const {
 void JointForce::pull_back(const BodyPoses& poses) {
   displaced_ = along_;
   for (const RotationColumns& turn : rotations_) {
-    const std::size_t k = place(turn.first);
+    const std::size_t k = local_index(turn.first);
     if (k == coordinates_.size() || coordinates_[k] != turn.first) continue;
     const Vec3 g =
         transposed_times(poses.spatial[turn.body].inverse_tangent, {along_[k], along_[k + 1], along_[k + 2]});
@@ -87,15 +87,17 @@ void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at
   hessian_.begin();
   coordinate_->hessian(poses, &one, hessian_);
   if (coordinates_.empty()) find_coordinates();
-  along_.assign(coordinates_.size(), 0), turning_.assign(coordinates_.size(), 0);
-  for (std::size_t i = 0; i < gradient_.size(); ++i) along_[place(gradient_.column(i))] += gradient_.value(i);
+  along_.assign(coordinates_.size(), 0), rotation_rate_.assign(coordinates_.size(), 0);
+  for (std::size_t i = 0; i < gradient_.size(); ++i)
+    along_[local_index(gradient_.column(i))] += gradient_.value(i);
   for (std::size_t i = 0; i < hessian_.size(); ++i) {
-    turning_[place(hessian_.column(i))] += hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
+    rotation_rate_[local_index(hessian_.column(i))] +=
+        hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
     stiffness.add(hessian_.row(i), hessian_.column(i), -effort_.effort * hessian_.value(i));
   }
   pull_back(poses);
   stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
-    return -along_[i] * (effort_.by_value * along_[j] + effort_.by_rate * turning_[j]);
+    return -along_[i] * (effort_.by_value * along_[j] + effort_.by_rate * rotation_rate_[j]);
   });
   damping.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
     return -effort_.by_rate * along_[i] * displaced_[j];

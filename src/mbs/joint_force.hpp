@@ -30,7 +30,7 @@ class JointForce {
   JointForce(std::string name, std::unique_ptr<Constraint> coordinate, std::unique_ptr<JointLaw> law);
 
   // Adds a body of the joint with spatial rotation, whose three columns begin at `column`.
-  void turns_in_space(int body, int column) { rotations_.push_back({body, column}); }
+  void rotates_in_space(int body, int column) { rotations_.push_back({body, column}); }
 
   // Sets the rows of Phi whose multipliers are the components of the force that the joint transmits, along
   // perpendicular axes.
@@ -42,7 +42,7 @@ class JointForce {
 
   const std::string& name() const { return name_; }
   bool is_angle() const { return coordinate_->is_angle(); }
-  bool remembers() const { return law_->remembers(); }
+  bool has_memory() const { return law_->has_memory(); }
   bool resolves_events() const { return law_->resolves_events(); }
   bool is_loaded() const { return law_->is_loaded(); }
 
@@ -78,7 +78,7 @@ class JointForce {
  private:
   Real load_of(const SystemInstant& at) const;
   void find_coordinates();
-  std::size_t place(int coordinate) const;
+  std::size_t local_index(int coordinate) const;
   void pull_back(const BodyPoses& poses);
   struct RotationColumns {
     int body, first;
@@ -100,7 +100,7 @@ class JointForce {
   SparseTerm gradient_;
   // Scratch of add_derivatives(): the coordinates that c depends on, and g, H^T v and T^-T g there.
   std::vector<int> coordinates_;
-  std::vector<Real> along_, turning_, displaced_;
+  std::vector<Real> along_, rotation_rate_, displaced_;
   SparseTerm hessian_;
 };
 

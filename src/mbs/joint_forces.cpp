@@ -25,7 +25,7 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
       forces_.back().is_loaded_by(load_rows[static_cast<std::size_t>(element.joint)]);
     if (joint.telescopes) forces_.back().acts_along_cylinder(element.joint);
     for (const int body : joint.body) {
-      if (is_spatial(model, body)) forces_.back().turns_in_space(body, layout.column(body) + 3);
+      if (is_spatial(model, body)) forces_.back().rotates_in_space(body, layout.column(body) + 3);
     }
   };
   for (const Motor& e : model.motors)
@@ -45,14 +45,14 @@ bool JointForces::are_loaded() const {
 void JointForces::open_step(const BodyPoses& poses, const SystemInstant& at, Real h,
                             const std::vector<Real>& memory) {
   auto next = memory.begin();
-  for (JointForce& force : forces_) force.open_step(poses, at, h, force.remembers() ? *next++ : 0);
+  for (JointForce& force : forces_) force.open_step(poses, at, h, force.has_memory() ? *next++ : 0);
 }
 
 bool JointForces::end_step() {
   bool differs = false;
   for (JointForce& force : forces_) {
     force.end_step();
-    differs = differs || force.resolves_events() || force.remembers();
+    differs = differs || force.resolves_events() || force.has_memory();
   }
   return differs;
 }
@@ -73,7 +73,7 @@ Real JointForces::elastic_energy(const BodyPoses& poses, Real t, const std::vect
   Real energy = 0;
   auto next = memory.begin();
   for (const JointForce& force : forces_)
-    energy += force.elastic_energy(poses, t, force.remembers() ? *next++ : 0);
+    energy += force.elastic_energy(poses, t, force.has_memory() ? *next++ : 0);
   return energy;
 }
 
@@ -95,7 +95,7 @@ JointWork JointForces::work() const {
 std::vector<Real> JointForces::memory() const {
   std::vector<Real> memory;
   for (const JointForce& force : forces_)
-    if (force.remembers()) memory.push_back(force.memory());
+    if (force.has_memory()) memory.push_back(force.memory());
   return memory;
 }
 
@@ -104,7 +104,7 @@ std::vector<JointForce::Sample> JointForces::samples(const BodyPoses& poses, con
   std::vector<JointForce::Sample> samples;
   auto next = memory.begin();
   for (const JointForce& force : forces_)
-    samples.push_back(force.sample(poses, at, force.remembers() ? *next++ : 0));
+    samples.push_back(force.sample(poses, at, force.has_memory() ? *next++ : 0));
   return samples;
 }
 

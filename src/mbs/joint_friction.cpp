@@ -39,7 +39,7 @@ class FrictionLaw final : public JointLaw {
             std::max(std::abs(start), std::abs(twice.value)), -twice.by_load};
   }
   bool resolves_events() const override { return true; }
-  bool remembers() const override { return true; }
+  bool has_memory() const override { return true; }
   Real memory_after(const LawStep& step, const CoordinateInstant& end) const override {
     return step.h == 0 ? memory_under(step, end.load) : over(step, end).spring.value;
   }

@@ -53,7 +53,7 @@ class JointLaw {
   // step_effort where the unlimited effort at the end is `wanted`.
   virtual Real limited_at(const LawStep&, Real wanted) const { return wanted; }
 
-  virtual bool remembers() const { return false; }
+  virtual bool has_memory() const { return false; }
   // Memory at the end of an accepted step; of a step of length 0, an instant, under the load of `end`.
   virtual Real memory_after(const LawStep& step, const CoordinateInstant&) const { return step.memory; }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mbs/constraints.hpp"
-#include "mbs/measure.hpp"
+#include "mbs/primitive_function.hpp"
 #include "model/data/body_layout.hpp"
 #include "model/data/model.hpp"
 #include "model/derived/scalar_function.hpp"
@@ -19,7 +19,7 @@ class JointParts {
  public:
   virtual ~JointParts() = default;
 
-  virtual void points_meet() = 0;
+  virtual void coincident_points() = 0;
   // The second body's point stays on the axis of the first body.
   virtual void point_on_axis() = 0;
   // No relative rotation.
@@ -31,9 +31,9 @@ class JointParts {
   virtual void point_on_plane() = 0;
   virtual void axes_parallel() = 0;
   virtual void axes_perpendicular() = 0;
-  virtual void arms_perpendicular() = 0;
+  virtual void perpendicular_cross_arms() = 0;
   // The spin w_1 about z_1 equals w_2 about z_2.
-  virtual void equal_spins() = 0;
+  virtual void constant_velocity() = 0;
   // The displacement along the axis is `start` plus `lead` per revolution [m].
   virtual void advance(Real lead, Real start) = 0;
 
@@ -59,8 +59,8 @@ std::unique_ptr<JointParts> joint_parts(const Model& model, int joint, const Bod
 std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
 std::unique_ptr<JointParts> spatial_parts(const Joint& joint, int number, const BodyLayout& layout);
 // An angle of a spatial joint. number: the joint's number in the model.
-std::unique_ptr<Measure> joint_angle(const Joint& joint, int number, JointCoordinate angle,
-                                     const BodyLayout& layout);
+std::unique_ptr<PrimitiveFunction> joint_angle(const Joint& joint, int number, JointCoordinate angle,
+                                               const BodyLayout& layout);
 // Number of an angle in SpatialMotion::counted_angle: a joint has two at most.
 int angle_number(int joint, JointCoordinate angle);
 

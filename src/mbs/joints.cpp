@@ -11,11 +11,11 @@ namespace scree {
 void add_joint(const Joint& joint, bool rowless, JointParts& parts) {
   switch (joint.kind) {
     case JointKind::revolute:
-      parts.points_meet();
+      parts.coincident_points();
       parts.axes_parallel();
       break;
     case JointKind::fixed:
-      parts.points_meet();
+      parts.coincident_points();
       parts.same_orientation();
       break;
     case JointKind::translational:
@@ -30,7 +30,7 @@ void add_joint(const Joint& joint, bool rowless, JointParts& parts) {
       if (!rowless) parts.length(ScalarFunction(joint.distance));
       break;
     case JointKind::spherical:
-      parts.points_meet();
+      parts.coincident_points();
       break;
     case JointKind::cylindrical:
       parts.point_on_axis();
@@ -42,12 +42,12 @@ void add_joint(const Joint& joint, bool rowless, JointParts& parts) {
       parts.advance(joint.lead, joint.advance);
       break;
     case JointKind::universal:
-      parts.points_meet();
-      parts.arms_perpendicular();
+      parts.coincident_points();
+      parts.perpendicular_cross_arms();
       break;
     case JointKind::constant_velocity:
-      parts.points_meet();
-      parts.equal_spins();
+      parts.coincident_points();
+      parts.constant_velocity();
       break;
     case JointKind::planar:
       parts.point_on_plane();

@@ -88,18 +88,18 @@ KluFactors::Result KluFactors::factor_anew(double* values) {
   if (numeric_ == nullptr) {
     return common_.status == KLU_OUT_OF_MEMORY ? Result::out_of_memory : Result::singular;
   }
-  remember_pivots();
+  record_pivots();
   return Result::factored;
 }
 
 bool KluFactors::refactor(double* values) {
   return klu_refactor(pattern_.row_start.data(), pattern_.column.data(), values, symbolic_.get(),
                       numeric_.get(), &common_) != 0 &&
-         common_.status == KLU_OK && pivots_stay();
+         common_.status == KLU_OK && pivots_unchanged();
 }
 
 // A quotient has the absolute value 1 exactly where its entry is as large as the pivot.
-void KluFactors::remember_pivots() {
+void KluFactors::record_pivots() {
   find_diagonals();
   ties_.clear();
   std::size_t entry = 0;
@@ -139,7 +139,7 @@ void KluFactors::find_diagonals() {
 // takes the first of the largest entries, in an order that depends only on the earlier pivots. The pivot is
 // the first of the entries that were as large when it was chosen; for other entries that have become so the
 // order is unknown.
-bool KluFactors::pivots_stay() const {
+bool KluFactors::pivots_unchanged() const {
   const double least = common_.tol * (1 - kMargin), most = (1 - kMargin) / common_.tol;
   bool stay = true;
   std::size_t entry = 0, tie = 0;

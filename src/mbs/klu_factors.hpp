@@ -52,9 +52,9 @@ class KluFactors {
   bool needs_other_pivots() const;
   Result factor_anew(double* values);
   bool refactor(double* values);
-  void remember_pivots();
+  void record_pivots();
   void find_diagonals();
-  bool pivots_stay() const;
+  bool pivots_unchanged() const;
 
   klu_common common_;
   SparsePattern pattern_;

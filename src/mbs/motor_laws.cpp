@@ -169,7 +169,7 @@ class SpeedMotor final : public MotorLaw {
     if (o.held) return of_mean(first, o.mean);
     return limited_step(first, wanted(end, o.integral), size(end, o.integral.value));
   }
-  bool remembers() const override { return true; }
+  bool has_memory() const override { return true; }
   bool needs_second() const override { return std::isfinite(limit_); }
   Real memory_after(const LawStep& step, const CoordinateInstant& end) const override {
     return over(step, end).integral.value;

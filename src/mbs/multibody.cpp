@@ -37,7 +37,7 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartF
   for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
   state.multipliers.assign(static_cast<std::size_t>(system.constraints()), 0);
   state.counted_angles = static_cast<std::size_t>(system.counted_angles());
-  system.count_turns(system.poses_at({0, state.position, state.velocity}), state.position);
+  system.count_revolutions(system.poses_at({0, state.position, state.velocity}), state.position);
   findings = check_start(model, system, state.position, state.velocity);
   return state;
 }
@@ -126,7 +126,7 @@ void Multibody::Impl::settle_velocities(const Model& model) {
       throw InputError(conflict + ", and no velocities satisfy it and the others that fix the same motion");
   }
   if (model.consistent_velocities) {
-    check_repeated_accelerations(system, findings.repeated, start.position, start.velocity);
+    check_redundant_accelerations(system, findings.repeated, start.position, start.velocity);
     start_change = largest_change(system, given, start.velocity);
     return;
   }
@@ -181,7 +181,7 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
   impl_->solve_acceleration(state, 0);
   state.wrench = wrench;
-  state.least_kinetic = state.most_kinetic = energies(state, 0).kinetic;
+  state.min_kinetic = state.max_kinetic = energies(state, 0).kinetic;
   if (impl_->method.shares())
     check_start_accelerations(impl_->system, impl_->newton.misfit(), state.acceleration);
   return state;
@@ -254,9 +254,9 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   Impl& impl = *impl_;
   impl.method.close(impl.end);
   impl.watch_reactions(state, error());
-  book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
+  account_step(impl.system, state, impl.time, impl.method.step(), impl.end);
   impl.end.memory = impl.system.joint_forces().memory();
-  impl.system.count_turns(impl.system.poses(), impl.end.position);
+  impl.system.count_revolutions(impl.system.poses(), impl.end.position);
   impl.end.counted_angles = state.counted_angles;
   impl.end.wrench = end_wrench;
   const bool efforts_differ = impl.system.joint_forces().end_step(),
@@ -266,7 +266,7 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   if (efforts_differ) impl.newton.change_forces(impl.end, impl.method.end_time(), 1);
   if (contacts_differ) {
     impl.system.set_forces(end_wrench);
-    impl.newton.change_forces(impl.end, impl.method.end_time(), impl.method.end_share());
+    impl.newton.change_forces(impl.end, impl.method.end_time(), impl.method.end_weight());
   }
   if (efforts_differ || contacts_differ) impl.follow_load();
   std::swap(state, impl.end);
@@ -297,7 +297,7 @@ void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
   if (!watch.oscillates()) return;
   const bool governs =
       time_control.control == StepControl::adaptive && error >= kGoverns * time_control.tolerance;
-  const bool ruined = watch.share() >= kRuin && watch.gap_share() >= kRuinedVelocity;
+  const bool ruined = watch.share() >= kRuin && watch.relative_gap() >= kRuinedVelocity;
   if (ruined || (governs && watch.share() >= kOscillation)) fail_for_oscillation();
 }
 
@@ -306,7 +306,7 @@ void Multibody::Impl::fail_for_oscillation() const {
 }
 
 std::string Multibody::reaction_warning() const {
-  const Real share = impl_->watch.worst_share(), alpha = impl_->method.coefficients().hht_alpha;
+  const Real share = impl_->watch.worst_ratio(), alpha = impl_->method.coefficients().hht_alpha;
   return share < kOscillation ? "" : oscillation_text(share, alpha);
 }
 

@@ -24,14 +24,14 @@ struct MultibodyState {
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
   std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body; where walls move or have a surface
-                                   // velocity, then per such wall (BodyLink)
-  std::vector<Real> slide_power;   // per such wall, the power of the contacts at its surface velocity [W]
+                                   // velocity, then per such wall (BodyCoupling)
+  std::vector<Real> belt_power;    // per such wall, the power of the contacts at its surface velocity [W]
   std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators, applied forces and walls since t = 0 [J]
   // Smallest and largest kinetic energy of all bodies at the ends of steps since t = 0 [J].
-  Real least_kinetic = 0, most_kinetic = 0;
+  Real min_kinetic = 0, max_kinetic = 0;
 };
 
 // Size of one Newton iteration, scaled and dimensionless.
@@ -93,7 +93,7 @@ class Multibody {
 
   // Warnings, one text each, of joint limits that the start position violates, with their efforts and stored
   // energies, and of servos that start off their position where the step is too long for them. Throws
-  // InputError where the start is hardly intended (mbs/passed_stops.hpp, mbs/thrown_servos.hpp).
+  // InputError where the start is hardly intended (mbs/violated_limits.hpp, mbs/overshooting_servos.hpp).
   std::vector<std::string> start_warnings();
 
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.

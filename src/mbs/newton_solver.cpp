@@ -94,7 +94,7 @@ void NewtonSolver::solve_acceleration_level() {
   has_acceleration_factors_ = false;  // until the factorization succeeds
   if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
   refactor = drop_misfit(acceleration_solver_, refactor);
-  solve_sharing(acceleration_solver_, refactor, {});
+  solve_minimum_norm(acceleration_solver_, refactor, {});
   has_acceleration_factors_ = true;
 }
 
@@ -123,7 +123,8 @@ bool NewtonSolver::drop_misfit(PetscSolver& solver, bool refactor) {
   return refactor;
 }
 
-void NewtonSolver::solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers) {
+void NewtonSolver::solve_minimum_norm(PetscSolver& solver, bool refactor,
+                                      const std::vector<Real>& multipliers) {
   if (!method_.shares()) return solve_linear(solver, refactor);
   const std::vector<Real>& compliance = method_.compliance();
   const std::size_t n = system_.coordinate_scale().size();
@@ -217,7 +218,7 @@ std::span<const Real> NewtonSolver::solve_coupled() {
   for (int pass = 0; pass < kCoupledPasses && product(left_, left_) > enough; ++pass) {
     std::fill(solver_.rhs().begin(), solver_.rhs().end(), 0);
     std::copy(left_.begin(), left_.end(), solver_.rhs().begin());
-    solve_sharing(solver_, false, {});
+    solve_minimum_norm(solver_, false, {});
     std::vector<Real> direction(solver_.solution().begin(), solver_.solution().end()), image = left_;
     method_.add_coupled(1, direction, image);
     for (std::size_t k = 0; k < images_.size(); ++k) {
@@ -243,7 +244,7 @@ IterationNorms NewtonSolver::iterate() {
   if (refactor) method_.newton_matrix(solver_.values());
   std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
   refactor = drop_misfit(solver_, refactor);
-  solve_sharing(solver_, refactor, method_.multipliers());
+  solve_minimum_norm(solver_, refactor, method_.multipliers());
   const std::span<const Real> delta = method_.is_coupled() ? solve_coupled() : solver_.solution();
   norms.correction = scaled_correction(delta);
   method_.apply_correction(delta);

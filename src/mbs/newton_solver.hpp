@@ -64,7 +64,7 @@ class NewtonSolver {
   // fed back to the right-hand side, so that no row yields. Of the multipliers that give the same forces
   // those with the least C-norm remain. multipliers: the ones whose change is solved for; empty where the
   // solution is the whole of them.
-  void solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
+  void solve_minimum_norm(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
   Real scaled_residual() const;
   Real scaled_correction(std::span<const Real> delta) const;
   Real scaled_change();

@@ -213,7 +213,7 @@ class PlanarBodies final : public RigidBodies {
   };
   struct BodyData {
     Constants body;
-    BodyPlace at;
+    BodyOffsets at;
   };
   // Stiffness of the contacts of a body, (x, y, angle) row by row.
   struct ContactBlock {

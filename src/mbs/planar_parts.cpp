@@ -18,14 +18,14 @@ class PlanarParts final : public JointParts {
         axis_(planar(joint.axis)),
         angle_offset_(joint.angle_offset) {}
 
-  void points_meet() override { add(coincidence_constraint(pair_)); }
+  void coincident_points() override { add(coincidence_constraint(pair_)); }
   void point_on_axis() override { add(axis_constraint(pair_, perp(axis_), ScalarFunction(0))); }
   void same_orientation() override { add(angle_constraint(pair_, ScalarFunction(angle_offset_))); }
   void axes_parallel() override {}  // always true in the plane
   void point_on_plane() override { refuse(); }
   void axes_perpendicular() override { refuse(); }
-  void arms_perpendicular() override { refuse(); }
-  void equal_spins() override { refuse(); }
+  void perpendicular_cross_arms() override { refuse(); }
+  void constant_velocity() override { refuse(); }
   void advance(Real, Real) override { refuse(); }
   void angle(ScalarFunction f) override { add(angle_constraint(pair_, std::move(f))); }
   void arm_angle(JointCoordinate, ScalarFunction) override { refuse(); }

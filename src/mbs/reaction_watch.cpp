@@ -61,7 +61,7 @@ void ReactionWatch::observe(const MultibodyState& start, const MultibodyState& e
   if (steps_ <= 1) first_ = alternating_;
   change_.swap(next_change_);
   gap_.swap(next_gap_);
-  if (oscillates()) worst_share_ = std::max(worst_share_, share());
+  if (oscillates()) worst_ratio_ = std::max(worst_ratio_, share());
 }
 
 bool ReactionWatch::oscillates() const { return steps_ >= kSteps && alternating_ >= kGrowth * first_; }

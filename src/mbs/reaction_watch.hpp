@@ -27,17 +27,17 @@ class ReactionWatch {
 
   // At least the last 50 steps alternate, and A has grown tenfold over them.
   bool oscillates() const;
-  // share(): A over the largest S so far; worst_share(): its largest value over steps that oscillated.
+  // share(): A over the largest S so far; worst_ratio(): its largest value over steps that oscillated.
   Real share() const { return mean_ > 0 ? alternating_ / mean_ : 0; }
-  Real worst_share() const { return worst_share_; }
+  Real worst_ratio() const { return worst_ratio_; }
   // The velocity gap over the largest velocity so far, both over their scales.
-  Real gap_share() const { return fastest_ > 0 ? largest_gap_ / fastest_ : 0; }
+  Real relative_gap() const { return fastest_ > 0 ? largest_gap_ / fastest_ : 0; }
 
  private:
   bool alternates(Real applied_change) const;
 
   const std::vector<Real>&coordinate_scale_, &constraint_scale_;
-  Real worst_share_ = 0, largest_gap_ = 0, fastest_ = 0;
+  Real worst_ratio_ = 0, largest_gap_ = 0, fastest_ = 0;
   std::vector<Real> change_, gap_;            // of the last step, scaled
   std::vector<Real> next_change_, next_gap_;  // of the step under observation
   Real alternating_ = 0, mean_ = 0;           // A of the last step, largest S [J]

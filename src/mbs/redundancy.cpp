@@ -94,14 +94,14 @@ const Driver* stuck_driver(const Model& model, const RigidBodySystem& system,
   return nullptr;
 }
 
-constexpr const char* word_of(Asked level) {
-  return level == Asked::positions    ? "positions"
-         : level == Asked::velocities ? "velocities"
-                                      : "accelerations";
+constexpr const char* word_of(ConstraintLevel level) {
+  return level == ConstraintLevel::positions    ? "positions"
+         : level == ConstraintLevel::velocities ? "velocities"
+                                                : "accelerations";
 }
 
-constexpr const char* per_of(Asked level) {
-  return level == Asked::positions ? "" : level == Asked::velocities ? "/s" : "/s^2";
+constexpr const char* per_of(ConstraintLevel level) {
+  return level == ConstraintLevel::positions ? "" : level == ConstraintLevel::velocities ? "/s" : "/s^2";
 }
 
 // Columns of Phi_q^T, whose rows are multiplied by the scales of their coordinates.
@@ -138,8 +138,8 @@ Difference difference_of(const RigidBodySystem& system, const Dependency& depend
 
 }  // namespace
 
-std::vector<Dependency> repeated_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
-                                      Real distance) {
+std::vector<Dependency> redundant_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
+                                       Real distance) {
   return column_dependencies(system.coordinates(), system.constraints(), scaled_columns(system, jacobian),
                              distance);
 }
@@ -199,7 +199,7 @@ std::string check_redundancy(const Model& model, const RigidBodySystem& system, 
 }
 
 void check_contradictions(const RigidBodySystem& system, const std::vector<Dependency>& repeated,
-                          const std::vector<Real>& wanted, Real limit, Asked level, Real t) {
+                          const std::vector<Real>& wanted, Real limit, ConstraintLevel level, Real t) {
   const Dependency* worst = nullptr;
   Difference most;
   Real ratio = limit;
@@ -214,7 +214,7 @@ void check_contradictions(const RigidBodySystem& system, const std::vector<Depen
       fmt::format("the {} that they require at t = {:.9g}{} differ by {:.6g} {}{}", word_of(level), t,
                   t > 0 ? " s" : "", most.size, system.is_angle(most.row) ? "rad" : "m", per_of(level));
   const std::string names = names_of(system, {*worst});
-  if (level == Asked::accelerations && !group.drives)
+  if (level == ConstraintLevel::accelerations && !group.drives)
     throw InputError(with_label(
         group.deck_label,
         fmt::format("{} are redundant in the position at t = 0, which is singular, and no motion continues "

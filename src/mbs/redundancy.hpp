@@ -10,8 +10,8 @@
 namespace scree {
 
 // Rows of Phi_q that are combinations of others to within `distance` (column_dependencies).
-std::vector<Dependency> repeated_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
-                                      Real distance = kDependent);
+std::vector<Dependency> redundant_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
+                                       Real distance = kDependent);
 // Distances of these rows from combinations of all others, in the order of `of`.
 std::vector<NearDependency> near_combinations(const RigidBodySystem& system, const SparseTerm& jacobian,
                                               const std::vector<int>& of);
@@ -23,13 +23,13 @@ std::string check_redundancy(const Model& model, const RigidBodySystem& system, 
                              const std::vector<Dependency>& repeated);
 
 // The level at which rows of Phi are compared at an instant.
-enum class Asked { positions, velocities, accelerations };
+enum class ConstraintLevel { positions, velocities, accelerations };
 
 // Redundant rows must be consistent: throws InputError, with the names of those that differ most and their
 // difference, where no motion satisfies them all. wanted: per row, Phi itself or the right-hand sides of the
 // rates, at time t [s]; a difference of `limit` times the scale of its row counts as round-off.
 void check_contradictions(const RigidBodySystem& system, const std::vector<Dependency>& repeated,
-                          const std::vector<Real>& wanted, Real limit, Asked asked, Real t = 0);
+                          const std::vector<Real>& wanted, Real limit, ConstraintLevel asked, Real t = 0);
 
 // A text on all rows where steps find no motion: those whose gap is at least half of the largest, over their
 // scales, and its size: "driver 'a', driver 'b', by 0.01 rad".

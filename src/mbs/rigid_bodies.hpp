@@ -20,7 +20,7 @@ namespace scree {
 inline constexpr Real kElasticFloor = 1e-6;
 
 // Offsets of a body's entries in the model and in the vectors of the system.
-struct BodyPlace {
+struct BodyOffsets {
   int body = 0;
   int position = 0, column = 0;  // first of its own
 

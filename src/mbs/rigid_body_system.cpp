@@ -224,11 +224,11 @@ void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vect
 void RigidBodySystem::add_counted_angles(const Model& model) {
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j)
     for (const Joint& joint = model.joints[static_cast<std::size_t>(j)];
-         const JointCoordinate angle : turning_coordinates(model, joint))
+         const JointCoordinate angle : rotational_coordinates(model, joint))
       counted_.push_back({angle_number(j, angle), joint_angle(joint, j, angle, layout_)});
 }
 
-void RigidBodySystem::count_turns(const BodyPoses& poses, std::vector<Real>& position) const {
+void RigidBodySystem::count_revolutions(const BodyPoses& poses, std::vector<Real>& position) const {
   auto angle = position.begin() + layout_.positions();
   for (const CountedAngle& counted : counted_) *angle++ = counted.angle->value(poses.spatial);
 }

@@ -9,8 +9,8 @@
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/joint_forces.hpp"
-#include "mbs/measure.hpp"
 #include "mbs/mechanical_system.hpp"
+#include "mbs/primitive_function.hpp"
 #include "mbs/rigid_bodies.hpp"
 #include "model/data/body_exchange.hpp"
 #include "model/data/body_layout.hpp"
@@ -68,7 +68,7 @@ class RigidBodySystem final : public MechanicalSystem {
   int counted_angles() const { return static_cast<int>(counted_.size()); }
   // Writes the counted angles of the poses, each on the branch nearest to the angle with which the poses
   // were set.
-  void count_turns(const BodyPoses& poses, std::vector<Real>& position) const;
+  void count_revolutions(const BodyPoses& poses, std::vector<Real>& position) const;
   // Poses of the last evaluate().
   const BodyPoses& poses() const { return poses_; }
 
@@ -112,7 +112,7 @@ class RigidBodySystem final : public MechanicalSystem {
  private:
   struct CountedAngle {
     int number;
-    std::unique_ptr<Measure> angle;
+    std::unique_ptr<PrimitiveFunction> angle;
   };
 
   void add_counted_angles(const Model& model);

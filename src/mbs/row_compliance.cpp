@@ -30,7 +30,7 @@ RowCompliance::RowCompliance(const SparseTerm& jacobian, const SparseTerm& inver
         for (const std::size_t other : of_constraint[row])
           if (jacobian.column(other) == inverse_mass.column(m))
             products_.push_back(
-                {static_cast<int>(row), one, other, kComplianceShare * inverse_mass.value(m)});
+                {static_cast<int>(row), one, other, kRelativeCompliance * inverse_mass.value(m)});
 }
 
 void RowCompliance::update(const SparseTerm& jacobian) {

@@ -10,7 +10,7 @@ namespace scree {
 // eps. The condition number of the matrix grows with 1/eps, the violation that the compliance leaves grows
 // with eps. At 1e-9 multipliers have seven digits, and rows of 1 m and 1 kg under a few N yield by 1e-15 m
 // in a step of 1 ms.
-inline constexpr Real kComplianceShare = 1e-9;
+inline constexpr Real kRelativeCompliance = 1e-9;
 
 // eps S with S = diag(Phi_q M^-1 Phi_q^T), the acceleration of a row per unit of its own multiplier. A row
 // thus yields by the fraction eps of its yielding without the other rows, whatever its units. Of all

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "mbs/measure.hpp"
+#include "mbs/primitive_function.hpp"
 #include "mbs/rigid_bodies.hpp"
 #include "physics/energy.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -171,7 +171,7 @@ class SpatialBodies final : public RigidBodies {
       const BodyWrench& w = wrench[static_cast<std::size_t>(b.at.body)];
       Real* f = b.at.of(force);
       write(vec3(f) + w.force, f);
-      write(vec3(f + 3) + poses.spatial[b.at.body].turn_back(w.torque), f + 3);
+      write(vec3(f + 3) + poses.spatial[b.at.body].rotate_back(w.torque), f + 3);
       const auto touched = touched_.find(b.at.body);
       Real stiffness = 0;
       if (touched != touched_.end())
@@ -192,7 +192,7 @@ class SpatialBodies final : public RigidBodies {
       if (!b.touchable && found == touched_.end()) continue;
       const SpatialPose& pose = poses.spatial[b.at.body];
       const WrenchStiffness& contact = found == touched_.end() ? none : found->second;
-      const Vec3 torque = pose.turn_back(wrench[static_cast<std::size_t>(b.at.body)].torque);
+      const Vec3 torque = pose.rotate_back(wrench[static_cast<std::size_t>(b.at.body)].torque);
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) {
           const int row = b.at.column + 3 * i, column = b.at.column + 3 * j;
@@ -273,7 +273,7 @@ class SpatialBodies final : public RigidBodies {
   // The data of a body that every step reads, without the names and shapes of the model's bodies, which
   // would slow the loop.
   struct BodyData {
-    BodyPlace at;
+    BodyOffsets at;
     Real mass;
     Mat3 inertia;    // J
     bool touchable;  // Newton's matrix has a place for its contacts

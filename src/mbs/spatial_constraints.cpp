@@ -35,7 +35,7 @@ class Coincidence final : public Constraint {
       const Real sign = i == 0 ? -1 : 1;
       const int first = pair_.column[i] + 3;
       add_block(out, first, first,
-                sign * (tilde(pair_.point[i]) * tilde(poses.spatial[pair_.body[i]].turn_back(force))));
+                sign * (tilde(pair_.point[i]) * tilde(poses.spatial[pair_.body[i]].rotate_back(force))));
     }
   }
   void velocity_rhs(Real, Real* rhs) const override { write({}, rhs); }
@@ -58,7 +58,8 @@ class Coincidence final : public Constraint {
 // velocity_rhs = f',  acceleration_rhs = f'' - (c'' without accelerations)
 class MeasureConstraint final : public Constraint {
  public:
-  MeasureConstraint(std::unique_ptr<Measure> c, ScalarFunction f) : c_(std::move(c)), f_(std::move(f)) {}
+  MeasureConstraint(std::unique_ptr<PrimitiveFunction> c, ScalarFunction f)
+      : c_(std::move(c)), f_(std::move(f)) {}
 
   bool is_angle() const override { return c_->is_angle(); }
   void value(const BodyPoses& poses, Real t, Real* c) const override {
@@ -88,7 +89,7 @@ class MeasureConstraint final : public Constraint {
   Real power(Real t, const Real* lambda) const override { return -*lambda * f_(t).rate; }
 
  private:
-  std::unique_ptr<Measure> c_;
+  std::unique_ptr<PrimitiveFunction> c_;
   ScalarFunction f_;
 };
 
@@ -98,7 +99,7 @@ std::unique_ptr<Constraint> coincidence_constraint(const SpatialPair& pair) {
   return std::make_unique<Coincidence>(pair);
 }
 
-std::unique_ptr<Constraint> measure_constraint(std::unique_ptr<Measure> c, ScalarFunction f) {
+std::unique_ptr<Constraint> primitive_constraint(std::unique_ptr<PrimitiveFunction> c, ScalarFunction f) {
   return std::make_unique<MeasureConstraint>(std::move(c), std::move(f));
 }
 

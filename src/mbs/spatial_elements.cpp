@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "mbs/force_elements.hpp"
-#include "mbs/measure.hpp"
+#include "mbs/primitive_function.hpp"
 #include "model/derived/scalar_function.hpp"
 #include "physics/spatial_rotation.hpp"
 
@@ -29,7 +29,7 @@ class MeasureSpring final : public ForceElement {
     Real stiffness = 0, damping = 0, free_value = 0;
     ScalarFunction actuator;
   };
-  MeasureSpring(std::string title, std::unique_ptr<Measure> c, Law law)
+  MeasureSpring(std::string title, std::unique_ptr<PrimitiveFunction> c, Law law)
       : title_(std::move(title)), c_(std::move(c)), law_(std::move(law)) {}
 
   Real add_force(const BodyPoses& poses, Real t, Real length, std::vector<Real>& force) override {
@@ -67,7 +67,7 @@ class MeasureSpring final : public ForceElement {
   }
 
   void add_powers(const BodyPoses& poses, Real t, Powers& powers) const override {
-    const Real rate = measure_rate(*c_, poses.spatial);
+    const Real rate = primitive_rate(*c_, poses.spatial);
     powers.dissipated += law_.damping * rate * rate;
     powers.applied -= law_.actuator(t).value * rate;
   }
@@ -83,7 +83,7 @@ class MeasureSpring final : public ForceElement {
  private:
   Real tension_at(const BodyPoses& poses, Real t) const {
     return law_.stiffness * (c_->value(poses.spatial) - law_.free_value) +
-           law_.damping * measure_rate(*c_, poses.spatial) + law_.actuator(t).value;
+           law_.damping * primitive_rate(*c_, poses.spatial) + law_.actuator(t).value;
   }
   const SpatialPose& pose(const SpatialMotion& motion, int block) const {
     return motion[c_->pair().body[block / 2]];
@@ -93,7 +93,7 @@ class MeasureSpring final : public ForceElement {
   }
 
   std::string title_;
-  std::unique_ptr<Measure> c_;
+  std::unique_ptr<PrimitiveFunction> c_;
   Law law_;
 };
 
@@ -149,7 +149,7 @@ class AppliedForceElement final : public ForceElement {
         m{torque_[0](t).value, torque_[1](t).value, torque_[2](t).value};
     if (follows_body_) return {axes_ * f, axes_ * m};
     const SpatialPose& pose = poses.spatial[body_];
-    return {pose.turn_back(f), pose.turn_back(m)};
+    return {pose.rotate_back(f), pose.rotate_back(m)};
   }
 
   int body_, column_;
@@ -165,7 +165,7 @@ std::unique_ptr<ForceElement> make_spatial_element(const SpringDamper& element, 
                                                    Real end) {
   const std::string title = fmt::format("spring-damper '{}'", element.name);
   return std::make_unique<MeasureSpring>(
-      title, distance_measure(spatial_pair(layout, element.body, element.point)),
+      title, distance_primitive(spatial_pair(layout, element.body, element.point)),
       MeasureSpring::Law{element.stiffness, element.damping, element.free_length,
                          ScalarFunction(element.actuator, title, end)});
 }

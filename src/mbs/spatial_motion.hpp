@@ -17,10 +17,10 @@ struct SpatialPose {
 
   // A s, and A^T v below.
   Vec3 turn(Vec3 s) const { return rotation * s; }
-  Vec3 turn_back(Vec3 v) const { return transposed_times(rotation, v); }
+  Vec3 rotate_back(Vec3 v) const { return transposed_times(rotation, v); }
   // Rate of A s, and its second derivative without accelerations: A w~ s, A w~ w~ s.
-  Vec3 turn_rate(Vec3 s) const { return turn(cross(spin, s)); }
-  Vec3 turn_second(Vec3 s) const { return turn(cross(spin, cross(spin, s))); }
+  Vec3 rotated_rate(Vec3 s) const { return turn(cross(spin, s)); }
+  Vec3 rotated_second(Vec3 s) const { return turn(cross(spin, cross(spin, s))); }
 };
 
 // Poses of the spatial bodies at one instant; index kGround is the ground.
@@ -69,10 +69,11 @@ inline Vec3 gap(const SpatialPair& pair, const SpatialMotion& motion) {
 }
 inline Vec3 gap_rate(const SpatialPair& pair, const SpatialMotion& motion) {
   const SpatialPose &one = motion[pair.body[0]], &two = motion[pair.body[1]];
-  return (two.velocity + two.turn_rate(pair.point[1])) - (one.velocity + one.turn_rate(pair.point[0]));
+  return (two.velocity + two.rotated_rate(pair.point[1])) - (one.velocity + one.rotated_rate(pair.point[0]));
 }
 inline Vec3 gap_second(const SpatialPair& pair, const SpatialMotion& motion) {
-  return motion[pair.body[1]].turn_second(pair.point[1]) - motion[pair.body[0]].turn_second(pair.point[0]);
+  return motion[pair.body[1]].rotated_second(pair.point[1]) -
+         motion[pair.body[0]].rotated_second(pair.point[0]);
 }
 
 }  // namespace scree

@@ -163,7 +163,8 @@ void check_driven_twice(const Model& model, const RigidBodySystem& system,
   for (int k = 1; k <= kInstants && !twice.empty(); ++k) {
     const Real t = model.time.end * k / kInstants;
     system.velocity_rhs({t, {}, {}}, rate);
-    check_contradictions(system, twice, rate, kContradiction * rhs_scale(system, rate), Asked::velocities, t);
+    check_contradictions(system, twice, rate, kContradiction * rhs_scale(system, rate),
+                         ConstraintLevel::velocities, t);
   }
 }
 
@@ -175,32 +176,33 @@ StartFindings check_start(const Model& model, RigidBodySystem& system, const std
   check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
   check_joints_meet(model);
-  StartFindings findings{"", repeated_rows(system, terms.constraint_jacobian)};
-  check_contradictions(system, findings.repeated, terms.constraint, kContradiction, Asked::positions);
+  StartFindings findings{"", redundant_rows(system, terms.constraint_jacobian)};
+  check_contradictions(system, findings.repeated, terms.constraint, kContradiction,
+                       ConstraintLevel::positions);
   check_start_gaps(model, system, terms.constraint);
   std::vector<Real> rate(at(system.constraints()), 0);
   system.velocity_rhs({0, position, velocity}, rate);
   check_contradictions(system, findings.repeated, rate, kVelocityGap * rhs_scale(system, rate),
-                       Asked::velocities);
+                       ConstraintLevel::velocities);
   for (Real& required : rate) required = -required;
   const SparseTerm& jacobian = terms.constraint_jacobian;
   for (std::size_t i = 0; i < jacobian.size(); ++i)
     rate[at(jacobian.row(i))] += jacobian.value(i) * velocity[at(jacobian.column(i))];
   if (velocity_trouble(system, rate, velocity).empty())
-    check_repeated_accelerations(system, findings.repeated, position, velocity);
+    check_redundant_accelerations(system, findings.repeated, position, velocity);
   check_driven_twice(model, system, findings.repeated);
   findings.redundancy = check_redundancy(model, system, jacobian, findings.repeated);
   return findings;
 }
 
-void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
-                                  const std::vector<Real>& position, const std::vector<Real>& velocity) {
+void check_redundant_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
+                                   const std::vector<Real>& position, const std::vector<Real>& velocity) {
   if (repeated.empty()) return;
   terms_at(system, position, velocity, 0);  // sets the poses of the system
   std::vector<Real> required(at(system.constraints()), 0);
   system.acceleration_rhs({0, position, velocity}, required);
   check_contradictions(system, repeated, required, kAccelerationGap * rhs_scale(system, required),
-                       Asked::accelerations);
+                       ConstraintLevel::accelerations);
 }
 
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
@@ -228,7 +230,7 @@ std::string near_singular(RigidBodySystem& system, const std::vector<Real>& posi
   constexpr Real kNear = 1e-3;  // of rows of length 1
   const std::vector<Real> zero_velocity(at(system.coordinates()), 0);
   const SystemTerms terms = terms_at(system, position, zero_velocity, t);
-  const std::vector<Dependency> repeated = repeated_rows(system, terms.constraint_jacobian, kNear);
+  const std::vector<Dependency> repeated = redundant_rows(system, terms.constraint_jacobian, kNear);
   return repeated.empty() ? "" : names_of(system, repeated);
 }
 

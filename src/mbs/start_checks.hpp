@@ -30,8 +30,8 @@ struct StartFindings {
 StartFindings check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
                           const std::vector<Real>& velocity);
 // For redundant rows and consistent velocities: throws InputError where no accelerations satisfy them all.
-void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
-                                  const std::vector<Real>& position, const std::vector<Real>& velocity);
+void check_redundant_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
+                                   const std::vector<Real>& position, const std::vector<Real>& velocity);
 
 // The joint or driver that the start velocities violate most, and by how much; empty where there is none.
 // gap_rate: Phi_q q' + Phi_t at the start; up to 1e-8 of the largest velocity plus one length scale (1 rad)

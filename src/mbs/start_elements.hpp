@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mbs/passed_stops.hpp"
-#include "mbs/thrown_servos.hpp"
+#include "mbs/overshooting_servos.hpp"
+#include "mbs/violated_limits.hpp"
 
 namespace scree {
 
@@ -14,11 +14,11 @@ class StartElements {
   explicit StartElements(const Model& model) : stops_(stops_of(model)), servos_(servos_of(model)) {}
 
   bool empty() const { return stops_.empty() && servos_.empty(); }
-  // Warnings of passed_stops() and thrown_servos(); throws as they do.
+  // Warnings of violated_limits() and overshooting_servos(); throws as they do.
   std::vector<std::string> findings(const RigidBodySystem& system, const MultibodyState& start,
                                     Real weight) const {
-    std::vector<std::string> all = passed_stops(system, stops_, start, weight);
-    for (std::string& one : thrown_servos(system, servos_, start)) all.push_back(std::move(one));
+    std::vector<std::string> all = violated_limits(system, stops_, start, weight);
+    for (std::string& one : overshooting_servos(system, servos_, start)) all.push_back(std::move(one));
     return all;
   }
 

@@ -146,14 +146,15 @@ Index fitting_segments(Real radius, Real particle_radius, Real feature_angle) {
   constexpr Index kLeast = 16, kMost = 360;
   const Real quarter = std::min<Real>(kMost, std::floor(kPi / 2 / feature_angle) + 1);
   const Index smooth = static_cast<Index>(quarter);  // segments in a quarter
-  return std::clamp(segments_within(radius, kFacetShare * particle_radius),
+  return std::clamp(segments_within(radius, kRelativeFacetError * particle_radius),
                     std::clamp(4 * smooth, kLeast, kMost), kMost);
 }
 
 int fitting_levels(Real radius, Real particle_radius) {
   constexpr int kLeast = 2, kMost = 6;
   int levels = kLeast;
-  while (levels < kMost && facet_deviation(SphereShape{radius, levels}) > kFacetShare * particle_radius)
+  while (levels < kMost &&
+         facet_deviation(SphereShape{radius, levels}) > kRelativeFacetError * particle_radius)
     ++levels;
   return levels;
 }

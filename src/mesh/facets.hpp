@@ -23,17 +23,17 @@ Real facet_deviation(const FunnelShape& shape);
 Real facet_deviation(const HopperShape& shape);
 
 // Facets suit the particles where they deviate by at most this fraction of the smallest particle's radius.
-inline constexpr Real kFacetShare = 0.05;
+inline constexpr Real kRelativeFacetError = 0.05;
 // Segments and levels of models without particles.
 inline constexpr Index kUsualSegments = 48;
 inline constexpr int kUsualLevels = 3;
 
-// Segments around a circle of `radius` whose chords lie within kFacetShare times the smallest particle's
-// radius, particle_radius [m], from it: a multiple of 4, from 16 to 360, and so many that the angle between
-// two facets is less than feature_angle [rad]. By the first condition alone a segment is at least two fifths
-// of a particle's diameter long.
+// Segments around a circle of `radius` whose chords lie within kRelativeFacetError times the smallest
+// particle's radius, particle_radius [m], from it: a multiple of 4, from 16 to 360, and so many that the
+// angle between two facets is less than feature_angle [rad]. By the first condition alone a segment is at
+// least two fifths of a particle's diameter long.
 Index fitting_segments(Real radius, Real particle_radius, Real feature_angle);
-// Levels of a sphere whose facets lie within kFacetShare * particle_radius [m] from it, from 2 to 6.
+// Levels of a sphere whose facets lie within kRelativeFacetError * particle_radius [m] from it, from 2 to 6.
 int fitting_levels(Real radius, Real particle_radius);
 
 }  // namespace scree

@@ -256,7 +256,7 @@ HullCorners hull_corners(const std::vector<Vec3>& points, bool planar) {
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
   }
   out.middle = Real(0.5) * (min + max);
-  for (const Vec3 p : out.corners) out.reach = std::max(out.reach, norm(p - out.middle));
+  for (const Vec3 p : out.corners) out.bounding_radius = std::max(out.bounding_radius, norm(p - out.middle));
   return out;
 }
 

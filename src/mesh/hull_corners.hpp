@@ -17,7 +17,7 @@ struct HullCorners {
   std::vector<Index> face_corners;  // per face its corners, which are coplanar; in 2D the ends of an edge
   std::vector<Vec3> normals;        // per face, unit, outwards
   Vec3 middle;                      // no corner is farther from it than `reach` [m]
-  Real reach = 0;
+  Real bounding_radius = 0;
   // Radius of the sphere with the surface area of the hull; in 2D of the circle with the length of the
   // hull's outline [m].
   Real radius = 0;

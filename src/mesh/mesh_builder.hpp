@@ -14,7 +14,7 @@ using Ring = std::vector<Index>;
 class MeshBuilder {
  public:
   Index vertex(Vec3 v);
-  Vec3 place(Index vertex) const { return mesh_.vertices[vertex]; }
+  Vec3 position(Index vertex) const { return mesh_.vertices[vertex]; }
   // Adds several vertices, at height z.
   Ring ring(const std::vector<Vec3>& points, Real z);
   void triangle(Index a, Index b, Index c) { mesh_.triangles.push_back({a, b, c}); }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "mesh/degenerate_triangles.hpp"
 #include "mesh/mesh_mass.hpp"
 #include "mesh/mesh_shells.hpp"
 #include "mesh/mesh_sides.hpp"
 #include "mesh/shell_crossings.hpp"
-#include "mesh/without_area.hpp"
 
 namespace scree {
 
@@ -186,8 +186,8 @@ std::string triangle_text(const TriangleMesh& mesh, Index triangle, Index number
   return fmt::format("triangle {} {} {} {}", number, text_of(a), text_of(b), text_of(c));
 }
 
-std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
-                                       const std::vector<Index>& numbers) {
+std::vector<std::string> mesh_defects(const TriangleMesh& mesh, bool sheet,
+                                      const std::vector<Index>& numbers) {
   return Checker(mesh, numbers).troubles(sheet);
 }
 

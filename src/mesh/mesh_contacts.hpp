@@ -64,12 +64,13 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
 
 // Whether c lies in the edge's normal cone and within `reach` of its nearest point; `from`: from that point
 // to c.
-SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Real reach, Vec3& from) {
+SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Real search_range,
+                              Vec3& from) {
   const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
   const Real along = dot(d, e);
   if (!(along > 0 && dot(c - b, a - b) > 0)) return false;
   from = d - (along / dot(e, e)) * e;
-  if (dot(from, from) > reach * reach) return false;
+  if (dot(from, from) > search_range * search_range) return false;
   for (Index i = edge.first_test; i < edge.first_test + edge.tests; ++i) {
     const Index test = mesh.tests[i];
     const Real left = left_of_edge(d, e, mesh.parts[test < 0 ? ~test : test].normal);
@@ -158,34 +159,35 @@ SCREE_HD Real mesh_skin(Real radius, Real skin) {
 
 // Whether c, less than `reach` away, is well over this triangle (-1: none) from outside. `face` is then the
 // contact with its plane, and no other triangle of that plane adds information.
-SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, MeshContact& face) {
+SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real search_range, MeshContact& face) {
   if (t < 0 || t >= mesh.triangle_count) return false;
   const MeshTriangle& triangle = mesh.triangles[t];
   const MeshPart& part = mesh.parts[triangle.part];
   const Real height = dot(c - part.point, part.normal);
-  if (!(std::abs(height) < reach) || (height < 0 && !mesh.sheet)) return false;
+  if (!(std::abs(height) < search_range) || (height < 0 && !mesh.sheet)) return false;
   if (!mesh_detail::is_well_over(mesh, triangle, part.normal, c)) return false;
   face = {triangle.part, t, std::abs(height), part.point, height >= 0 ? part.normal : opposite(part.normal)};
   return true;
 }
 
 // Narrow-phase query of triangles for the possible contacts of a sphere. The derived class Search receives
-// candidates by add(), reports by known() which triangles add nothing new to their part, and by reach_at()
+// candidates by add(), reports by known() which triangles add nothing new to their part, and by range_at()
 // the largest distance at which a triangle counts.
 template <class Search>
-class TriangleLook {
+class TriangleQuery {
  protected:
-  SCREE_HD TriangleLook(const MeshView& mesh, Vec3 c, Real reach)
-      : mesh_(mesh), c_(c), reach_(reach), beside_{reach, reach} {}
+  SCREE_HD TriangleQuery(const MeshView& mesh, Vec3 c, Real search_range)
+      : mesh_(mesh), c_(c), search_range_(search_range), other_findings_{search_range, search_range} {}
 
   // Results of the query other than candidates.
-  struct Beside {
-    Real nearest_weak;  // distance of vertices whose cone contains c but for round-off [m]
-    Real depth;         // of c behind the nearest face of a closed mesh over whose back it lies [m]
+  struct OtherFindings {
+    Real nearest_round_off_vertex;  // distance of vertices whose cone contains c but for round-off [m]
+    Real depth;  // of c behind the nearest face of a closed mesh over whose back it lies [m]
     Index behind = -1, behind_triangle = -1;  // that face, and the lowest of its triangles
 
-    SCREE_HD void add(const Beside& other) {
-      if (other.nearest_weak < nearest_weak) nearest_weak = other.nearest_weak;
+    SCREE_HD void add(const OtherFindings& other) {
+      if (other.nearest_round_off_vertex < nearest_round_off_vertex)
+        nearest_round_off_vertex = other.nearest_round_off_vertex;
       if (other.behind >= 0) add_behind(other.behind_triangle, other.behind, other.depth);
     }
     SCREE_HD void add_behind(Index t, Index id, Real deep) {
@@ -196,37 +198,40 @@ class TriangleLook {
     }
   };
 
-  SCREE_HD void look_at(Index t) {
+  SCREE_HD void query_triangle(Index t) {
     const MeshTriangle& triangle = mesh_.triangles[t];
     if (triangle.features == 0 && (weak_pass_ || triangle.part == well_over_)) return;
     const MeshPart& part = mesh_.parts[triangle.part];
     const Real height = dot(c_ - part.point, part.normal);
-    const Real reach = search().reach_at(part, height);
-    if (!(std::abs(height) < reach + mesh_.flatness)) return;
+    const Real search_range = search().range_at(part, height);
+    if (!(std::abs(height) < search_range + mesh_.flatness)) return;
     if (triangle.features == 0) {
-      if (std::abs(height) < reach && !search().known(triangle.part, t) &&
+      if (std::abs(height) < search_range && !search().known(triangle.part, t) &&
           mesh_detail::is_over(mesh_, triangle, part.normal, c_))
         add_face(t, triangle.part, part, height);
       return;
     }
     const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
-    if (passed != 0) return query_features(t, triangle, passed, reach);
+    if (passed != 0) return query_features(t, triangle, passed, search_range);
     // Over a triangle no normal cone of its edges and vertices contains c.
-    if (!weak_pass_ && std::abs(height) < reach) add_face(t, triangle.part, part, height);
+    if (!weak_pass_ && std::abs(height) < search_range) add_face(t, triangle.part, part, height);
   }
 
   // The centre is inside a closed mesh and nearer to a face than to any other feature: that face alone
   // pushes it out.
-  SCREE_HD bool is_inside(Real nearest) const { return beside_.behind >= 0 && beside_.depth < nearest; }
+  SCREE_HD bool is_inside(Real nearest) const {
+    return other_findings_.behind >= 0 && other_findings_.depth < nearest;
+  }
   SCREE_HD MeshContact inside() const {
-    const MeshPart& part = mesh_.parts[beside_.behind];
-    return {beside_.behind, beside_.behind_triangle, -beside_.depth, part.point, part.normal};
+    const MeshPart& part = mesh_.parts[other_findings_.behind];
+    return {other_findings_.behind, other_findings_.behind_triangle, -other_findings_.depth, part.point,
+            part.normal};
   }
 
   const MeshView& mesh_;
   Vec3 c_;
-  Real reach_;
-  Beside beside_;
+  Real search_range_;
+  OtherFindings other_findings_;
   Index well_over_ = -1;  // part of the triangle that c is known to be well over
   bool weak_pass_ = false;
 
@@ -236,32 +241,32 @@ class TriangleLook {
   SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
     if (height >= 0) return search().add({id, t, height, part.point, part.normal});
     if (mesh_.sheet) return search().add({id, t, -height, part.point, opposite(part.normal)});
-    beside_.add_behind(t, id, -height);
+    other_findings_.add_behind(t, id, -height);
   }
 
   // passed: the edges of the triangle beyond which c lies; c is in no cone of the others.
-  SCREE_HD void query_features(Index t, const MeshTriangle& triangle, unsigned passed, Real reach) {
+  SCREE_HD void query_features(Index t, const MeshTriangle& triangle, unsigned passed, Real search_range) {
     Index row = triangle.first_feature;
     for (int k = 0; k < 3; ++k) {
       if (!(triangle.flags & (kOwnsEdge << k))) continue;
-      if (!weak_pass_ && passed & (1u << k)) query_edge(t, row, reach);
+      if (!weak_pass_ && passed & (1u << k)) query_edge(t, row, search_range);
       ++row;
     }
     for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
-      query_vertex(t, row, reach);
+      query_vertex(t, row, search_range);
   }
 
-  SCREE_HD void query_edge(Index t, Index row, Real reach) {
+  SCREE_HD void query_edge(Index t, Index row, Real search_range) {
     Vec3 from;
-    if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, reach + mesh_.round_off, from))
+    if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, search_range + mesh_.round_off, from))
       add_feature(t, row, from, false);
   }
 
-  SCREE_HD void query_vertex(Index t, Index row, Real reach) {
+  SCREE_HD void query_vertex(Index t, Index row, Real search_range) {
     using mesh_detail::Cone;
     const MeshFeature& feature = mesh_.features[row];
     const Vec3 from = c_ - mesh_.vertices[feature.a];
-    if (!(dot(from, from) < reach * reach)) return;
+    if (!(dot(from, from) < search_range * search_range)) return;
     const Cone cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
     if (cone == Cone::outside || (cone == Cone::inside && weak_pass_)) return;
     add_feature(t, row, from, cone == Cone::weak && !weak_pass_);
@@ -272,31 +277,33 @@ class TriangleLook {
     if (!mesh_.sheet && dot(from, in_double(mesh_.features[row].outward)) < 0) return;
     MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
     contact.triangle = t;
-    if (!(contact.distance < reach_)) return;
+    if (!(contact.distance < search_range_)) return;
     if (!wait) return search().add(contact);
-    if (contact.distance < beside_.nearest_weak) beside_.nearest_weak = contact.distance;
+    if (contact.distance < other_findings_.nearest_round_off_vertex)
+      other_findings_.nearest_round_off_vertex = contact.distance;
   }
 };
 
 // Queries the triangles of a row once or, with more contacts than slots, several times.
-class MeshContactSearch : TriangleLook<MeshContactSearch> {
-  friend TriangleLook<MeshContactSearch>;
+class MeshContactSearch : TriangleQuery<MeshContactSearch> {
+  friend TriangleQuery<MeshContactSearch>;
 
  public:
-  SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
-      : TriangleLook(mesh, c, reach), out_(out) {}
+  SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real search_range, MeshContact* out)
+      : TriangleQuery(mesh, c, search_range), out_(out) {}
 
   // likely: a triangle that c may be over; -1: unknown.
   SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
-    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, add(face);
+    if (MeshContact face; stays_over(mesh_, likely, c_, search_range_, face))
+      well_over_ = face.feature, add(face);
     query_all(triangles, count);
-    const Real weak = beside_.nearest_weak;
+    const Real weak = other_findings_.nearest_round_off_vertex;
     const Real nearest = found_ > 0 && out_[0].distance < weak ? out_[0].distance : weak;
     if (is_inside(nearest)) {
       out_[0] = inside();
       return 1;
     }
-    const bool any_weak = weak < reach_;
+    const bool any_weak = weak < search_range_;
     keep();
     well_over_ = -1;  // its face may have been dropped
     for (; left_out_ && kept_ < kMeshSlots; keep()) query_all(triangles, count);
@@ -308,10 +315,10 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
   // Finds the nearest candidates for the free slots, in order.
   SCREE_HD void query_all(const Index* triangles, Index count) {
     left_out_ = false;
-    for (Index i = 0; i < count; ++i) look_at(triangles[i]);
+    for (Index i = 0; i < count; ++i) query_triangle(triangles[i]);
   }
 
-  SCREE_HD Real reach_at(const MeshPart&, Real) const { return reach_; }
+  SCREE_HD Real range_at(const MeshPart&, Real) const { return search_range_; }
   SCREE_HD bool known(Index part, Index t) const {
     for (int i = 0; i < found_; ++i)
       if (out_[i].feature == part && out_[i].triangle <= t) return true;
@@ -375,9 +382,9 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
 // ones do not change the result. Returns the number of contacts; entries of `out` behind them are undefined.
 // Inside a closed mesh the only contact is the nearest face, with a negative distance. likely: a triangle
 // that c may be over; it affects the run time only.
-SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
-                                MeshContact out[kMeshSlots], Index likely = -1) {
-  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count, likely);
+SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real search_range, const Index* triangles,
+                                Index count, MeshContact out[kMeshSlots], Index likely = -1) {
+  return MeshContactSearch(mesh, c, search_range, out).contacts_of(triangles, count, likely);
 }
 
 }  // namespace scree

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/degenerate_triangles.hpp"
+#include "mesh/duplicate_triangles.hpp"
 #include "mesh/mesh_checks.hpp"
-#include "mesh/twin_triangles.hpp"
 #include "mesh/windings.hpp"
-#include "mesh/without_area.hpp"
 
 namespace scree {
 
@@ -64,11 +64,11 @@ MeshRepair repaired(NumberedMesh mesh, bool sheet) {
   NumberedMesh& now = repair.mesh;
   if (!std::ranges::all_of(now.mesh.vertices, has_products)) return repair;
   const NumberedMesh given = now;
-  repair.without_area = noted(given, leave_out_without_area(now));
-  repair.twins = noted(given, leave_out_twins(now, sheet));
+  repair.without_area = noted(given, remove_degenerate(now));
+  repair.twins = noted(given, remove_duplicates(now, sheet));
   // Removes vertices that no triangle uses any more.
   if (repair.without_area.count + repair.twins.count > 0) now.mesh = welded(now.mesh);
-  repair.turned = noted(given, sheet ? turn_alike(now) : turn_outward(now));
+  repair.turned = noted(given, sheet ? orient_consistently(now) : orient_outward(now));
   repair.left = count_given(now.numbers);
   return repair;
 }

@@ -24,9 +24,9 @@ struct MeshRepair {
 };
 
 // mesh: welded. Degenerate and duplicate triangles are removed, windings are made consistent, and outward on
-// closed meshes; see without_area.hpp, twin_triangles.hpp and windings.hpp. A mesh without these defects is
-// unchanged, also in the order of its triangles and vertices; so is one with numbers that are not finite, or
-// so large that areas are not. mesh_troubles() finds the remaining defects.
+// closed meshes; see degenerate_triangles.hpp, duplicate_triangles.hpp and windings.hpp. A mesh without these
+// defects is unchanged, also in the order of its triangles and vertices; so is one with numbers that are not
+// finite, or so large that areas are not. mesh_defects() finds the remaining defects.
 MeshRepair repaired(NumberedMesh mesh, bool sheet);
 
 // The repairs, each kind with its count and its first triangle; empty where there were none.

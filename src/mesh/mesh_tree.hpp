@@ -52,8 +52,8 @@ SCREE_HD bool is_nearer(const MeshView& mesh, Index triangle, Vec3 p, Real limit
 // order. The state of the traversal is a level and a number, so that it needs no stack.
 SCREE_HD_CALLER
 template <class Visit>
-SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real reach, const Visit& visit) {
-  const Real limit = (reach + mesh.round_off) * (reach + mesh.round_off);
+SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real search_range, const Visit& visit) {
+  const Real limit = (search_range + mesh.round_off) * (search_range + mesh.round_off);
   const int top = mesh.levels - 1;
   int level = top;
   Index node = 0;

@@ -5,7 +5,7 @@
 
 #include "mesh/mesh_formats.hpp"
 #include "mesh/polygon.hpp"
-#include "mesh/words.hpp"
+#include "mesh/token_reader.hpp"
 
 namespace scree {
 
@@ -63,7 +63,7 @@ class Obj {
     return static_cast<Index>(number > 0 ? number - 1 : count + number);
   }
 
-  Words words_;
+  TokenReader words_;
   TriangleMesh mesh_;
   std::vector<Index> corners_;
 };

@@ -15,7 +15,7 @@ namespace {
 // The data after the header, value by value, as text or as bytes. A Real holds the values of every type.
 class TextBody {
  public:
-  TextBody(const Words& words, std::string_view bytes) : words_(words), bytes_(bytes) {}
+  TextBody(const TokenReader& words, std::string_view bytes) : words_(words), bytes_(bytes) {}
 
   // The largest number of rows for which the rest of the file has room: a digit and a blank per value.
   std::uint64_t rows_that_fit(const PlyElement& element) const {
@@ -40,7 +40,7 @@ class TextBody {
   [[noreturn]] void fail(const std::string& trouble) const { words_.fail(trouble); }
 
  private:
-  Words words_;
+  TokenReader words_;
   std::string_view bytes_;
 };
 
@@ -194,7 +194,7 @@ class PlyReader {
 }  // namespace
 
 TriangleMesh parse_ply(std::string_view bytes, const std::string& file) {
-  Words words(bytes, file);
+  TokenReader words(bytes, file);
   const PlyHeader header = read_ply_header(words);
   if (header.form == PlyForm::ascii) return PlyReader(TextBody(words, bytes), file).mesh(header);
   if (words.position() == bytes.size()) words.fail("ends after the header: the file is cut");

@@ -19,7 +19,7 @@ constexpr std::array<PlyType, 8> kTypes{{{"char", "int8", 1, true, true},
 
 class HeaderReader {
  public:
-  explicit HeaderReader(Words& words) : words_(words) {}
+  explicit HeaderReader(TokenReader& words) : words_(words) {}
 
   PlyHeader header() {
     if (words_.next() != "ply") words_.fail("must begin with ply");
@@ -99,12 +99,12 @@ class HeaderReader {
                     quoted(name)));
   }
 
-  Words& words_;
+  TokenReader& words_;
   PlyHeader header_;
 };
 
 }  // namespace
 
-PlyHeader read_ply_header(Words& words) { return HeaderReader(words).header(); }
+PlyHeader read_ply_header(TokenReader& words) { return HeaderReader(words).header(); }
 
 }  // namespace scree

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/words.hpp"
+#include "mesh/token_reader.hpp"
 
 namespace scree {
 
@@ -35,6 +35,6 @@ struct PlyHeader {
 };
 
 // Reads up to the end of the line of end_header. Throws InputError for statements outside PLY 1.0.
-PlyHeader read_ply_header(Words& words);
+PlyHeader read_ply_header(TokenReader& words);
 
 }  // namespace scree

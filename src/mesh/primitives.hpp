@@ -79,19 +79,19 @@ struct HopperShape {
 };
 
 // The first violated condition on the numbers of a shape, all finite, or "".
-std::string shape_trouble(const BoxShape& shape);
-std::string shape_trouble(const CylinderShape& shape);
-std::string shape_trouble(const ConeShape& shape);
-std::string shape_trouble(const SphereShape& shape);
-std::string shape_trouble(const CapsuleShape& shape);
-std::string shape_trouble(const PlateShape& shape);
-std::string shape_trouble(const PipeShape& shape);
-std::string shape_trouble(const DrumShape& shape);
-std::string shape_trouble(const ScrewShape& shape);
-std::string shape_trouble(const FunnelShape& shape);
-std::string shape_trouble(const HopperShape& shape);
+std::string shape_defect(const BoxShape& shape);
+std::string shape_defect(const CylinderShape& shape);
+std::string shape_defect(const ConeShape& shape);
+std::string shape_defect(const SphereShape& shape);
+std::string shape_defect(const CapsuleShape& shape);
+std::string shape_defect(const PlateShape& shape);
+std::string shape_defect(const PipeShape& shape);
+std::string shape_defect(const DrumShape& shape);
+std::string shape_defect(const ScrewShape& shape);
+std::string shape_defect(const FunnelShape& shape);
+std::string shape_defect(const HopperShape& shape);
 
-// Meshes of valid shapes, those for which shape_trouble() is empty.
+// Meshes of valid shapes, those for which shape_defect() is empty.
 TriangleMesh box_mesh(const BoxShape& shape);
 TriangleMesh cylinder_mesh(const CylinderShape& shape);
 TriangleMesh cone_mesh(const ConeShape& shape);

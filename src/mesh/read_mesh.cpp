@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/input_file.hpp"
 #include "mesh/mesh_formats.hpp"
-#include "mesh/words.hpp"
+#include "mesh/token_reader.hpp"
 
 namespace scree {
 
@@ -20,7 +20,7 @@ namespace {
 constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 31;
 
 std::string contents(const std::string& path) {
-  if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+  if (const std::string trouble = input_file_error(path); !trouble.empty())
     throw IoError(fmt::format("{}: {}", path, trouble));
   std::ifstream file(path, std::ios::binary);
   std::error_code error;

@@ -2,9 +2,9 @@
 // rows that can hardly have more than one contact. Host and device.
 #pragma once
 
+#include "mesh/lane_group.hpp"
 #include "mesh/mesh_contacts.hpp"
-#include "mesh/sheet_sides.hpp"
-#include "mesh/team.hpp"
+#include "mesh/open_surface_sides.hpp"
 
 namespace scree {
 
@@ -75,28 +75,29 @@ enum class Nearest { none, one, unclear };
 // Search equivalent to find_mesh_contacts() for smooth rows: contacts from one side are one contact, so that
 // the nearest suffices, and no slots are needed for others. Unclear: contacts from both sides, or a result
 // that depends on round-off.
-class NearestContact : TriangleLook<NearestContact> {
-  friend TriangleLook<NearestContact>;
+class NearestContact : TriangleQuery<NearestContact> {
+  friend TriangleQuery<NearestContact>;
 
  public:
-  SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real reach) : TriangleLook(mesh, c, reach) {}
+  SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real search_range)
+      : TriangleQuery(mesh, c, search_range) {}
 
   // likely: as for find_mesh_contacts(). All lanes of the team get the same result.
-  SCREE_HD_CALLER template <class Team>
-  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const Team& team,
+  SCREE_HD_CALLER template <class LaneGroup>
+  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const LaneGroup& team,
                         MeshContact& out) {
-    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face))
+    if (MeshContact face; stays_over(mesh_, likely, c_, search_range_, face))
       well_over_ = face.feature, best_ = face;
-    for (Index i = team.first(); i < count; i += team.stride()) look_at(triangles[i]);
-    take(team.agree(Found{best_, beside_, both_sides_}, [&](const Found& a, const Found& b) {
+    for (Index i = team.first(); i < count; i += team.stride()) query_triangle(triangles[i]);
+    take(team.reduce(Found{best_, other_findings_, both_sides_}, [&](const Found& a, const Found& b) {
       take(a), join(b);
-      return Found{best_, beside_, both_sides_};
+      return Found{best_, other_findings_, both_sides_};
     }));
     // A vertex that counts but for round-off is one contact with the nearest feature, if it is on the same
     // side.
     const bool is_found = best_.feature >= 0;
-    const Real weak = beside_.nearest_weak;
-    if (both_sides_ != 0 || (weak < reach_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
+    const Real weak = other_findings_.nearest_round_off_vertex;
+    if (both_sides_ != 0 || (weak < search_range_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
     if (is_inside(is_found && best_.distance < weak ? best_.distance : weak))
       return out = inside(), Nearest::one;
     if (!is_found) return Nearest::none;
@@ -106,23 +107,23 @@ class NearestContact : TriangleLook<NearestContact> {
  private:
   struct Found {
     MeshContact best;
-    Beside beside;
+    OtherFindings beside;
     std::int64_t both_sides;
   };
   SCREE_HD void take(const Found& found) {
-    best_ = found.best, beside_ = found.beside, both_sides_ = found.both_sides;
+    best_ = found.best, other_findings_ = found.beside, both_sides_ = found.both_sides;
   }
   SCREE_HD void join(const Found& found) {
     if (found.best.feature >= 0) add(found.best);
-    beside_.add(found.beside), both_sides_ |= found.both_sides;
+    other_findings_.add(found.beside), both_sides_ |= found.both_sides;
   }
   SCREE_HD bool known(Index part, Index t) const { return best_.feature == part && best_.triangle <= t; }
   // Features on the side of the contact belong to the same contact, and count only if they are nearer.
-  SCREE_HD Real reach_at(const MeshPart& part, Real height) const {
+  SCREE_HD Real range_at(const MeshPart& part, Real height) const {
     if (best_.feature < 0 || (mesh_.sheet && (height < 0) != (dot(best_.normal, part.normal) < 0)))
-      return reach_;
+      return search_range_;
     const Real nearer = best_.distance + mesh_.round_off;
-    return nearer < reach_ ? nearer : reach_;
+    return nearer < search_range_ ? nearer : search_range_;
   }
   SCREE_HD void add(const MeshContact& contact) {
     if (best_.feature < 0) {

@@ -55,30 +55,30 @@ Demand both_positive(const char* key, Vec3 size) {
 
 }  // namespace
 
-std::string shape_trouble(const BoxShape& shape) { return first_unmet({all_positive(shape.size)}); }
+std::string shape_defect(const BoxShape& shape) { return first_unmet({all_positive(shape.size)}); }
 
-std::string shape_trouble(const CylinderShape& shape) {
+std::string shape_defect(const CylinderShape& shape) {
   return first_unmet(
       {positive("radius", shape.radius), positive("length", shape.length), segments_from(3, shape.segments)});
 }
 
-std::string shape_trouble(const ConeShape& shape) {
+std::string shape_defect(const ConeShape& shape) {
   return first_unmet({positive("radius", shape.radius), not_negative("top_radius", shape.top_radius),
                       positive("length", shape.length), segments_from(3, shape.segments)});
 }
 
-std::string shape_trouble(const SphereShape& shape) {
+std::string shape_defect(const SphereShape& shape) {
   return first_unmet({positive("radius", shape.radius),
                       {shape.levels >= 0 && shape.levels <= kMostLevels,
                        fmt::format("levels = {}: must be 0 to {}", shape.levels, kMostLevels)}});
 }
 
-std::string shape_trouble(const CapsuleShape& shape) {
+std::string shape_defect(const CapsuleShape& shape) {
   return first_unmet(
       {positive("radius", shape.radius), positive("length", shape.length), segments_by_four(shape.segments)});
 }
 
-std::string shape_trouble(const PlateShape& shape) {
+std::string shape_defect(const PlateShape& shape) {
   const Real half = std::min(shape.size.x, shape.size.y) / 2;
   return first_unmet(
       {all_positive(shape.size),
@@ -88,13 +88,13 @@ std::string shape_trouble(const PlateShape& shape) {
        segments_by_four(shape.segments)});
 }
 
-std::string shape_trouble(const PipeShape& shape) {
+std::string shape_defect(const PipeShape& shape) {
   return first_unmet({positive("inner_radius", shape.inner_radius),
                       above("outer_radius", shape.outer_radius, "inner_radius", shape.inner_radius),
                       positive("length", shape.length), segments_from(3, shape.segments)});
 }
 
-std::string shape_trouble(const DrumShape& shape) {
+std::string shape_defect(const DrumShape& shape) {
   const std::string common =
       first_unmet({positive("radius", shape.radius),
                    positive("wall", shape.wall),
@@ -121,7 +121,7 @@ std::string shape_trouble(const DrumShape& shape) {
                     shape.radius - std::sqrt(shape.radius * shape.radius - half * half))}});
 }
 
-std::string shape_trouble(const ScrewShape& shape) {
+std::string shape_defect(const ScrewShape& shape) {
   const Real lead = std::abs(shape.pitch);
   return first_unmet(
       {positive("core_radius", shape.core_radius),
@@ -137,13 +137,13 @@ std::string shape_trouble(const ScrewShape& shape) {
         fmt::format("segments = {}: would make more than {} triangles", shape.segments, kMostTriangles)}});
 }
 
-std::string shape_trouble(const FunnelShape& shape) {
+std::string shape_defect(const FunnelShape& shape) {
   return first_unmet({positive("radius", shape.radius), positive("top_radius", shape.top_radius),
                       positive("length", shape.length), not_negative("outlet_length", shape.outlet_length),
                       segments_from(3, shape.segments)});
 }
 
-std::string shape_trouble(const HopperShape& shape) {
+std::string shape_defect(const HopperShape& shape) {
   return first_unmet({both_positive("size", shape.size), both_positive("top_size", shape.top_size),
                       positive("length", shape.length), not_negative("outlet_length", shape.outlet_length)});
 }

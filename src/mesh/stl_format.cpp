@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "mesh/mesh_formats.hpp"
-#include "mesh/words.hpp"
+#include "mesh/token_reader.hpp"
 
 namespace scree {
 
@@ -88,14 +88,14 @@ class AsciiStl {
     if (lower(word) != demand) words_.fail(fmt::format("{}: must be {}", quoted(word), allowed));
   }
 
-  Words words_;
+  TokenReader words_;
   TriangleMesh mesh_;
 };
 
 // Whether a file is text, which has no zero byte and begins with the word "solid", as the headers of some
 // binary files do.
 bool is_ascii(std::string_view bytes) {
-  const std::string_view word = Words(bytes, "").next();
+  const std::string_view word = TokenReader(bytes, "").next();
   return lower(word) == "solid" && bytes.find('\0') == std::string_view::npos;
 }
 

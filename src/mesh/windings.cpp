@@ -120,11 +120,11 @@ std::vector<char> inverted_shells(const ShellNesting& nesting) {
 
 }  // namespace
 
-std::vector<Index> turn_alike(NumberedMesh& sheet) {
+std::vector<Index> orient_consistently(NumberedMesh& sheet) {
   return reorient(sheet, Windings(sheet.mesh).reversed());
 }
 
-std::vector<Index> turn_outward(NumberedMesh& closed) {
+std::vector<Index> orient_outward(NumberedMesh& closed) {
   const Windings windings(closed.mesh);
   if (!windings.has_two_everywhere() || !windings.has_two_sides() || closed.numbers.empty()) return {};
   std::vector<char> reversed = windings.reversed();

@@ -66,8 +66,8 @@ std::map<std::string, Extent> extents_of(const RowMap<T>& arrays, const Ranks& r
 }
 
 template <class T>
-void make_room(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
-               const std::map<std::string, Extent>& extents, int compression) {
+void reserve_entries(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
+                     const std::map<std::string, Extent>& extents, int compression) {
   for (const auto& [name, rows] : arrays) {
     file.create_rows<T>(group + name,
                         {rows.width, kMostRowsPerChunk, true, compression, extents.at(name).all},
@@ -95,8 +95,8 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
   ranks.on_root([&] {
     Hdf5File file(path, Hdf5Access::create);
     write_small(file, checkpoint);
-    make_room(file, kRealRows, checkpoint.real_rows, reals, compression);
-    make_room(file, kIntegerRows, checkpoint.integer_rows, integers, compression);
+    reserve_entries(file, kRealRows, checkpoint.real_rows, reals, compression);
+    reserve_entries(file, kIntegerRows, checkpoint.integer_rows, integers, compression);
     file.close();
   });
   SharedRows file(ranks, path);
@@ -144,7 +144,7 @@ std::string format_in_bytes(const std::string& path) {
 void check_file(const std::string& path, const Ranks& ranks) {
   const Seal seal = check_seal(path, ranks);
   ranks.on_root([&] {
-    if (const std::string trouble = input_file_trouble(path); !trouble.empty())
+    if (const std::string trouble = input_file_error(path); !trouble.empty())
       throw IoError(fmt::format("{}: {}", path, trouble));
     if (seal == Seal::none) refuse_format(path, format_in_bytes(path));
     if (seal == Seal::broken)
@@ -207,7 +207,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, con
   const std::string temporary_path = path + ".tmp";
   try {
     write_file(temporary_path, checkpoint, ranks, compression);
-    ranks.together([&] { sync_file(temporary_path); });
+    ranks.collectively([&] { sync_file(temporary_path); });
     seal_file(temporary_path, ranks);
     ranks.on_root([&] { replace_file(temporary_path, path); });
   } catch (...) {
@@ -220,7 +220,7 @@ Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks) {
   check_file(path, ranks);
   Checkpoint checkpoint;
   checkpoint.path = path;
-  ranks.together([&] {
+  ranks.collectively([&] {
     const auto file = std::make_shared<const Hdf5File>(path, Hdf5Access::read);
     check_groups(*file, path);
     for (const std::string& name : file->dataset_names(kReals))

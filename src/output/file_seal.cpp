@@ -14,7 +14,7 @@
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "model/id_range.hpp"
+#include "model/data/id_range.hpp"
 #include "output/durable_file.hpp"
 
 namespace scree {
@@ -66,7 +66,7 @@ const std::int64_t kLineBytes = std::ssize(seal_line(0));
 // Checksum of the first `bytes` bytes: the sum of the hashes of pieces, independent of the number of ranks.
 std::uint64_t checksum(const ReadFile& file, std::int64_t bytes, const Ranks& ranks) {
   std::uint64_t sum = 0;
-  ranks.together([&] {
+  ranks.collectively([&] {
     std::vector<char> piece(as_size(std::min(bytes, kPieceBytes)));
     const IdRange own = id_range((bytes + kPieceBytes - 1) / kPieceBytes, ranks.rank(), ranks.size());
     for (std::int64_t k = own.first; k < own.last; ++k) {
@@ -84,7 +84,7 @@ std::uint64_t checksum(const ReadFile& file, std::int64_t bytes, const Ranks& ra
 
 void seal_file(const std::string& path, const Ranks& ranks) {
   std::optional<ReadFile> file;
-  ranks.together([&] { file.emplace(path); });
+  ranks.collectively([&] { file.emplace(path); });
   const std::uint64_t sum = checksum(*file, file->size(), ranks);
   ranks.on_root([&] { append_text_file(path, seal_line(sum)); });
 }
@@ -92,7 +92,7 @@ void seal_file(const std::string& path, const Ranks& ranks) {
 Seal check_seal(const std::string& path, const Ranks& ranks) {
   std::optional<ReadFile> file;
   std::string line(as_size(kLineBytes), ' ');
-  ranks.together([&] {
+  ranks.collectively([&] {
     file.emplace(path);
     if (file->size() >= kLineBytes) file->read(file->size() - kLineBytes, kLineBytes, line.data());
   });

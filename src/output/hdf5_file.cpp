@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "model/hdf5_open.hpp"
+#include "model/builder/hdf5_open.hpp"
 #include "output/hdf5_parts.hpp"
 
 namespace scree {

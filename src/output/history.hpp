@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "output/twin_file.hpp"
+#include "output/double_buffered_file.hpp"
 
 namespace scree {
 
@@ -41,7 +41,7 @@ class HistoryWriter {
 
   std::vector<HistoryColumn> columns_;
   std::int64_t chunk_rows_;
-  TwinFile file_;
+  DoubleBufferedFile file_;
   std::string csv_path_;                   // empty where no CSV is wanted
   std::vector<std::vector<Real>> buffer_;  // [column][row]
   std::int64_t rows_ = 0;                  // all rows, including those kept

@@ -59,7 +59,7 @@ void add_cells(Hdf5File& file, const SeriesCells& cells, std::int64_t points) {
   file.append_row(none + "/Offsets", std::int64_t{0});
 }
 
-void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartPlace& last, std::int64_t points) {
+void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartRows& last, std::int64_t points) {
   const std::string own = kRoot + cells.group + "/", none = kRoot + cells.nothing;
   const std::int64_t parts = last.part + 1, count = last.first_cell + points / cells.points;
   if (cells.points > 1) file.resize_rows(own + "NumberOfCells", parts);
@@ -68,7 +68,7 @@ void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartPlace& last, 
   file.resize_rows(own + "Offsets", count + parts);
 }
 
-void write_cells(SharedRows& file, const SeriesCells& cells, const PartPlace& place, RowPart points,
+void write_cells(SharedRows& file, const SeriesCells& cells, const PartRows& place, RowPart points,
                  bool has_end) {
   const std::string own = kRoot + cells.group + "/";
   write_numbers(file, own + "Connectivity", cells.points * place.first_cell, points, 1);

@@ -18,7 +18,7 @@ struct SeriesCells {
 inline constexpr SeriesCells kVertices{"Vertices", "Lines", 0, 1}, kLines{"Lines", "Vertices", 1, 2};
 
 // Position of a part in the rows.
-struct PartPlace {
+struct PartRows {
   std::int64_t part = 0, first_cell = 0;
 };
 
@@ -28,9 +28,9 @@ void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of
 // Adds space for one more part with so many points.
 void add_cells(Hdf5File& file, const SeriesCells& cells, std::int64_t points);
 // Removes the cells after a part.
-void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartPlace& last, std::int64_t points);
+void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartRows& last, std::int64_t points);
 // Writes the cells of this rank's points of the part; has_end: this is the last rank.
-void write_cells(SharedRows& file, const SeriesCells& cells, const PartPlace& place, RowPart points,
+void write_cells(SharedRows& file, const SeriesCells& cells, const PartRows& place, RowPart points,
                  bool has_end);
 
 }  // namespace scree

@@ -8,7 +8,7 @@
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "model/hdf5_open.hpp"
+#include "model/builder/hdf5_open.hpp"
 #include "output/durable_file.hpp"
 
 #if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)
@@ -76,7 +76,7 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
 #endif
   ranks_.on_root([&] { reads_back_ = !reserve(path); });
   ranks_.broadcast(reads_back_);
-  ranks_.together([&] {
+  ranks_.collectively([&] {
     if (!has_file()) return;
     // The MPI part of HDF5 does not lock files.
     file_ =
@@ -99,15 +99,15 @@ SharedRows::~SharedRows() {
 }
 
 void SharedRows::close() {
-  ranks_.together([&] {
+  ranks_.collectively([&] {
     // Closing a collective file also writes the remaining data. A flush would also sync, and Open MPI's sync
     // blocks the other ranks if it fails on one.
     if (has_file() && !collective_ && H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("write");
   });
-  ranks_.together([&] {
+  ranks_.collectively([&] {
     if (has_file() && H5Fclose(std::exchange(file_, H5I_INVALID_HID)) < 0) fail("close");
   });
-  if (reads_back_) ranks_.together([&] { read_back(); });
+  if (reads_back_) ranks_.collectively([&] { read_back(); });
 }
 
 void SharedRows::read_back() {
@@ -153,7 +153,7 @@ void SharedRows::write_collectively(const std::string& name, RowType type, RowPa
   const std::int64_t rows = rows_per_piece(type.bytes()), own = (part.count + rows - 1) / rows;
   const std::int64_t rounds = -ranks_.min(-own);
   for (std::int64_t k = 0; k < rounds; ++k) {
-    ranks_.together([&] {
+    ranks_.collectively([&] {
       const RowPart now = piece_of(part, rows, k);
       put(name, type, {part.first + now.first, now.count},
           now.count > 0 ? piece(now.first, now.count) : this);
@@ -170,11 +170,11 @@ void SharedRows::write_through_root(const std::string& name, RowType type, RowPa
     return Ranks::Bytes(static_cast<const std::byte*>(piece(now.first, now.count)),
                         as_size(now.count) * bytes);
   };
-  ranks_.hand_to_root((part.count + rows - 1) / rows, give,
-                      [&](int rank, std::int64_t k, Ranks::Bytes values) {
-                        const RowPart whole = parts[as_size(rank)], now = piece_of(whole, rows, k);
-                        put(name, type, {whole.first + now.first, now.count}, values.data());
-                      });
+  ranks_.stream_to_root((part.count + rows - 1) / rows, give,
+                        [&](int rank, std::int64_t k, Ranks::Bytes values) {
+                          const RowPart whole = parts[as_size(rank)], now = piece_of(whole, rows, k);
+                          put(name, type, {whole.first + now.first, now.count}, values.data());
+                        });
 }
 
 }  // namespace scree

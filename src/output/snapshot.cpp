@@ -110,7 +110,7 @@ SeriesOptions of_bodies(const SeriesOptions& options) {
   return own;
 }
 
-SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
+SeriesOptions of_joints(SeriesOptions options, const WantedLines& lines) {
   options.names = {{kBodyNames, lines.links}}, options.lines = true, options.constant.clear();
   return options;
 }
@@ -141,12 +141,12 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
       particles_(directory, "particles", with_global_id(with_these_lines(directory, options, lines))),
       contacts_(directory, "contacts", of_contacts(options, lines)),
       shows_contacts_(lines.contacts),
-      shows_links_(!lines.links.empty()),
+      shows_joints_(!lines.links.empty()),
       snapshots_(options.keep) {
   ranks_.on_root([&] {
     surfaces_.emplace(directory, "surfaces", of_surfaces(options));
     bodies_.emplace(directory, "bodies", of_bodies(options));
-    links_.emplace(directory, "links", of_links(of_bodies(options), lines));
+    links_.emplace(directory, "links", of_joints(of_bodies(options), lines));
   });
   if (particles_.snapshots() != snapshots_)
     throw IoError(particles_.path() + ": is missing, but the restarted run needs it");
@@ -167,7 +167,7 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
     ranks_.on_root([&] {
       if (shapes.points > 0) action(*bodies_, shapes);
       if (corners.points > 0) action(*surfaces_, corners);
-      if (shows_links_) action(*links_, connections);
+      if (shows_joints_) action(*links_, connections);
     });
   };
   with_others([&](const VtkHdfSeries& series, const PointSnapshot&) {
@@ -209,7 +209,7 @@ SnapshotsSize snapshots_size(const SeriesOptions& options, const WantedLines& li
   if (counts.surface_points > 0)
     add("surfaces", of_surfaces(options), surface_points(0, surfaces), counts.surface_points, 1);
   if (!lines.links.empty())
-    add("links", of_links(of_bodies(options), lines), line_points(0, links, {}), 2 * counts.links, 1);
+    add("links", of_joints(of_bodies(options), lines), line_points(0, links, {}), 2 * counts.links, 1);
   return all;
 }
 

@@ -106,7 +106,7 @@ class SnapshotWriter {
   Ranks ranks_;
   VtkHdfSeries particles_, contacts_;
   std::optional<VtkHdfSeries> bodies_, surfaces_, links_;  // on rank 0
-  bool shows_contacts_, shows_links_;
+  bool shows_contacts_, shows_joints_;
   int snapshots_ = 0;
 };
 

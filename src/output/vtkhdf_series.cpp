@@ -93,8 +93,8 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
     remove_xdmf();
     return;
   }
-  options.ranks.together([&] {
-    read_places();
+  options.ranks.collectively([&] {
+    read_snapshot_rows();
     if (options.fields) require_fields();
     if (options.triangles) require_triangles(Hdf5File(path(), Hdf5Access::read), *options.triangles);
   });
@@ -105,7 +105,7 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
   if (snapshots() > keep) cut(as_size(keep));
 }
 
-void VtkHdfSeries::read_places() {
+void VtkHdfSeries::read_snapshot_rows() {
   const Hdf5File file(path(), Hdf5Access::read);
   const auto time = file.read_array<Real>(kSteps + "Values");
   const auto part = file.read_array<std::int64_t>(kSteps + "PartOffsets");
@@ -164,7 +164,7 @@ void VtkHdfSeries::require_fields_of(const Hdf5File& file, const PointSnapshot& 
 void VtkHdfSeries::cut(std::size_t keep) {
   remove_xdmf();  // it would refer to removed rows; the next append writes it
   places_.resize(keep);
-  const SnapshotPlace last = places_.back();
+  const SnapshotRows last = places_.back();
   const std::int64_t steps = static_cast<std::int64_t>(keep);
   const auto shorten = [&](Hdf5File& file) {
     file.write_integer_attribute(kSteps, "NSteps", {steps});
@@ -185,7 +185,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
 
 // Removes rows after the last snapshot: cells, and the fields of cells or points.
 void VtkHdfSeries::cut_points(Hdf5File& file) const {
-  const SnapshotPlace& last = places_.back();
+  const SnapshotRows& last = places_.back();
   file.resize_rows(kRoot + "NumberOfPoints", last.part + 1);
   cut_cells(file, cells(), {last.part, last.first_cell}, last.points);
   if (options_.lines) file.resize_rows(kSteps + "ConnectivityIdOffsets", last.number + 1);
@@ -235,10 +235,10 @@ void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, Ro
   }
 }
 
-SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {
-  SnapshotPlace place{snapshot.time, snapshot.points, 0, 0, 0, std::ssize(places_)};
+SnapshotRows VtkHdfSeries::next_rows(const PointSnapshot& snapshot) const {
+  SnapshotRows place{snapshot.time, snapshot.points, 0, 0, 0, std::ssize(places_)};
   if (places_.empty()) return place;
-  const SnapshotPlace& last = places_.back();
+  const SnapshotRows& last = places_.back();
   place.first_point = last.first_point + last.points;
   const bool same_part = last.points == snapshot.points;
   place.part = same_part ? last.part : last.part + 1;
@@ -246,7 +246,7 @@ SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {
   return place;
 }
 
-bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
+bool VtkHdfSeries::starts_part(const SnapshotRows& place) const {
   return places_.empty() || place.part != places_.back().part;
 }
 
@@ -261,11 +261,11 @@ bool VtkHdfSeries::is_constant(const std::string& field) const {
   return std::ranges::find(options_.constant, field) != options_.constant.end();
 }
 
-bool VtkHdfSeries::adds_rows(const SnapshotPlace& place, const std::string& field) const {
+bool VtkHdfSeries::adds_rows(const SnapshotRows& place, const std::string& field) const {
   return !is_constant(field) || starts_part(place);
 }
 
-RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const {
+RowPart VtkHdfSeries::field_rows(const SnapshotRows& place, RowPart own, const std::string& field) const {
   if (options_.triangles) return {place.number * options_.triangles->count(), options_.triangles->count()};
   if (is_constant(field)) return {place.first_cell + own.first, own.count};  // same rows as the vertices
   return {(place.first_point + own.first) / cells().points, own.count / cells().points};
@@ -279,8 +279,8 @@ void VtkHdfSeries::append_cell_offsets(Hdf5File& file, std::int64_t first_cell) 
   if (options_.lines) file.append_rows(kSteps + "ConnectivityIdOffsets", first, 1);
 }
 
-void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
-                             const SnapshotPlace& place) const {
+void VtkHdfSeries::reserve_entries(Hdf5File& file, const PointSnapshot& snapshot,
+                                   const SnapshotRows& place) const {
   if (places_.empty()) lay_out(file, snapshot);
   require_fields_of(file, snapshot);
   append_names(file);
@@ -303,7 +303,7 @@ void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
 }
 
 void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
-                              const SnapshotPlace& place) const {
+                              const SnapshotRows& place) const {
   const RowPart own = snapshot.own;
   if (starts_part(place) && !options_.triangles)
     write_cells(file, cells(), {place.part, place.first_cell}, own,
@@ -314,9 +314,9 @@ void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
       write_field(file, field_group() + field.name, field, field_rows(place, own, field.name));
 }
 
-TwinFile::Change VtkHdfSeries::change(const PointSnapshot& snapshot) const {
-  const SnapshotPlace place = next_place(snapshot);
-  return {[this, &snapshot, place](Hdf5File& file) { make_room(file, snapshot, place); },
+DoubleBufferedFile::Change VtkHdfSeries::change(const PointSnapshot& snapshot) const {
+  const SnapshotRows place = next_rows(snapshot);
+  return {[this, &snapshot, place](Hdf5File& file) { reserve_entries(file, snapshot, place); },
           [this, &snapshot, place](SharedRows& file) { write_rows(file, snapshot, place); }};
 }
 
@@ -326,7 +326,7 @@ void VtkHdfSeries::show() { file_.show(); }
 
 void VtkHdfSeries::follow(const PointSnapshot& snapshot) {
   file_.follow(change(snapshot));
-  places_.push_back(next_place(snapshot));
+  places_.push_back(next_rows(snapshot));
   options_.ranks.on_root([&] { add_xdmf(snapshot); });
 }
 

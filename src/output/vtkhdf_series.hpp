@@ -24,10 +24,10 @@
 #include "base/index.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "output/double_buffered_file.hpp"
 #include "output/series_cells.hpp"
 #include "output/series_names.hpp"
 #include "output/series_triangles.hpp"
-#include "output/twin_file.hpp"
 
 namespace scree {
 
@@ -65,7 +65,7 @@ struct PointSnapshot {
 };
 
 // Position of one snapshot in the file; all in rows.
-struct SnapshotPlace {
+struct SnapshotRows {
   Real time = 0;                             // [s]
   std::int64_t points = 0, first_point = 0;  // in Points and in the fields of points
   std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; among the vertices or lines
@@ -100,9 +100,9 @@ class VtkHdfSeries {
   // or triangles.
   VtkHdfSeries(const std::string& directory, const std::string& name, const SeriesOptions& options);
 
-  // Adds a snapshot in parts, for series that grow together (TwinFile): prepare() of all, then show() of all,
-  // then rank 0 syncs the folder, then follow() of all, which also rewrites the .xdmf when due. Throw
-  // IoError; before show() the files are unchanged.
+  // Adds a snapshot in parts, for series that grow together (DoubleBufferedFile): prepare() of all, then
+  // show() of all, then rank 0 syncs the folder, then follow() of all, which also rewrites the .xdmf when
+  // due. Throw IoError; before show() the files are unchanged.
   void prepare(const PointSnapshot& snapshot);
   void show();
   void follow(const PointSnapshot& snapshot);
@@ -112,7 +112,7 @@ class VtkHdfSeries {
   const std::string& path() const { return file_.path(); }
 
  private:
-  void read_places();
+  void read_snapshot_rows();
   void require_constant_offsets(const Hdf5File& file) const;
   void require_fields() const;
   bool has_cell_fields() const { return options_.triangles || options_.lines; }
@@ -123,27 +123,27 @@ class VtkHdfSeries {
   const std::string& field_group() const;
   std::string field_offsets() const;
   // Rows of a field; own: this rank's points.
-  RowPart field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const;
+  RowPart field_rows(const SnapshotRows& place, RowPart own, const std::string& field) const;
   bool is_constant(const std::string& field) const;
-  bool adds_rows(const SnapshotPlace& place, const std::string& field) const;
+  bool adds_rows(const SnapshotRows& place, const std::string& field) const;
   void cut(std::size_t keep);
   void lay_out(Hdf5File& file, const PointSnapshot& first) const;
   void lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const;
-  SnapshotPlace next_place(const PointSnapshot& snapshot) const;
-  bool starts_part(const SnapshotPlace& place) const;
+  SnapshotRows next_rows(const PointSnapshot& snapshot) const;
+  bool starts_part(const SnapshotRows& place) const;
   void cut_points(Hdf5File& file) const;
   void append_cell_offsets(Hdf5File& file, std::int64_t first_cell) const;
-  void make_room(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
-  void write_rows(SharedRows& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
-  TwinFile::Change change(const PointSnapshot& snapshot) const;
+  void reserve_entries(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotRows& place) const;
+  void write_rows(SharedRows& file, const PointSnapshot& snapshot, const SnapshotRows& place) const;
+  DoubleBufferedFile::Change change(const PointSnapshot& snapshot) const;
   void remove_xdmf() const;
   void add_xdmf(const PointSnapshot& snapshot);
   void write_xdmf();
 
   std::string name_, xdmf_path_;
   SeriesOptions options_;
-  TwinFile file_;
-  std::vector<SnapshotPlace> places_;
+  DoubleBufferedFile file_;
+  std::vector<SnapshotRows> places_;
   std::string
       xdmf_grids_;  // grids of the first xdmf_snapshots_ snapshots; the file has xdmf_written_ of them
   std::size_t xdmf_snapshots_ = 0, xdmf_written_ = 0;

@@ -68,13 +68,13 @@ const char* attribute_type(int width) {
   return width == 9 ? "Tensor" : width == 3 ? "Vector" : width == 1 ? "Scalar" : "Matrix";
 }
 
-std::string vertices(const XdmfSeries& series, const SnapshotPlace& place) {
+std::string vertices(const XdmfSeries& series, const SnapshotRows& place) {
   return fmt::format(
       "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}</Topology>\n",
       place.points, slab(series, {"Vertices/Connectivity", 1, "Int", 8}, place.first_cell, place.points));
 }
 
-std::string lines(const XdmfSeries& series, const SnapshotPlace& place) {
+std::string lines(const XdmfSeries& series, const SnapshotRows& place) {
   return fmt::format(
       "<Topology TopologyType=\"Polyline\" NumberOfElements=\"{}\" NodesPerElement=\"2\">{}</Topology>\n",
       place.points / 2,
@@ -100,7 +100,7 @@ std::string attribute(const XdmfSeries& series, const std::string& name, const X
 
 }  // namespace
 
-std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
+std::string xdmf_grid(const XdmfSeries& series, const SnapshotRows& place) {
   if (place.points == 0) return {};
   std::string text = fmt::format("<Grid Name=\"{}\"><Time Value=\"{}\"/>\n", series.name, place.time);
   text += series.triangles ? triangles(series)

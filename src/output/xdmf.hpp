@@ -20,7 +20,7 @@ struct XdmfSeries {
 };
 
 // <Grid> of one snapshot; empty for a snapshot without points, which these readers cannot open.
-std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place);
+std::string xdmf_grid(const XdmfSeries& series, const SnapshotRows& place);
 // The complete document around the grids of all snapshots.
 std::string xdmf_document(const std::string& name, const std::string& title, const std::string& grids);
 

@@ -10,7 +10,7 @@
 
 namespace scree {
 
-struct CellPlace {
+struct CellIndex {
   Index x, y, z;
 };
 
@@ -24,7 +24,7 @@ struct CellGrid {
   Index count() const { return cells[0] * cells[1] * cells[2]; }
   SCREE_HD Index index(Index x, Index y, Index z) const { return (z * cells[1] + y) * cells[0] + x; }
   // Coordinates of the cell of a point; x is -1 for points outside the grid.
-  SCREE_HD CellPlace place(Vec3 p) const {
+  SCREE_HD CellIndex cell_index(Vec3 p) const {
     const Real fx = std::floor((p.x - origin.x) * inverse_size.x);
     const Real fy = std::floor((p.y - origin.y) * inverse_size.y);
     const Real fz = layer ? 0 : std::floor((p.z - origin.z) * inverse_size.z);
@@ -34,12 +34,12 @@ struct CellGrid {
   }
   // Number of the cell of a point, or -1 outside the grid.
   SCREE_HD Index cell(Vec3 p) const {
-    const CellPlace c = place(p);
+    const CellIndex c = cell_index(p);
     return c.x < 0 ? -1 : index(c.x, c.y, c.z);
   }
   // Coordinates of the cell of a point or, outside the grid, of the nearest cell: points within a cell width
   // of each other are in neighbouring cells.
-  SCREE_HD CellPlace nearest_place(Vec3 p) const {
+  SCREE_HD CellIndex nearest_cell(Vec3 p) const {
     const auto along = [](Real at, Index count) {
       at = std::floor(at);
       return !(at > 0) ? Index(0) : at < count ? static_cast<Index>(at) : count - 1;
@@ -49,7 +49,7 @@ struct CellGrid {
             layer ? 0 : along((p.z - origin.z) * inverse_size.z, cells[2])};
   }
   Index nearest(Vec3 p) const {
-    const CellPlace c = nearest_place(p);
+    const CellIndex c = nearest_cell(p);
     return index(c.x, c.y, c.z);
   }
 };

@@ -20,7 +20,7 @@ std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const V
 void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                     std::span<const Vec4> position, Real width) {
   plan_ = HaloPlan(ranks, decomposition, subdomain, width);
-  find_ghosts(position);
+  collect_ghosts(position);
   images_.clear();
   for (const Ghost& ghost : own_) images_.push_back(ghost.image);
   images_.resize(as_size(plan_.ghosts()));
@@ -31,7 +31,7 @@ void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, cons
   plan_.transfer({&message, 1});
 }
 
-void Halo::find_ghosts(std::span<const Vec4> position) {
+void Halo::collect_ghosts(std::span<const Vec4> position) {
   own_.clear(), sent_.clear();
   std::vector<std::vector<Ghost>> ghosts(plan_.neighbors().size());
   for (Index i = 0; i < as_index(position.size()); ++i)

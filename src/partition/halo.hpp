@@ -82,7 +82,7 @@ class Halo {
                      Index first_ghost) const;
 
  private:
-  void find_ghosts(std::span<const Vec4> position);
+  void collect_ghosts(std::span<const Vec4> position);
 
   HaloPlan plan_;
   std::vector<Ghost> own_, sent_;

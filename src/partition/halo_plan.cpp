@@ -76,7 +76,7 @@ void HaloPlan::find_targets(const Decomposition& decomposition, const Subdomain&
   const auto add = [&](int rank, int neighbor) {
     const DomainBox box = decomposition.box(rank, subdomain);
     for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t image) {
-      const bool itself = neighbor == HaloTarget::kItself && image == kNoShift;
+      const bool itself = neighbor == HaloTarget::kItself && image == kZeroShift;
       if (!itself && comes_near(box_, shift, box, 2 * reach_))
         targets_.push_back({box, shift, image, neighbor});
     });

@@ -17,7 +17,7 @@
 namespace scree {
 
 // Number of the zero shift among the 27 shifts by whole periods.
-inline constexpr std::int8_t kNoShift = 13;
+inline constexpr std::int8_t kZeroShift = 13;
 // Shift of an image by its number [m].
 SCREE_HD Vec3 image_shift(std::int8_t image, Vec3 period) {
   return {(image % 3 - 1) * period.x, (image / 3 % 3 - 1) * period.y, (image / 9 - 1) * period.z};
@@ -67,7 +67,7 @@ SCREE_HD void for_each_target(const DomainBox& box, Real reach, const HaloTarget
                               const Visit& visit) {
   if (box.inside(p, reach)) return;  // farther from every side than the halo's width
   for (int t = 0; t < count; ++t)
-    if (targets[t].box.reaches(p + targets[t].shift, reach)) visit(targets[t]);
+    if (targets[t].box.is_within(p + targets[t].shift, reach)) visit(targets[t]);
 }
 
 class HaloPlan {

@@ -25,7 +25,7 @@ class IdOrder {
   template <class T>
   std::vector<T> apply(std::vector<T> values) const {
     values = permuted(std::move(values), sent_);
-    if (!ranks_.alone()) values = ranks_.deal_out(std::span<const T>(values), counts_);
+    if (!ranks_.alone()) values = ranks_.all_to_all(std::span<const T>(values), counts_);
     return permuted(std::move(values), arrived_);
   }
   // As above for rows of values: the i-th particle has lengths[i] of them. Collective.
@@ -40,8 +40,8 @@ class IdOrder {
         sums.push_back(std::accumulate(length, length + rows, std::int64_t{0}));
         length += rows;
       }
-      values = ranks_.deal_out(std::span<const T>(values), sums);
-      lengths = ranks_.deal_out(std::span<const std::int64_t>(lengths), counts_);
+      values = ranks_.all_to_all(std::span<const T>(values), sums);
+      lengths = ranks_.all_to_all(std::span<const std::int64_t>(lengths), counts_);
     }
     return permuted_rows(std::move(values), lengths, arrived_);
   }

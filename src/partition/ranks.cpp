@@ -203,7 +203,7 @@ void Ranks::broadcast_bytes(void* data, std::size_t bytes, int from) const {
   });
 }
 
-void Ranks::share_failure(std::exception_ptr failure, int from) const {
+void Ranks::broadcast_failure(std::exception_ptr failure, int from) const {
   Caught own = caught(failure);
   std::int64_t head[2] = {own.kind, std::ssize(own.message)};
   broadcast_bytes(head, sizeof head, from);
@@ -234,7 +234,7 @@ bool done_within(MPI_Request& request, std::chrono::seconds patience) {
 
 }  // namespace
 
-void Ranks::share_any_failure(std::exception_ptr failure) const {
+void Ranks::throw_collectively(std::exception_ptr failure) const {
   constexpr auto kPatience = std::chrono::seconds(20);  // other ranks may be writing large files
   const int own = failure ? rank_ : size_;
   int first = size_;
@@ -246,10 +246,10 @@ void Ranks::share_any_failure(std::exception_ptr failure) const {
     const Caught what = caught(failure);
     end_job(what.message.c_str(), exit_code_of(what.kind));
   }
-  if (first < size_) share_failure(first == rank_ ? failure : nullptr, first);
+  if (first < size_) broadcast_failure(first == rank_ ? failure : nullptr, first);
 }
 
-void Ranks::meet(const char* message, int exit_code) const {
+void Ranks::error_barrier(const char* message, int exit_code) const {
   if (alone()) return;
   MPI_Request request;
   MPI_Ibarrier(communicator_of(communicator_), &request);
@@ -298,8 +298,8 @@ void Ranks::receive(int sender, void* data, std::size_t count, std::size_t eleme
            MPI_STATUS_IGNORE);
 }
 
-void Ranks::hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
-                         const std::function<void(int, std::int64_t, Bytes)>& take) const {
+void Ranks::stream_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
+                           const std::function<void(int, std::int64_t, Bytes)>& take) const {
   const std::vector<std::int64_t> of_rank = gather(std::vector<std::int64_t>{pieces});
   if (!is_root()) {
     for (std::int64_t k = 0; k < pieces; ++k) {
@@ -328,15 +328,15 @@ void Ranks::hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int
   });
 }
 
-std::vector<std::int64_t> Ranks::deal_counts(const std::vector<std::int64_t>& sent) const {
+std::vector<std::int64_t> Ranks::all_to_all_counts(const std::vector<std::int64_t>& sent) const {
   std::vector<std::int64_t> received(sent.size());
   MPI_Alltoall(sent.data(), 1, MPI_INT64_T, received.data(), 1, MPI_INT64_T, communicator_of(communicator_));
   return received;
 }
 
 // The pieces of a long message arrive in the order of their sending.
-void Ranks::deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
-                       const std::vector<std::int64_t>& received_counts, std::size_t element) const {
+void Ranks::all_to_all_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
+                             const std::vector<std::int64_t>& received_counts, std::size_t element) const {
   const EntryType type(element);
   const MPI_Comm communicator = communicator_of(communicator_);
   const std::size_t most = std::max<std::size_t>(1, kMostBytes / element);

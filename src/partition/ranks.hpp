@@ -61,26 +61,26 @@ class Ranks {
     if (!alone()) broadcast_bytes(values.data(), values.size_bytes());
   }
   // Entries of all ranks in the order of the ranks, on rank 0; other ranks get none. One message per rank.
-  // Throws std::length_error if a rank has more entries than an int can count; gather_everywhere() does so if
+  // Throws std::length_error if a rank has more entries than an int can count; all_gather() does so if
   // all ranks together have.
   template <class T>
   std::vector<T> gather(std::vector<T> values) const;
   // Entries of all ranks in the order of the ranks, on every rank.
   template <class T>
-  std::vector<T> gather_everywhere(std::vector<T> values) const;
+  std::vector<T> all_gather(std::vector<T> values) const;
   // All-to-all: sends to[r] to rank r, and returns the received entries in the order of the senders.
   template <class T>
-  std::vector<T> deal_out(const std::vector<std::vector<T>>& to) const;
+  std::vector<T> all_to_all(const std::vector<std::vector<T>>& to) const;
   // All-to-all for values in the order of their receivers, counts[r] of them for rank r.
   template <class T>
-  std::vector<T> deal_out(std::span<const T> values, const std::vector<std::int64_t>& counts) const;
+  std::vector<T> all_to_all(std::span<const T> values, const std::vector<std::int64_t>& counts) const;
 
   // Passes pieces of bytes of all ranks to rank 0 one by one, in the order of the ranks: give(k) returns this
   // rank's piece k, and take(rank, k, piece) runs on rank 0, which holds a single piece at a time. A piece
   // must be smaller than 2 GiB. Exceptions of `take` are thrown on every rank.
   using Bytes = std::span<const std::byte>;
-  void hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
-                    const std::function<void(int, std::int64_t, Bytes)>& take) const;
+  void stream_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
+                      const std::function<void(int, std::int64_t, Bytes)>& take) const;
 
   // Runs an action on rank 0. Its exceptions (input, simulation, device, file) are thrown on every rank, with
   // the same message.
@@ -93,14 +93,14 @@ class Ranks {
     } catch (...) {
       failure = std::current_exception();
     }
-    share_failure(failure);
+    broadcast_failure(failure);
   }
 
   // Collective try: runs an action on every rank. If it throws on some ranks, all ranks throw the exception
   // of the lowest of those. If other ranks do not return, because they wait for the failed one within the
   // action, its message is printed and the job ends.
   template <class Action>
-  void together(const Action& action) const {
+  void collectively(const Action& action) const {
     if (alone()) return action();
     std::exception_ptr failure;
     try {
@@ -108,17 +108,17 @@ class Ranks {
     } catch (...) {
       failure = std::current_exception();
     }
-    share_any_failure(failure);
+    throw_collectively(failure);
   }
 
   // Error barrier: called by every rank that ends with an error, before it exits. If some ranks do not call
   // it, the error belongs to this rank alone: its message is printed, and the job ends with the exit code.
-  void meet(const char* message, int exit_code) const;
+  void error_barrier(const char* message, int exit_code) const;
 
  private:
   void broadcast_bytes(void* data, std::size_t bytes, int from = 0) const;
-  void share_failure(std::exception_ptr failure, int from = 0) const;
-  void share_any_failure(std::exception_ptr failure) const;
+  void broadcast_failure(std::exception_ptr failure, int from = 0) const;
+  void throw_collectively(std::exception_ptr failure) const;
   [[noreturn]] void end_job(const char* message, int exit_code) const;
   // element: size of an entry [B].
   void send_to_root(const void* data, std::size_t count, std::size_t element) const;
@@ -127,9 +127,9 @@ class Ranks {
   void receive(int sender, void* data, std::size_t count, std::size_t element) const;
   std::vector<int> counts_of(std::size_t own) const;
   void gather_bytes(const void* own, const std::vector<int>& counts, std::size_t element, void* all) const;
-  std::vector<std::int64_t> deal_counts(const std::vector<std::int64_t>& sent) const;
-  void deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
-                  const std::vector<std::int64_t>& received_counts, std::size_t element) const;
+  std::vector<std::int64_t> all_to_all_counts(const std::vector<std::int64_t>& sent) const;
+  void all_to_all_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
+                        const std::vector<std::int64_t>& received_counts, std::size_t element) const;
 
   int rank_ = 0, size_ = 1, communicator_ = 0;
 };
@@ -151,7 +151,7 @@ std::vector<T> Ranks::gather(std::vector<T> values) const {
 }
 
 template <class T>
-std::vector<T> Ranks::gather_everywhere(std::vector<T> values) const {
+std::vector<T> Ranks::all_gather(std::vector<T> values) const {
   static_assert(std::is_trivially_copyable_v<T>);
   if (alone()) return values;
   const std::vector<int> counts = counts_of(values.size());
@@ -163,17 +163,17 @@ std::vector<T> Ranks::gather_everywhere(std::vector<T> values) const {
 }
 
 template <class T>
-std::vector<T> Ranks::deal_out(std::span<const T> values, const std::vector<std::int64_t>& counts) const {
+std::vector<T> Ranks::all_to_all(std::span<const T> values, const std::vector<std::int64_t>& counts) const {
   static_assert(std::is_trivially_copyable_v<T>);
   if (alone()) return {values.begin(), values.end()};
-  const std::vector<std::int64_t> received = deal_counts(counts);
+  const std::vector<std::int64_t> received = all_to_all_counts(counts);
   std::vector<T> in(as_size(std::accumulate(received.begin(), received.end(), std::int64_t{0})));
-  deal_bytes(values.data(), counts, in.data(), received, sizeof(T));
+  all_to_all_bytes(values.data(), counts, in.data(), received, sizeof(T));
   return in;
 }
 
 template <class T>
-std::vector<T> Ranks::deal_out(const std::vector<std::vector<T>>& to) const {
+std::vector<T> Ranks::all_to_all(const std::vector<std::vector<T>>& to) const {
   if (alone()) return to[0];
   std::vector<std::int64_t> counts;
   std::vector<T> out;
@@ -181,7 +181,7 @@ std::vector<T> Ranks::deal_out(const std::vector<std::vector<T>>& to) const {
     counts.push_back(std::ssize(part));
     out.insert(out.end(), part.begin(), part.end());
   }
-  return deal_out(std::span<const T>(out), counts);
+  return all_to_all(std::span<const T>(out), counts);
 }
 
 }  // namespace scree

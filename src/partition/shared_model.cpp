@@ -34,7 +34,7 @@ class Receivers {
     for (int z = -steps(period_.z); z <= steps(period_.z); ++z)
       for (int y = -steps(period_.y); y <= steps(period_.y); ++y)
         for (int x = -steps(period_.x); x <= steps(period_.x); ++x)
-          if (box.reaches(p + Vec3{x * period_.x, y * period_.y, z * period_.z}, reach_)) return true;
+          if (box.is_within(p + Vec3{x * period_.x, y * period_.y, z * period_.z}, reach_)) return true;
     return false;
   }
   static int steps(Real period) { return period > 0 ? 1 : 0; }
@@ -47,8 +47,8 @@ class Receivers {
 
 }  // namespace
 
-std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, const Space& space,
-                                                   Real reach) const {
+std::vector<StartItem> RankShare::distribute_by_boxes(std::vector<StartItem> own, const Space& space,
+                                                      Real reach) const {
   if (ranks_.alone() || !(reach > 0)) return own;
   Decomposition decomposition;
   {
@@ -72,7 +72,7 @@ std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, c
     });
   }
   own = {};
-  return ranks_.deal_out(std::span<const StartItem>(sent), counts);
+  return ranks_.all_to_all(std::span<const StartItem>(sent), counts);
 }
 
 }  // namespace scree

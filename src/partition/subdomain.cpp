@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
-#include "model/space_box.hpp"
+#include "model/derived/space_box.hpp"
 
 namespace scree {
 namespace {

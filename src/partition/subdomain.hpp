@@ -73,7 +73,7 @@ class Subdomain {
   // The periodic sides of the domain; the other sides are at infinity.
   const Box& periodic_box() const { return periodic_; }
   // Whether the point is beyond a side that is a wall.
-  bool beyond_wall(Vec3 p) const { return walls_.beyond(p); }
+  bool is_beyond_wall(Vec3 p) const { return walls_.beyond(p); }
   // The position inside the periodic box, and the periods subtracted; exact.
   Vec3 wrap(Vec3 p, ImageCount& image) const { return ::scree::wrap(space_.min, period_, p, image); }
 

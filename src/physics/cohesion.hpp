@@ -37,14 +37,14 @@ SCREE_HD Real cube_root(Real x) {
 struct JkrPair {
   HertzPairOf<Real> bare;  // Hertz's law without adhesion
   Real pull_off;           // F_c, the pull-off force [N]
-  Real last_radius;        // a_s, contact radius at pull-off [m]
+  Real pull_off_radius;    // a_s, contact radius at pull-off [m]
   Real range;              // overlap at pull-off, negated [m]; 0: the pair has no adhesion
   bool tension;
 
-  static constexpr bool kNeck = true;
+  static constexpr bool kHysteretic = true;
 
-  SCREE_HD bool attracts() const { return range > 0; }
-  SCREE_HD Real reach() const { return range; }
+  SCREE_HD bool is_cohesive() const { return range > 0; }
+  SCREE_HD Real interaction_range() const { return range; }
   // p of an overlap d > -`reach()`, by Newton's method on a convex function, started above the root.
   SCREE_HD Real root_of(Real d) const {
     const Real scaled = 3 * d / range;
@@ -56,37 +56,37 @@ struct JkrPair {
     }
   }
   SCREE_HD Real contact_radius(Real d) const {
-    if (!attracts()) return bare.contact_radius(d);
+    if (!is_cohesive()) return bare.contact_radius(d);
     const Real p = root_of(d);
-    return last_radius * p * p;
+    return pull_off_radius * p * p;
   }
   SCREE_HD Real elastic(Real d) const {
-    if (!attracts()) return bare.elastic(d);
+    if (!is_cohesive()) return bare.elastic(d);
     const Real p = root_of(d), cube = p * p * p;
     return pull_off / 9 * cube * (cube - 6);
   }
   SCREE_HD Real slope(Real d) const {  // infinite at d = -`reach()`
-    if (!attracts()) return bare.slope(d);
+    if (!is_cohesive()) return bare.slope(d);
     const Real p = root_of(d), cube = p * p * p;
     return pull_off * p * p * (cube - 3) / (2 * range * (cube - 1));
   }
   // Elastic energy relative to the separated partners, at d = -`reach()` [J]. At first touch it is
-  // -`making_loss()`: that energy is dissipated in elastic waves when the contact forms, and is counted
+  // -`formation_loss()`: that energy is dissipated in elastic waves when the contact forms, and is counted
   // there.
   SCREE_HD Real energy(Real d) const {
-    if (!attracts()) return bare.energy(d);
+    if (!is_cohesive()) return bare.energy(d);
     const Real p = root_of(d), cube = p * p * p;
     return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - Real(0.6));
   }
   // Adhesive part of the energy: `energy(d)` less the elastic energy without adhesion at the same overlap
   // [J].
   SCREE_HD Real cohesion(Real d) const {
-    if (!attracts()) return 0;
+    if (!is_cohesive()) return 0;
     return energy(d) - (d > 0 ? bare.energy(d) : 0);
   }
   // Energy that the formation of a contact dissipates, 7.0922 (w^5 R*^4 / E*^2)^(1/3) [J]. Impacts below the
   // speed sqrt(2 / m* of it) stick.
-  SCREE_HD Real making_loss() const {
+  SCREE_HD Real formation_loss() const {
     constexpr Real kTouch = -6.314643787085519;  // bracket of `energy()` at d = 0: -0.9 x 4^(4/3) - 0.6
     return -4 * pull_off * range / 27 * kTouch;
   }
@@ -95,7 +95,7 @@ struct JkrPair {
   }
   // With adhesion the mean is taken at the midpoint.
   SCREE_HD Real mean_damping(Real d0, Real d1) const {
-    return attracts() ? damping((d0 + d1) / 2) : bare.mean_damping(d0, d1);
+    return is_cohesive() ? damping((d0 + d1) / 2) : bare.mean_damping(d0, d1);
   }
   // For pairs without adhesion.
   SCREE_HD Real cut(Real d0, Real damper_force) const { return bare.cut(d0, damper_force); }
@@ -109,18 +109,18 @@ struct JkrLaw {
   Real modulus = 0;         // 4/3 E* [Pa]
   Real damping_factor = 0;  // sqrt(5) zeta [-]
   Real adhesion_work = 0;   // w [J/m^2]
-  bool tension = true;      // for pairs without adhesion, see `KelvinVoigt`
+  bool tension = true;      // for pairs without adhesion, see `NormalLawParameters`
 
-  static constexpr bool kNeck = true;
+  static constexpr bool kHysteretic = true;
 
   JkrLaw() = default;
   SCREE_HD JkrLaw(Real m, Real factor, Real work, bool tensile = true)
       : modulus(m), damping_factor(factor), adhesion_work(work), tension(tensile) {}
-  explicit JkrLaw(const KelvinVoigt& p)
+  explicit JkrLaw(const NormalLawParameters& p)
       : JkrLaw(4 * p.effective_modulus / 3, std::sqrt(Real(5)) * p.damping_ratio, p.adhesion_work,
                p.tension) {}
-  static bool accepts(const KelvinVoigt& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.neck);
+  static bool accepts(const NormalLawParameters& p) {
+    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr);
   }
 
   SCREE_HD JkrPair of_pair(const PairSize& size) const {
@@ -143,18 +143,18 @@ struct JkrLaw {
 // without damping they rebound as without cohesion, and implicit steps treat them like other laws with
 // tension.
 template <class Pair, class T>
-struct AttractedPair {
+struct CohesivePair {
   Pair repulsion;
   T attraction;  // [N]
   T range;       // [m]
   bool tension;
 
-  SCREE_HD T reach() const { return range; }
-  SCREE_HD T pull(T d) const {
+  SCREE_HD T interaction_range() const { return range; }
+  SCREE_HD T adhesive_force(T d) const {
     if (d > 0) return attraction;
     return d > -range ? attraction * (1 + d / range) : 0;
   }
-  SCREE_HD T elastic(T d) const { return (d > 0 ? repulsion.elastic(d) : 0) - pull(d); }
+  SCREE_HD T elastic(T d) const { return (d > 0 ? repulsion.elastic(d) : 0) - adhesive_force(d); }
   SCREE_HD T slope(T d) const {
     if (d > 0) return repulsion.slope(d);
     return d > -range ? -attraction / range : 0;
@@ -162,7 +162,7 @@ struct AttractedPair {
   // Energy relative to partners beyond the range of the force [J].
   SCREE_HD T energy(T d) const {
     if (d > 0) return repulsion.energy(d) - attraction * (range / 2 + d);
-    return d > -range ? -pull(d) * (range + d) / 2 : 0;
+    return d > -range ? -adhesive_force(d) * (range + d) / 2 : 0;
   }
   // Cohesive part of `energy(d)` [J].
   SCREE_HD T cohesion(T d) const { return d > 0 ? -attraction * (range / 2 + d) : energy(d); }
@@ -170,63 +170,63 @@ struct AttractedPair {
   SCREE_HD T mean_damping(T d0, T d1) const { return repulsion.mean_damping(d0, d1); }
   SCREE_HD T cut(T d0, T damper_force) const { return repulsion.cut(d0, damper_force); }
   SCREE_HD T contact_stiffness(T d) const { return d > 0 ? repulsion.slope(d) : 0; }
-  SCREE_HD T adhesion(T d) const { return pull(d); }
+  SCREE_HD T adhesion(T d) const { return adhesive_force(d); }
 };
 
 // The cohesive force is attraction + adhesion_per_radius x R*. With adhesion_per_radius = 2 pi w and Hertz's
 // law this is DMT: Derjaguin, Muller, Toporov, J. Colloid Interface Sci. 53 (1975).
 template <class NormalLaw>
-struct AttractedLaw {
+struct CohesiveLaw {
   using Scalar = typename NormalLaw::Scalar;
   NormalLaw repulsion{};
   Scalar attraction = 0;           // [N]
   Scalar adhesion_per_radius = 0;  // [N/m]
   Scalar range = 0;                // [m]
 
-  AttractedLaw() = default;
-  SCREE_HD AttractedLaw(NormalLaw law, Scalar force, Scalar per_radius, Scalar max_distance)
+  CohesiveLaw() = default;
+  SCREE_HD CohesiveLaw(NormalLaw law, Scalar force, Scalar per_radius, Scalar max_distance)
       : repulsion(law), attraction(force), adhesion_per_radius(per_radius), range(max_distance) {}
-  explicit AttractedLaw(const KelvinVoigt& p)
-      : AttractedLaw(NormalLaw(p), static_cast<Scalar>(p.attraction),
-                     static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
-                     static_cast<Scalar>(p.range)) {}
-  static bool accepts(const KelvinVoigt& p) {
-    return NormalLaw::accepts(p.without_attraction()) && !(p.neck && p.adhesion_work > 0);
+  explicit CohesiveLaw(const NormalLawParameters& p)
+      : CohesiveLaw(NormalLaw(p), static_cast<Scalar>(p.attraction),
+                    static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
+                    static_cast<Scalar>(p.range)) {}
+  static bool accepts(const NormalLawParameters& p) {
+    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0);
   }
 
   SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {
     const auto pair = repulsion.of_pair(size);
     const Scalar force = attraction + adhesion_per_radius * size.effective_radius();
-    return AttractedPair<std::remove_const_t<decltype(pair)>, Scalar>{pair, force, range,
-                                                                      pair.tension || force > 0};
+    return CohesivePair<std::remove_const_t<decltype(pair)>, Scalar>{pair, force, range,
+                                                                     pair.tension || force > 0};
   }
   template <class S>
   SCREE_HD auto as() const {
     const auto other = repulsion.template as<S>();
-    return AttractedLaw<std::remove_const_t<decltype(other)>>{
+    return CohesiveLaw<std::remove_const_t<decltype(other)>>{
         other, static_cast<S>(attraction), static_cast<S>(adhesion_per_radius), static_cast<S>(range)};
   }
 };
 
 // Largest interaction range beyond touch of a pair of materials [m], for particles of at most this radius.
-inline Real longest_reach(const KelvinVoigt& law, Real largest_radius) {
+inline Real largest_interaction_range(const NormalLawParameters& law, Real largest_radius) {
   if (law.range > 0) return law.range;
-  if (!law.neck || law.adhesion_work == 0) return 0;
+  if (!law.jkr || law.adhesion_work == 0) return 0;
   // The pull-off distance grows with both radii: the bound is that of a sphere on a plane, plus a margin for
   // round-off.
-  return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).reach() * (1 + Real(1e-9));
+  return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).interaction_range() * (1 + Real(1e-9));
 }
 
 // Range of the contact search beyond touch [m]. The step in which a JKR contact breaks must still find the
 // pair, to count the dissipated energy.
-inline Real searched_reach(const KelvinVoigt& law, Real largest_radius) {
+inline Real contact_search_range(const NormalLawParameters& law, Real largest_radius) {
   constexpr Real kPastPullOff = 1.25;
-  return (law.range > 0 ? 1 : kPastPullOff) * longest_reach(law, largest_radius);
+  return (law.range > 0 ? 1 : kPastPullOff) * largest_interaction_range(law, largest_radius);
 }
 
 // A run uses the first type that accepts the parameters of all its pairs; each type has its own kernels
 // (cuda/contact_kernels_*.cu).
-using NormalLaws = std::tuple<LinearLaw, RatedLinearLaw, PowerLaw, HertzLaw, AttractedLaw<RatedLinearLaw>,
-                              AttractedLaw<HertzLaw>, JkrLaw>;
+using NormalLaws = std::tuple<LinearLaw, LinearRestitutionLaw, PowerLaw, HertzLaw,
+                              CohesiveLaw<LinearRestitutionLaw>, CohesiveLaw<HertzLaw>, JkrLaw>;
 
 }  // namespace scree

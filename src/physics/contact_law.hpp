@@ -8,8 +8,8 @@
 #include "physics/contact_motion.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
-#include "physics/rubbing_losses.hpp"
 #include "physics/tangential_laws.hpp"
+#include "physics/tangential_losses.hpp"
 
 namespace scree {
 
@@ -79,12 +79,12 @@ struct ContactOutcome {
   ContactHistory history;
   SpringLosses friction, rolling, twisting;  // over the step [J]
 
-  SCREE_HD RubbingLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
+  SCREE_HD TangentialLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
 };
 
-// The law of a contact. Without friction, rolling resistance and JKR adhesion (`kMoves` is false) it is a
-// function of the instant: `load(pair)`. Otherwise it needs the motion of the partners over the step and the
-// contact history: `load(moving pair, history)`. Both are pure: the new history is returned, and only the
+// The law of a contact. Without friction, rolling resistance and JKR adhesion (`kNeedsMotion` is false) it is
+// a function of the instant: `load(pair)`. Otherwise it needs the motion of the partners over the step and
+// the contact history: `load(moving pair, history)`. Both are pure: the new history is returned, and only the
 // item that accepts the step stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
@@ -95,16 +95,16 @@ struct ContactLaw {
   TangentialLaw tangential{};
   RollingLaw rolling{};
 
-  static constexpr bool kNeck = kHasNeck<NormalLaw>;
-  static constexpr bool kReaches = kReachesBeyondTouch<NormalLaw>;  // contacts may exist beyond touch
-  static constexpr bool kMoves = TangentialLaw::acts || RollingLaw::acts || kNeck;
+  static constexpr bool kHysteretic = kIsHysteretic<NormalLaw>;
+  static constexpr bool kHasRange = kActsBeyondTouch<NormalLaw>;  // contacts may exist beyond touch
+  static constexpr bool kNeedsMotion = TangentialLaw::acts || RollingLaw::acts || kHysteretic;
   // Numbers in the contact history: spring, moment, whether the surfaces have touched, in this order.
-  static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kNeck ? 1 : 0);
+  static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kHysteretic ? 1 : 0);
 
   // Load of a closed contact. Pure; both partners get the same but for the sign of odd quantities.
   template <class T, class Vector>
   SCREE_HD ContactLoadOf<T, Vector> load(const PairStateOf<T, Vector>& pair) const {
-    static_assert(!kMoves);
+    static_assert(!kNeedsMotion);
     return normal_load(pair);
   }
   // Load of the normal law alone.
@@ -121,7 +121,7 @@ struct ContactLaw {
   }
 
   // Whether a step that opens the contact breaks a JKR contact, whose springs hold energy.
-  SCREE_HD static bool breaks(const ContactHistory& old) { return kNeck && old.touched; }
+  SCREE_HD static bool breaks(const ContactHistory& old) { return kHysteretic && old.touched; }
 
   // Outcome of a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
   // `MovingPair`, or `InstantPair`.
@@ -142,22 +142,22 @@ struct ContactLaw {
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
     out.load = {g.along(f.force), f.loss, {}, {}};
-    if constexpr (kNeck)
-      if (!old.touched) out.load.loss += law.making_loss() / step.h;
+    if constexpr (kHysteretic)
+      if (!old.touched) out.load.loss += law.formation_loss() / step.h;
     out.history.touched = old.touched || g.overlap > 0;
     SpringSlider slider{};
     if constexpr (TangentialLaw::acts) {
       slider = tangential.slider(pair.size, motion, contact);
-      SpringStep step = spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h);
+      SpringStep step = spring_step(slider, rotated_tangential(motion, old.spring), motion.slip, motion.h);
       if constexpr (std::is_same_v<Pair, InstantPair>)
         step.acting = acting_at(slider, step.spring, pair.slip_rate);
       add_friction(step, motion, out);
     }
     if constexpr (RollingLaw::acts) {
       const RollingContact rolls{pair.size, motion, contact, slider};
-      RollingStep step = rolling.step(rolls, turned_with(motion, old.moment));
+      RollingStep step = rolling.step(rolls, rotated_with(motion, old.moment));
       if constexpr (std::is_same_v<Pair, InstantPair>)
-        step.acting = rolling.at(rolls, step.spring, pair.turning);
+        step.acting = rolling.at(rolls, step.spring, pair.relative_spin);
       add_rolling(step, motion.h, out);
     }
     return out;
@@ -168,8 +168,8 @@ struct ContactLaw {
   SCREE_HD ContactEnergy energy_of(const PairState& pair, const ContactHistory& history) const {
     const auto law = normal.of_pair(pair.size);
     Real out = law.energy(pair.geometry.overlap), cohesion = cohesion_of(law, pair.geometry.overlap);
-    if constexpr (kNeck)
-      if (!history.touched) out += law.making_loss(), cohesion += law.making_loss();
+    if constexpr (kHysteretic)
+      if (!history.touched) out += law.formation_loss(), cohesion += law.formation_loss();
     const SpringEnergies springs = springs_of(pair, history);
     return {out + springs.sum(), springs, cohesion};
   }
@@ -214,7 +214,7 @@ struct ContactLaw {
     constexpr int first = TangentialLaw::kHistory;
     if constexpr (RollingLaw::kHistory > 0)
       out.moment = {number(first), number(first + 1), number(first + 2)};
-    if constexpr (kNeck) out.touched = number(kHistory - 1) != 0;
+    if constexpr (kHysteretic) out.touched = number(kHistory - 1) != 0;
     return out;
   }
   template <class Store>
@@ -224,18 +224,18 @@ struct ContactLaw {
     };
     if constexpr (TangentialLaw::kHistory > 0) put(0, history.spring);
     if constexpr (RollingLaw::kHistory > 0) put(TangentialLaw::kHistory, history.moment);
-    if constexpr (kNeck) store(kHistory - 1, history.touched ? 1 : 0);
+    if constexpr (kHysteretic) store(kHistory - 1, history.touched ? 1 : 0);
   }
 
  private:
   // of: the normal law of these partners.
   template <class Pair>
   SCREE_HD static bool closed(const Pair& of, Real overlap, const ContactHistory& old) {
-    return overlap > 0 || ((!kNeck || old.touched) && overlap > -reach_of(of));
+    return overlap > 0 || ((!kHysteretic || old.touched) && overlap > -interaction_range_of(of));
   }
   SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion,
                                     ContactOutcome& out) {
-    out.load.force = fused(-motion.leverage, step.acting, out.load.force);
+    out.load.force = fused(-motion.lever_arm_ratio, step.acting, out.load.force);
     const Vec3 moment = fused_cross(motion.normal1, step.acting);
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
     if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
@@ -257,15 +257,15 @@ struct ContactLaw {
 // Laws with friction, but neither adhesion nor rolling resistance. Only these have implicit steps and a form
 // in single precision.
 template <class Law>
-inline constexpr bool kFrictionAlone = false;
+inline constexpr bool kFrictionOnly = false;
 template <class Law>
-requires Law::kMoves inline constexpr bool kFrictionAlone<Law> =
-    Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
+requires Law::kNeedsMotion inline constexpr bool kFrictionOnly<Law> =
+    Law::Tangential::acts && !Law::Rolling::acts && !Law::kHasRange;
 
 // How many kinds of losses (`LossKind`) the contacts of a law distinguish.
 template <class Law>
 inline constexpr int kLossKindsOf = 0;
 template <class Law>
-requires Law::kMoves inline constexpr int kLossKindsOf<Law> = Law::Rolling::acts ? kLossKinds : 1;
+requires Law::kNeedsMotion inline constexpr int kLossKindsOf<Law> = Law::Rolling::acts ? kLossKinds : 1;
 
 }  // namespace scree

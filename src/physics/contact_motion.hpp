@@ -17,7 +17,7 @@ namespace scree {
 
 // Rotation of one partner. arm: distance from its centre to the contact; its radius for a sphere, 0 for a
 // face, whose rotation is part of the velocity at the contact.
-struct TurningPartner {
+struct RotatingPartner {
   Vec3 spin;                 // at mid-step, in the global frame [rad/s]
   Real arm = 0;              // [m]
   Real inertia = kInfinity;  // about its centre [kg m^2]; infinite for immovable partners
@@ -32,8 +32,9 @@ struct ContactMotion {
   Vec3 rolling;   // tangential part of the rotation of i relative to j [rad], rotated likewise; odd
   Real twisting;  // rotation of i relative to j about the normal [rad]; even
   Real turn;      // rotation of the pair about the normal, the mean of both spins [rad]; odd
-  Real leverage;  // lever-arm ratio (R_i + R_j) / |r|, 1 at a face: force on the centres over spring force
-  Real arm_i, arm_j;          // [m]
+  Real lever_arm_ratio;  // lever-arm ratio (R_i + R_j) / |r|, 1 at a face: force on the centres over spring
+                         // force
+  Real arm_i, arm_j;     // [m]
   Real inertia_i, inertia_j;  // [kg m^2]
   Real h;                     // [s]
 
@@ -51,19 +52,19 @@ struct MovingPair : PairState {
 };
 
 // Tangential part of a at the unit normal n.
-SCREE_HD Vec3 across(Vec3 a, Vec3 n) { return fused(-fused_dot(a, n), n, a); }
+SCREE_HD Vec3 tangential_part(Vec3 a, Vec3 n) { return fused(-fused_dot(a, n), n, a); }
 
 // Common part of the motion of sphere and face contacts. tangential_displacement: of the centre of i relative
 // to that of j, or to the face's point, over the step [m]; a normal component does not matter.
 SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 tangential_displacement,
-                                      const TurningPartner& i, const TurningPartner& j, Real h) {
+                                      const RotatingPartner& i, const RotatingPartner& j, Real h) {
   ContactMotion out{};
-  out.normal0 = normal0, out.normal1 = normal1, out.h = h, out.leverage = 1;
+  out.normal0 = normal0, out.normal1 = normal1, out.h = h, out.lever_arm_ratio = 1;
   out.arm_i = i.arm, out.arm_j = j.arm, out.inertia_i = i.inertia, out.inertia_j = j.inertia;
   const Vec3 twice_middle = normal0 + normal1, relative = h * (i.spin - j.spin);
   out.turn = h / 4 * fused_dot(i.spin + j.spin, twice_middle);
   const auto to_end = [&](Vec3 a) {
-    return across(fused(out.turn / 4, fused_cross(twice_middle, a), a), normal1);
+    return tangential_part(fused(out.turn / 4, fused_cross(twice_middle, a), a), normal1);
   };
   out.slip = to_end(
       fused(-h / 2, fused_cross(i.arm * i.spin + j.arm * j.spin, twice_middle), tangential_displacement));
@@ -80,7 +81,7 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 tangentia
 // angular momentum is conserved exactly. Arms that shrink with the overlap ratchet: McNamara, Garcia-Rojo,
 // Herrmann, Phys. Rev. E 77 (2008).
 SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 displacement,
-                                     const TurningPartner& i, const TurningPartner& j, Real h) {
+                                     const RotatingPartner& i, const RotatingPartner& j, Real h) {
   const Vec3 r = geometry.direction, r0 = r - displacement;
   const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
   const Vec3 normal0 = distance0.inverse * r0, normal1 = geometry.normal();
@@ -89,7 +90,7 @@ SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 displ
   // begins with the normal at which this one ends.
   ContactMotion out = contact_motion(normal0, normal1, radius_sum * (normal1 - normal0), i, j, h);
   out.overlap0 = radius_sum - distance0.root;
-  out.leverage = radius_sum * geometry.scale;
+  out.lever_arm_ratio = radius_sum * geometry.scale;
   return out;
 }
 
@@ -97,7 +98,7 @@ SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 displ
 // start of the step; displacement: of i's centre over the step relative to the material point of the face at
 // the contact [m].
 SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 displacement,
-                                   const TurningPartner& i, const TurningPartner& j, Real h) {
+                                   const RotatingPartner& i, const RotatingPartner& j, Real h) {
   const Vec3 normal1 = geometry.normal();
   ContactMotion out = contact_motion(normal0, normal1, displacement, i, j, h);
   out.overlap0 = geometry.overlap + dot(displacement, Real(0.5) * (normal0 + normal1));
@@ -108,7 +109,7 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
 // radius, so that i rolls over it without slip. normal0: at the start of the step, where the contact may have
 // been with an adjacent face; displacement: of i's centre relative to the material of j at the contact [m].
 SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 displacement,
-                                   const TurningPartner& i, const TurningPartner& j, Real h) {
+                                   const RotatingPartner& i, const RotatingPartner& j, Real h) {
   const Vec3 normal1 = geometry.normal(), r0 = geometry.distance * normal1 - displacement;
   const Real square0 = fused_dot(r0, r0);
   // A centre on the edge itself has no direction from it and no lever arm.
@@ -116,23 +117,24 @@ SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0
   const Vec3 direction0 = square0 > 0 ? distance0.inverse * r0 : normal1;
   ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - direction0), i, j, h);
   out.overlap0 = i.arm - distance0.root;
-  out.leverage = geometry.distance > 0 ? i.arm * reciprocal(geometry.distance) : 1;
+  out.lever_arm_ratio = geometry.distance > 0 ? i.arm * reciprocal(geometry.distance) : 1;
   return out;
 }
 
 // Adds the slip of a conveyor surface of j, a face or an edge, which has the tangential velocity
 // `surface_velocity` at mid-step [m/s].
-SCREE_HD void add_slide(ContactMotion& c, Vec3 surface_velocity) {
+SCREE_HD void add_surface_velocity(ContactMotion& c, Vec3 surface_velocity) {
   const Vec3 displacement = c.h * surface_velocity;
   c.slip -=
-      c.leverage * across(displacement + c.turn / 4 * cross(c.normal0 + c.normal1, displacement), c.normal1);
+      c.lever_arm_ratio *
+      tangential_part(displacement + c.turn / 4 * cross(c.normal0 + c.normal1, displacement), c.normal1);
 }
 
 // A contact at one instant, as laws with history read it: the partners have not moved, the history acts as it
 // is, and dashpots act on the rates of slip and rotation.
 struct InstantPair : MovingPair {
-  Vec3 slip_rate;  // tangential velocity of i relative to j at the contact [m/s]; odd
-  Vec3 turning;    // spin of i relative to j [rad/s]; odd
+  Vec3 slip_rate;      // tangential velocity of i relative to j at the contact [m/s]; odd
+  Vec3 relative_spin;  // spin of i relative to j [rad/s]; odd
 };
 
 // pair: over a step of zero length.
@@ -141,7 +143,7 @@ SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j
   InstantPair out{pair, {}, spin_i - spin_j};
   ContactMotion& c = out.motion;
   const Vec3 spin_velocity = cross(c.arm_i * spin_i + c.arm_j * spin_j, c.normal1);
-  out.slip_rate = across(c.leverage * pair.velocity - spin_velocity, c.normal1);
+  out.slip_rate = tangential_part(c.lever_arm_ratio * pair.velocity - spin_velocity, c.normal1);
   c.h = kLongTime;
   return out;
 }
@@ -149,7 +151,7 @@ SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j
 // Rotation of the contact history over a step: by the rotation of the pair about normal0 (Cayley form, by 2
 // atan(angle / 2)), then by the smallest rotation that takes normal0 to normal1. Both preserve lengths to
 // round-off without a square root; together they follow a rigidly rotating pair to second order in the step.
-SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real angle) {
+SCREE_HD Vec3 rotated_about(Vec3 a, Vec3 normal, Real angle) {
   const Vec3 b = fused_cross(normal, a);
   return fused(reciprocal(fused(angle, angle / 4, 1)),
                fused(angle, b, (angle * angle / 2) * fused_cross(normal, b)), a);
@@ -157,7 +159,7 @@ SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real angle) {
 
 // Rotates a tangential vector, for which normal x (normal x a) = -a. A normal component from round-off is
 // removed.
-SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
+SCREE_HD Vec3 rotated_tangential(const ContactMotion& c, Vec3 a) {
   const Real part = c.turn * reciprocal(fused(c.turn, c.turn / 4, 1));
   const Vec3 u = fused(part, fused_cross(c.normal0, a), fused(-c.turn / 2, part, 1) * a);
   return fused(-fused_dot(u, c.normal1) * reciprocal(1 + fused_dot(c.normal0, c.normal1)),
@@ -165,8 +167,8 @@ SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
 }
 
 // Rotates any vector.
-SCREE_HD Vec3 turned_with(const ContactMotion& c, Vec3 a) {
-  const Vec3 u = turned_about(a, c.normal0, c.turn), sum = c.normal0 + c.normal1;
+SCREE_HD Vec3 rotated_with(const ContactMotion& c, Vec3 a) {
+  const Vec3 u = rotated_about(a, c.normal0, c.turn), sum = c.normal0 + c.normal1;
   return fused(2 * fused_dot(u, c.normal0), c.normal1,
                fused(-fused_dot(u, sum) * reciprocal(1 + fused_dot(c.normal0, c.normal1)), sum, u));
 }

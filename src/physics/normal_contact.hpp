@@ -10,46 +10,47 @@ namespace scree {
 
 // Normal quantities at the end of a step, and at its start (0), where all are zero if the contact was open.
 struct NormalContact {
-  Real grip;  // load in Coulomb's limit: normal force after the cut, plus the adhesive part; >= 0 [N]
+  Real
+      friction_load;  // load in Coulomb's limit: normal force after the cut, plus the adhesive part; >= 0 [N]
   Real radius, radius0;        // contact radius [m]
   Real stiffness, stiffness0;  // elastic stiffness of the normal force [N/m]
 };
 
 // Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
 //   reach()                interaction range beyond touch [m]; default: none
-//   kNeck = true           JKR: contacts form at touch, d = 0, and break at d = -reach()
-//   making_loss()          with kNeck: energy that the formation of a contact dissipates [J]
+//   kHysteretic = true           JKR: contacts form at touch, d = 0, and break at d = -reach()
+//   formation_loss()          with kHysteretic: energy that the formation of a contact dissipates [J]
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
 //   cohesion(d)            adhesive part of energy(d) [J]; default: 0
 
 template <class NormalLaw>
-inline constexpr bool kHasNeck = false;
+inline constexpr bool kIsHysteretic = false;
 template <class NormalLaw>
-requires requires { NormalLaw::kNeck; }
-inline constexpr bool kHasNeck<NormalLaw> = NormalLaw::kNeck;
+requires requires { NormalLaw::kHysteretic; }
+inline constexpr bool kIsHysteretic<NormalLaw> = NormalLaw::kHysteretic;
 
 template <class NormalLaw>
-inline constexpr bool kReachesBeyondTouch = requires(const NormalLaw& law, const PairSize& size) {
-  law.of_pair(size).reach();
+inline constexpr bool kActsBeyondTouch = requires(const NormalLaw& law, const PairSize& size) {
+  law.of_pair(size).interaction_range();
 };
 
 // Interaction range beyond touch [m]: added to the sum of the radii in the search for contacts.
 template <class Pair>
-SCREE_HD Real reach_of(const Pair& pair) {
-  if constexpr (requires { pair.reach(); })
-    return pair.reach();
+SCREE_HD Real interaction_range_of(const Pair& pair) {
+  if constexpr (requires { pair.interaction_range(); })
+    return pair.interaction_range();
   else
     return 0;
 }
 template <class NormalLaw>
-SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
-  return reach_of(law.of_pair(size));
+SCREE_HD Real pair_interaction_range(const NormalLaw& law, const PairSize& size) {
+  return interaction_range_of(law.of_pair(size));
 }
 
 template <class NormalLaw>
-inline constexpr bool kMayAttract = requires(const NormalLaw& law, const PairSize& size) {
+inline constexpr bool kMayBeCohesive = requires(const NormalLaw& law, const PairSize& size) {
   law.of_pair(size).cohesion(0);
 };
 
@@ -63,8 +64,8 @@ SCREE_HD Real cohesion_of(const Pair& pair, Real d) {
 
 template <class NormalLaw>
 SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d) {
-  if constexpr (kHasNeck<NormalLaw>)
-    return d > -law.reach() ? law.contact_radius(d) : 0;
+  if constexpr (kIsHysteretic<NormalLaw>)
+    return d > -law.interaction_range() ? law.contact_radius(d) : 0;
   else if constexpr (requires { law.contact_radius(d); })
     return d > 0 ? law.contact_radius(d) : 0;
   else
@@ -73,8 +74,8 @@ SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d)
 
 template <class NormalLaw>
 SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
-  if constexpr (kHasNeck<NormalLaw>)
-    return d > -law.reach() ? law.contact_stiffness(d) : 0;
+  if constexpr (kIsHysteretic<NormalLaw>)
+    return d > -law.interaction_range() ? law.contact_stiffness(d) : 0;
   else if constexpr (requires { law.contact_stiffness(d); })
     return law.contact_stiffness(d);
   else

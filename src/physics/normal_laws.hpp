@@ -12,7 +12,7 @@ namespace scree {
 // Parameters of the normal law of a pair of materials in the deck: F = K d^n + C d_dot (Jung, Jun, Sohn,
 // 2013, Eqs. 18-24), or Hertz's law with the modulus E* in place of K and n. A damping ratio in place of C
 // gives the damper of physics/restitution.hpp, whose restitution depends on neither speed nor mass.
-struct KelvinVoigt {
+struct NormalLawParameters {
   Real normal_stiffness = 0;  // K [N/m^n]
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
@@ -22,31 +22,29 @@ struct KelvinVoigt {
   Real damping_ratio = 0;      // zeta [-]
   // Adhesion and cohesion (physics/cohesion.hpp).
   Real adhesion_work = 0;  // w [J/m^2]
-  bool neck = false;       // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
+  bool jkr = false;        // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
   Real attraction = 0;     // constant cohesive force [N]
   Real range = 0;          // distance beyond touch over which it decreases to zero [m]
 
   // Whether particles of these materials interact.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
-  bool attracts() const { return adhesion_work > 0 || attraction > 0; }
-  KelvinVoigt without_attraction() const {
+  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0; }
+  NormalLawParameters without_cohesion() const {
     return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
   }
   // Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
   bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
-  KelvinVoigt of_size(const PairSize& size) const;
+  NormalLawParameters of_size(const PairSize& size) const;
 };
 
 // Every law below has
-//   Law(const KelvinVoigt&)   its parameters from those of the deck; accepts() says whether it applies
-//   tension                   as in KelvinVoigt
-//   as<T>()                   the law with numbers of type T
-//   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:
-//   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
-//   energy(d)                 elastic energy [J]
-//   damping(d)                damping coefficient [N s/m]
-//   mean_damping(d0, d1)      mean of damping(d) between two overlaps, which may be 0
-//   cut(d0, damper_force)     overlap at which the force of a contact that separates at constant rate from d0
+//   Law(const NormalLawParameters&)   its parameters from those of the deck; accepts() says whether it
+//   applies tension                   as in NormalLawParameters as<T>()                   the law with
+//   numbers of type T of_pair(size)             the law for partners of these sizes, with functions of the
+//   overlap d > 0: elastic(d), slope(d)      elastic force [N] and its derivative [N/m] energy(d) elastic
+//   energy [J] damping(d)                damping coefficient [N s/m] mean_damping(d0, d1)      mean of
+//   damping(d) between two overlaps, which may be 0 cut(d0, damper_force)     overlap at which the force of a
+//   contact that separates at constant rate from d0
 //                             is cut [m]: the elastic force has decreased to the damper's, which is
 //                             `damper_force` [N] at d0
 
@@ -61,10 +59,10 @@ struct LinearLawOf {
   LinearLawOf() = default;
   SCREE_HD LinearLawOf(T stiffness, T damping, bool tensile)
       : normal_stiffness(stiffness), normal_damping(damping), tension(tensile) {}
-  explicit LinearLawOf(const KelvinVoigt& p)
+  explicit LinearLawOf(const NormalLawParameters& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
-  static bool accepts(const KelvinVoigt& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.attracts();
+  static bool accepts(const NormalLawParameters& p) {
+    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.is_cohesive();
   }
 
   // Member by member: gcc treats a copy of the whole object as one memory access and does not vectorize it.
@@ -87,33 +85,33 @@ using LinearLaw = LinearLawOf<Real>;
 // Linear law with a damper in proportion to the square root of the effective mass: F = K d + (C + 2 zeta
 // sqrt(m* K)) d_dot.
 template <class T>
-struct RatedLinearLawOf {
+struct LinearRestitutionLawOf {
   using Scalar = T;
   T normal_stiffness = 0;  // K [N/m]
   T normal_damping = 0;    // C [N s/m]
   T damping_factor = 0;    // 2 zeta sqrt(K) [(N/m)^(1/2)]
   bool tension = false;
 
-  RatedLinearLawOf() = default;
-  SCREE_HD RatedLinearLawOf(T stiffness, T damping, T factor, bool tensile)
+  LinearRestitutionLawOf() = default;
+  SCREE_HD LinearRestitutionLawOf(T stiffness, T damping, T factor, bool tensile)
       : normal_stiffness(stiffness), normal_damping(damping), damping_factor(factor), tension(tensile) {}
-  explicit RatedLinearLawOf(const KelvinVoigt& p)
-      : RatedLinearLawOf(T(p.normal_stiffness), T(p.normal_damping),
-                         T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
-  static bool accepts(const KelvinVoigt& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && !p.attracts();
+  explicit LinearRestitutionLawOf(const NormalLawParameters& p)
+      : LinearRestitutionLawOf(T(p.normal_stiffness), T(p.normal_damping),
+                               T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
+  static bool accepts(const NormalLawParameters& p) {
+    return p.exponent == 1 && p.effective_modulus == 0 && !p.is_cohesive();
   }
 
   SCREE_HD LinearLawOf<T> of_pair(const PairSizeOf<T>& size) const {
     return {normal_stiffness, normal_damping + damping_factor * std::sqrt(size.effective_mass()), tension};
   }
   template <class S>
-  SCREE_HD RatedLinearLawOf<S> as() const {
+  SCREE_HD LinearRestitutionLawOf<S> as() const {
     return {static_cast<S>(normal_stiffness), static_cast<S>(normal_damping), static_cast<S>(damping_factor),
             tension};
   }
 };
-using RatedLinearLaw = RatedLinearLawOf<Real>;
+using LinearRestitutionLaw = LinearRestitutionLawOf<Real>;
 
 // F = K d^n + C d_dot, or with c d^((n-1)/2) in place of C, c = 2 zeta sqrt(m* K (n+1)/2). A separate type
 // keeps pow() out of the linear law's kernels.
@@ -133,10 +131,10 @@ struct PowerLawOf {
         exponent(n),
         tension(tensile),
         damping_factor(factor) {}
-  explicit PowerLawOf(const KelvinVoigt& p)
+  explicit PowerLawOf(const NormalLawParameters& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
                    T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness * (p.exponent + 1) / 2))) {}
-  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus == 0 && !p.attracts(); }
+  static bool accepts(const NormalLawParameters& p) { return p.effective_modulus == 0 && !p.is_cohesive(); }
 
   SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>& size) const {
     PowerLawOf pair = *this;
@@ -213,11 +211,11 @@ struct HertzLawOf {
 
   HertzLawOf() = default;
   SCREE_HD HertzLawOf(T m, T factor, bool tensile) : modulus(m), damping_factor(factor), tension(tensile) {}
-  explicit HertzLawOf(const KelvinVoigt& p)
+  explicit HertzLawOf(const NormalLawParameters& p)
       : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
   // Pairs that do not interact are accepted by any law.
-  static bool accepts(const KelvinVoigt& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && !p.attracts();
+  static bool accepts(const NormalLawParameters& p) {
+    return (p.effective_modulus > 0 || !p.acts()) && !p.is_cohesive();
   }
 
   SCREE_HD HertzPairOf<T> of_pair(const PairSizeOf<T>& size) const {
@@ -230,7 +228,7 @@ struct HertzLawOf {
 };
 using HertzLaw = HertzLawOf<Real>;
 
-inline KelvinVoigt KelvinVoigt::of_size(const PairSize& size) const {
+inline NormalLawParameters NormalLawParameters::of_size(const PairSize& size) const {
   if (!depends_on_size()) return *this;
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
   if (effective_modulus == 0)

@@ -24,7 +24,7 @@ SCREE_HD Quaternion operator*(const Quaternion& a, const Quaternion& b) {
 SCREE_HD Quaternion operator*(Real s, const Quaternion& q) { return {s * q.w, s * q.x, s * q.y, s * q.z}; }
 
 // Transforms a vector of the body frame to the global one.
-SCREE_HD Vec3 turned(const Quaternion& q, Vec3 a) {
+SCREE_HD Vec3 rotated(const Quaternion& q, Vec3 a) {
   const Vec3 u{q.x, q.y, q.z}, b = Real(2) * cross(u, a);
   return a + q.w * b + cross(u, b);
 }
@@ -35,7 +35,7 @@ SCREE_HD Quaternion renormalised(const Quaternion& q) { return ((3 - dot(q, q)) 
 // Orientation after a step of h [s] with the mid-step angular velocity [rad/s] in the global frame: the
 // Cayley form dq = (1 - u.u, 2 u) / (1 + u.u), u = h w / 4, of exp(h w / 2). It preserves the length; its
 // angle 4 atan(|u|) is smaller than h |w| by (h |w|)^3 / 48, second order like the step.
-SCREE_HD Quaternion turned_by(const Quaternion& q, Vec3 middle_spin, Real h) {
+SCREE_HD Quaternion rotated_by(const Quaternion& q, Vec3 middle_spin, Real h) {
   const Vec3 u = (h / 4) * middle_spin;
   const Real square = dot(u, u), scale = reciprocal(1 + square), twice = 2 * scale;
   const Quaternion turn{(1 - square) * scale, twice * u.x, twice * u.y, twice * u.z};

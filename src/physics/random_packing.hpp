@@ -49,7 +49,7 @@ inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
 // The power of the distance to saturation follows from the kinetics there; the denominators match the
 // expansion at low density: discs by Schaaf, Talbot, J. Chem. Phys. 91 (1989); spheres with a cubic term
 // fitted to a simulation of 37,000 (within 25 % for fractions up to 0.325).
-inline Real insertion_chance(int dimension, Real fraction) {
+inline Real insertion_probability(int dimension, Real fraction) {
   const Real x = fraction / saturated_fraction(dimension);
   if (x >= 1) return 0;
   if (dimension == 2) return std::pow(1 - x, 3) / (1 - 0.812 * x + 0.2336 * x * x + 0.0845 * x * x * x);
@@ -58,7 +58,7 @@ inline Real insertion_chance(int dimension, Real fraction) {
 
 // Probability that a random position is free for a sphere (disc) of radius r [m] among particles of any
 // sizes: that of equal particles at the density that has the same exclusion in a fluid.
-inline Real insertion_chance(int dimension, const PackingSums& n, Real r) {
+inline Real insertion_probability(int dimension, const PackingSums& n, Real r) {
   const Real exclusion = fluid_exclusion(dimension, n, r);
   Real low = 0, high = saturated_fraction(dimension);
   for (int i = 0; i < 40; ++i) {
@@ -68,7 +68,7 @@ inline Real insertion_chance(int dimension, const PackingSums& n, Real r) {
               middle / (dimension == 2 ? std::numbers::pi_v<Real> : Real(4) / 3 * std::numbers::pi_v<Real>));
     (fluid_exclusion(dimension, equal, 1) < exclusion ? low : high) = middle;
   }
-  return insertion_chance(dimension, high);
+  return insertion_probability(dimension, high);
 }
 
 }  // namespace scree

@@ -11,7 +11,7 @@
 namespace scree {
 
 // Parameters of the rolling and twisting resistance of a pair of materials in the deck.
-struct RollingResistance {
+struct RollingParameters {
   Real friction = 0;           // mu_r of `ElasticPlasticRolling` [-]
   Real stiffness_factor = 0;   // of its spring [-]; 0: the stiffness is given
   Real stiffness = 0;          // k_r [N m]
@@ -68,7 +68,7 @@ struct ElasticPlasticRolling {
     const Real k = stiffness_at(c.size, c.normal.stiffness), k0 = stiffness_at(c.size, c.normal.stiffness0);
     const Real dashpot =
         damping_ratio > 0 ? dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k) : 0;
-    return {k, k0, dashpot, friction * c.size.effective_radius() * c.normal.grip};
+    return {k, k0, dashpot, friction * c.size.effective_radius() * c.normal.friction_load};
   }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
     return spring_step(slider(c), old, c.motion.rolling, c.motion.h);
@@ -107,7 +107,7 @@ struct MarshallTwisting {
   SCREE_HD SpringSlider slider(const RollingContact& c) const {
     const Real a = c.normal.radius;
     return {stiffness_at(a, c.friction.stiffness), stiffness_at(c.normal.radius0, c.friction.stiffness0),
-            a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.grip};
+            a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.friction_load};
   }
   SCREE_HD SpringStep twisting(const RollingContact& c, Vec3 old) const {
     return spring_step(slider(c), old, c.motion.twisting * c.motion.normal1, c.motion.h);
@@ -188,7 +188,7 @@ struct RollingAndTwisting {
 // All rolling laws of a deck in one type, so that pairs of materials may differ and the kernels are compiled
 // once.
 struct AnyRolling : RollingAndTwisting<EitherRolling, MarshallTwisting> {
-  static AnyRolling of(const RollingResistance& p) {
+  static AnyRolling of(const RollingParameters& p) {
     return {{{{p.friction, p.damping_ratio, p.stiffness_factor, p.stiffness}, {p.damping}},
              {p.twisting_friction}}};
   }

@@ -1,5 +1,5 @@
 // A contact with friction over an explicit step in single precision. The contact history stays in double
-// precision, because a step changes it by less than the last bit of a single. For laws of `kFrictionAlone`
+// precision, because a step changes it by less than the last bit of a single. For laws of `kFrictionOnly`
 // (contact_law.hpp), with the same formulas to single-precision round-off; the rotation of the contact is
 // second order in the step here, and exact there.
 #pragma once
@@ -17,7 +17,7 @@ struct SinglePair : PairStateOf<float, Vec3f> {
   Vec3f slip;                  // tangential displacement of i relative to j [m]
   Vec3f turn;                  // rotation of the pair [rad]
   float overlap0;              // at the start of the step [m]
-  float leverage;              // (R_i + R_j) / |r|
+  float lever_arm_ratio;       // (R_i + R_j) / |r|
   float inertia_i, inertia_j;  // [kg m^2]
   float h;                     // [s]
 };
@@ -31,8 +31,8 @@ SCREE_HD SinglePair single_pair(const PairStateOf<float, Vec3f>& state, Vec3f sp
   const Vec3f mid_normal = out.normal - (0.5f * inverse) * across(displacement, out.normal);
   const Vec3f tangential = across(displacement, mid_normal);
   const Vec3f rolling = state.size.radius_i * spin_i + state.size.radius_j * spin_j;
-  out.leverage = radius_sum * inverse;
-  out.slip = out.leverage * tangential - h * cross(rolling, mid_normal);
+  out.lever_arm_ratio = radius_sum * inverse;
+  out.slip = out.lever_arm_ratio * tangential - h * cross(rolling, mid_normal);
   out.turn =
       inverse * cross(mid_normal, tangential) + (h / 2 * dot(spin_i + spin_j, mid_normal)) * mid_normal;
   out.overlap0 = state.geometry.overlap + dot(displacement, mid_normal);
@@ -64,12 +64,13 @@ SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair
   const Vec3f start = in_single(old), first = cross(pair.turn, start);
   const bool shrinks = p.stiffness < p.stiffness0;
   const float retained = shrinks ? p.stiffness / p.stiffness0 : 1;
-  float of_way = p.stiffness;
+  float step_stiffness = p.stiffness;
   if (p.stiffness > p.stiffness0)
-    of_way = (p.stiffness * p.stiffness + p.stiffness * p.stiffness0 + p.stiffness0 * p.stiffness0) /
-             (1.5f * (p.stiffness + p.stiffness0));
+    step_stiffness = (p.stiffness * p.stiffness + p.stiffness * p.stiffness0 + p.stiffness0 * p.stiffness0) /
+                     (1.5f * (p.stiffness + p.stiffness0));
   const Vec3f displacement = pair.slip;
-  Vec3f change = first + 0.5f * cross(pair.turn, first) + (retained - 1) * start + of_way * displacement;
+  Vec3f change =
+      first + 0.5f * cross(pair.turn, first) + (retained - 1) * start + step_stiffness * displacement;
   change = change - dot(start + change, pair.normal) * pair.normal;
   const Vec3f trial = start + change;
   SingleSpring out{old + in_double(change), {}, 0};
@@ -77,7 +78,7 @@ SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair
   if (square > p.limit * p.limit) {
     const float share = p.limit * root_and_inverse(square).inverse;
     out.acting = share * trial;
-    out.loss = dot(retained * start + out.acting, (1 - share) * trial) / (2 * of_way);
+    out.loss = dot(retained * start + out.acting, (1 - share) * trial) / (2 * step_stiffness);
     out.spring = Real(share) * out.spring;
   } else {
     out.acting = in_single(out.spring);
@@ -93,10 +94,11 @@ SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair
     out.loss += dot(start, start) / 2 * (1 - retained) / p.stiffness0;
   else if (p.stiffness > p.stiffness0) {
     const Vec3f spring = in_single(out.spring);
-    const float after = dot(spring, spring) * (p.stiffness - of_way) / (p.stiffness * of_way);
-    out.loss += p.stiffness0 > 0
-                    ? (after + dot(start, start) * (of_way - p.stiffness0) / (p.stiffness0 * of_way)) / 2
-                    : after / 2;
+    const float after = dot(spring, spring) * (p.stiffness - step_stiffness) / (p.stiffness * step_stiffness);
+    out.loss += p.stiffness0 > 0 ? (after + dot(start, start) * (step_stiffness - p.stiffness0) /
+                                                (p.stiffness0 * step_stiffness)) /
+                                       2
+                                 : after / 2;
   }
   return out;
 }
@@ -107,7 +109,7 @@ SCREE_HD float single_contact_radius(const PairSizeOf<float>& size, float d) {
 
 template <class Law>
 SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 old) {
-  static_assert(kFrictionAlone<Law>);
+  static_assert(kFrictionOnly<Law>);
   const auto normal = law.normal.template as<float>().of_pair(step.size);
   const auto& g = step.geometry;
   const ContactForceOf<float> f = contact_force(normal, g.overlap, g.rate(step.velocity));
@@ -117,7 +119,7 @@ SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 
     return static_cast<float>(law.tangential.stiffness_at(single_contact_radius(step.size, d)));
   };
   SingleSlider slider{stiffness(g.overlap), stiffness(step.overlap0), 0,
-                      static_cast<float>(law.tangential.friction) * f.force / step.leverage};
+                      static_cast<float>(law.tangential.friction) * f.force / step.lever_arm_ratio};
   if (law.tangential.damping_ratio > 0) {
     const float i = step.size.radius_i, j = step.size.radius_j;
     const float inverse_mass =
@@ -127,7 +129,7 @@ SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 
   }
   const SingleSpring spring = single_spring_step(slider, pair, old);
   SingleOutcome out;
-  out.force = g.along(f.force) - step.leverage * spring.acting;
+  out.force = g.along(f.force) - step.lever_arm_ratio * spring.acting;
   out.torque_i = step.size.radius_i * cross(step.normal, spring.acting);
   out.loss = f.loss + spring.loss / step.h, out.friction = spring.loss;
   out.history = spring.spring;

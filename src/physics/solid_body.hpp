@@ -43,7 +43,7 @@ inline MassProperties solid_capsule(Real density, Real radius, Real length) {
 }
 
 // Inertia tensor of a body rotated by a: a J a^T.
-inline Sym3 turned_tensor(const Mat3& a, const Sym3& j) {
+inline Sym3 rotated_tensor(const Mat3& a, const Sym3& j) {
   const Mat3 t = a * full(j) * transposed(a);
   return {t.x.x, (t.x.y + t.y.x) / 2, (t.x.z + t.z.x) / 2, t.y.y, (t.y.z + t.z.y) / 2, t.z.z};
 }

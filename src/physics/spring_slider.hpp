@@ -76,8 +76,8 @@ SCREE_HD Real mean_stiffness(Real k0, Real k1) {
 
 // Effect of a change of the stiffness on a spring over a step.
 struct StiffnessStep {
-  Real of_way;  // force per displacement [N/m]
-  Real kept;    // fraction of the old force that remains [-]
+  Real step_stiffness;  // force per displacement [N/m]
+  Real remaining;       // fraction of the old force that remains [-]
 };
 SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
   if (p.stiffness > p.stiffness0) return {mean_stiffness(p.stiffness0, p.stiffness), 1};
@@ -88,14 +88,18 @@ SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
 // Energy that a change of the stiffness dissipates [J]: `spring_energy()` before and after the step, less the
 // work of the displacement at the effective stiffness.
 SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3 old, Vec3 spring) {
-  if (p.stiffness < p.stiffness0) return dot(old, old) / 2 * (1 - k.kept) * reciprocal(p.stiffness0);
+  if (p.stiffness < p.stiffness0) return dot(old, old) / 2 * (1 - k.remaining) * reciprocal(p.stiffness0);
   if (!(p.stiffness > p.stiffness0)) return 0;
-  const Real after = dot(spring, spring) * (p.stiffness - k.of_way) * reciprocal(p.stiffness * k.of_way);
+  const Real after =
+      dot(spring, spring) * (p.stiffness - k.step_stiffness) * reciprocal(p.stiffness * k.step_stiffness);
   if (!(p.stiffness0 > 0)) return after / 2;
-  return (after + dot(old, old) * (k.of_way - p.stiffness0) * reciprocal(p.stiffness0 * k.of_way)) / 2;
+  return (after +
+          dot(old, old) * (k.step_stiffness - p.stiffness0) * reciprocal(p.stiffness0 * k.step_stiffness)) /
+         2;
 }
 
-// Step of a spring by `displacement`. old: force at the start, rotated with the contact by `turned_across()`.
+// Step of a spring by `displacement`. old: force at the start, rotated with the contact by
+// `rotated_tangential()`.
 // - Stiffness k that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
 //   Technol. 233, 2013, Eq. 18b): T' = k s' while the contact grows, (T/k)' = s' while it shrinks, s the
 //   displacement. This never creates energy; the second case is exact over a step, the first uses the mean of
@@ -109,11 +113,11 @@ SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3
 SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 displacement, Real h) {
   SpringStep out;
   const StiffnessStep k = stiffness_step(p);
-  const Vec3 start = k.kept * old, trial = fused(k.of_way, displacement, start);
+  const Vec3 start = k.remaining * old, trial = fused(k.step_stiffness, displacement, start);
   out.spring = shortened(trial, p.limit);
   out.acting = out.spring;
   if (fused_dot(trial, trial) > p.limit * p.limit)
-    out.losses.sliding = dot(start + out.spring, trial - out.spring) * reciprocal(2 * k.of_way);
+    out.losses.sliding = dot(start + out.spring, trial - out.spring) * reciprocal(2 * k.step_stiffness);
   else if (p.dashpot > 0) {
     out.acting = shortened(fused(p.dashpot * reciprocal(h), displacement, trial), p.limit);
     out.losses.dashpot = dot(out.acting - out.spring, displacement);

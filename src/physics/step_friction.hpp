@@ -11,33 +11,33 @@
 namespace scree {
 
 // Input of the friction of a contact over an implicit step.
-struct RubbingStep {
+struct FrictionStep {
   ContactStep step;
-  ContactMotion motion;  // with the mean spins
-  Real leverage0;        // `ContactMotion::leverage` at the start
+  ContactMotion motion;   // with the mean spins
+  Real lever_arm_ratio0;  // `ContactMotion::leverage` at the start
   Vec3 slip_rate0,
       slip_rate1;  // tangential velocity of i relative to j at both ends [m/s]; for laws with a dashpot
   PairSize size;
   Real start_force, end_force;  // of the normal law at both ends [N]
   Real step_force;              // normal force that the step is solved with, see `StepContact` [N]
-  Real frozen_limit;  // lagged limit of the mean force over the step [N]; negative: the limit follows the
+  Real lagged_limit;  // lagged limit of the mean force over the step [N]; negative: the limit follows the
                       // normal force
 };
 
 // Friction force T over an implicit step (dem/README.md): -leverage T acts on i, and normal x T times the
 // arms is the torque on both.
-struct StepRub {
+struct StepFriction {
   Vec3 start, step,
       end;     // force at the start, force that the step is solved with, force at the end [N]; tangential at
                // normal0, normal1, normal1
   Real limit;  // of the mean force over the step [N]
   // Derivatives of `step`: `stiffness` with respect to the slip perpendicular to `direction` [N/m], and
-  // `grip` along `direction` with respect to step_force. `direction` is the unit vector of sliding, or zero
-  // while the contact sticks. `growth` is the derivative with respect to the overlap at the end beside that
-  // by the normal force, because the fraction of the step in contact changes where the contact opens or
-  // closes [N/m].
-  Real stiffness, grip;
-  Vec3 direction, growth;
+  // `normal_force_slope` along `direction` with respect to step_force. `direction` is the unit vector of
+  // sliding, or zero while the contact sticks. `overlap_slope` is the derivative with respect to the overlap
+  // at the end beside that by the normal force, because the fraction of the step in contact changes where the
+  // contact opens or closes [N/m].
+  Real stiffness, normal_force_slope;
+  Vec3 direction, overlap_slope;
   Vec3 spring;  // for the history; zero where the contact has ended
   SpringLosses losses;
   Real stored0, stored1;  // energy of the spring at both ends [J]
@@ -59,10 +59,10 @@ SCREE_HD Real closed_fraction_slope(const ContactStep& c) {
 
 // Spring and slider of a closed contact at one instant; d: overlap there [m].
 template <class Law>
-SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real normal_force, Real d,
-                                Real leverage) {
+SCREE_HD SpringSlider slider_at(const Law& law, const FrictionStep& c, Real normal_force, Real d,
+                                Real lever_arm_ratio) {
   ContactMotion at = c.motion;
-  at.leverage = leverage;
+  at.lever_arm_ratio = lever_arm_ratio;
   return law.tangential.slider(c.size, at,
                                normal_contact(law.normal.of_pair(c.size), c.size, normal_force, d, d));
 }
@@ -73,7 +73,7 @@ SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real norma
 SCREE_HD Vec3 share_derivative(const StepSpring& over, Vec3 displacement) {
   const Vec3 elastic_part =
       over.elastic * (displacement - dot(over.direction, displacement) * over.direction);
-  return over.grip > 0 ? elastic_part : over.mean + elastic_part;
+  return over.limit_slope > 0 ? elastic_part : over.mean + elastic_part;
 }
 
 // Friction over an implicit step. The mean force over the step, and with it work and impulse, is that of
@@ -85,37 +85,37 @@ SCREE_HD Vec3 share_derivative(const StepSpring& over, Vec3 displacement) {
 // dashpot (`dashpot_part()`) is constant over the step, so that the derivatives are those of a spring and a
 // constant dashpot. spring: from the history, tangential at normal0 [N].
 template <class Law>
-SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
-  StepRub out{};
-  const bool frozen = c.frozen_limit >= 0;
-  const Real share = frozen ? 1 : closed_fraction(c.step);
+SCREE_HD StepFriction step_friction(const Law& law, const FrictionStep& c, Vec3 spring) {
+  StepFriction out{};
+  const bool is_lagged = c.lagged_limit >= 0;
+  const Real share = is_lagged ? 1 : closed_fraction(c.step);
   const Real mean_force = Real(0.5) * (c.start_force + c.step_force);
   const bool starts = c.step.acts_at_start(), ends = c.step.acts_at_end();
   SpringSlider first{};
   if (starts) {
-    first = slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0);
+    first = slider_at(law, c, c.start_force, c.step.overlap0, c.lever_arm_ratio0);
     out.start = acting_at(first, spring, c.slip_rate0);
   }
   if (!(share > 0)) return out;
   const NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
                                                c.step.overlap1, c.step.overlap0);
   SpringSlider slider = law.tangential.slider(c.size, c.motion, contact), end{};
-  if (frozen) slider.limit = c.frozen_limit;
-  if (ends) end = slider_at(law, c, c.end_force, c.step.overlap1, c.motion.leverage);
-  const Real twice = 2 * slider.limit, end_limit = frozen              ? slider.limit
+  if (is_lagged) slider.limit = c.lagged_limit;
+  if (ends) end = slider_at(law, c, c.end_force, c.step.overlap1, c.motion.lever_arm_ratio);
+  const Real twice = 2 * slider.limit, end_limit = is_lagged           ? slider.limit
                                                    : end.limit < twice ? end.limit
                                                                        : twice;
   if (slider.dashpot > 0 && starts) slider.dashpot *= dashpot_part(first, spring);
-  const StepSpring over = step_spring(slider, turned_across(c.motion, spring), share * c.motion.slip,
+  const StepSpring over = step_spring(slider, rotated_tangential(c.motion, spring), share * c.motion.slip,
                                       share * c.motion.h, end_limit);
   out.limit = share * slider.limit;
-  out.step = (2 * share) * over.mean - turned_across(c.motion, out.start);
+  out.step = (2 * share) * over.mean - rotated_tangential(c.motion, out.start);
   out.stiffness = 2 * share * share * over.stiffness;
-  if (!frozen)
-    out.growth = (2 * closed_fraction_slope(c.step)) * share_derivative(over, share * c.motion.slip);
-  if (over.grip > 0)
+  if (!is_lagged)
+    out.overlap_slope = (2 * closed_fraction_slope(c.step)) * share_derivative(over, share * c.motion.slip);
+  if (over.limit_slope > 0)
     out.direction = over.direction,
-    out.grip = frozen ? 0 : law.tangential.friction * reciprocal(c.motion.leverage);
+    out.normal_force_slope = is_lagged ? 0 : law.tangential.friction * reciprocal(c.motion.lever_arm_ratio);
   out.losses = over.losses;
   out.stored0 = spring_energy(spring, slider.stiffness0);
   const Real stored = spring_energy(over.spring, slider.stiffness);

@@ -15,10 +15,10 @@
 namespace scree {
 
 // Recommended steps of velocity Verlet, used where a deck does not give a step: at most these fractions, and
-// no longer than trial impacts reproduce the rebound (model/explicit_step.hpp).
-inline constexpr Real kStableShare = Real(1) / 3;  // of the stability limit in dense contact
-inline constexpr Real kNeckShare = 0.01;  // of the shortest contact duration, where a JKR contact must break
-                                          // within one step
+// no longer than trial impacts reproduce the rebound (model/checks/explicit_step.hpp).
+inline constexpr Real kStableStepFraction = Real(1) / 3;  // of the stability limit in dense contact
+inline constexpr Real kPullOffShare = 0.01;  // of the shortest contact duration, where a JKR contact must
+                                             // break within one step
 // Recommended phase of a body on its contacts in one step [rad]: its contacts are integrated staggered with
 // the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
@@ -31,12 +31,12 @@ SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
 // radius.
-inline Real typical_stiffness(const KelvinVoigt& of, const PairSize& size) {
-  const KelvinVoigt law = of.of_size(size);
+inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+  const NormalLawParameters law = of.of_size(size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
   if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
-  if (of.neck && of.attracts()) return JkrLaw(of).of_pair(size).slope(overlap);
+  if (of.jkr && of.is_cohesive()) return JkrLaw(of).of_pair(size).slope(overlap);
   return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
 }
 
@@ -56,18 +56,18 @@ SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
 }
 
 // Largest circular frequency [1/s] of equal particles with friction in the densest lattice: slip_stiffness
-// k_t [N/m], inertia_share I / (m R^2). It is the higher of two uncoupled modes. In one of them alternate
+// k_t [N/m], inertia_ratio I / (m R^2). It is the higher of two uncoupled modes. In one of them alternate
 // layers move tangentially against each other, with two of three contacts between layers; in the other all
 // particles spin alike, so that every contact slips by both spins. The squared frequencies are 8 (K + k_t)/m
 // and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs. rolling_stiffness: k_r /
 // R^2 [N/m]. For two spins a, b a contact's k_t R^2 |a + b|^2 + k_r |a - b|^2 is at most twice the larger
 // stiffness times |a|^2 + |b|^2: the larger of k_t and k_r / R^2 is used.
-SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
-                                      int dimension, Real rolling_stiffness = 0) {
+SCREE_HD Real dense_friction_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_ratio,
+                                       int dimension, Real rolling_stiffness = 0) {
   const bool discs = dimension == 2;
   const Real moving = discs ? 6 * stiffness + 2 * slip_stiffness : 8 * (stiffness + slip_stiffness);
   const Real rotational = slip_stiffness > rolling_stiffness ? slip_stiffness : rolling_stiffness;
-  const Real spinning = (discs ? 12 : 16) * rotational / inertia_share;
+  const Real spinning = (discs ? 12 : 16) * rotational / inertia_ratio;
   return std::sqrt((moving > spinning ? moving : spinning) / mass);
 }
 
@@ -91,7 +91,7 @@ inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
 // Rolling and twisting stiffness for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of the
 // normal spring [N/m]. Twisting, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
 // neglected.
-inline Real typical_rolling_stiffness(const RollingResistance& of, const PairSize& size, Real stiffness) {
+inline Real typical_rolling_stiffness(const RollingParameters& of, const PairSize& size, Real stiffness) {
   if (of.friction == 0) return 0;
   const Real radius = std::min(size.radius_i, size.radius_j);
   return AnyRolling::of(of).rolling.stiffness_at(size, stiffness) / (radius * radius);
@@ -99,9 +99,9 @@ inline Real typical_rolling_stiffness(const RollingResistance& of, const PairSiz
 
 // Largest circular frequency [1/s] of one particle with friction on an immovable partner: normal, tangential
 // with rotation, or rolling mode.
-inline Real wall_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
-                                   Real rolling_stiffness = 0) {
-  const Real tangential = (1 + 1 / inertia_share) * slip_stiffness + rolling_stiffness / inertia_share;
+inline Real wall_friction_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_ratio,
+                                    Real rolling_stiffness = 0) {
+  const Real tangential = (1 + 1 / inertia_ratio) * slip_stiffness + rolling_stiffness / inertia_ratio;
   return std::sqrt(std::max(stiffness, tangential) / mass);
 }
 

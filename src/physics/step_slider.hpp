@@ -12,12 +12,12 @@ namespace scree {
 // changes with the normal force and makes the Newton matrix unsymmetric. The derivative of scaling the old
 // force to the limit is neglected.
 struct StepSpring {
-  Vec3 spring;     // force of the spring at the end of the step, for the history
-  Vec3 mean;       // mean force of spring and dashpot over the step
-  Real stiffness;  // [N/m]
-  Real elastic;    // the spring's part of the stiffness [N/m]
-  Vec3 direction;  // unit vector of sliding; zero while sticking
-  Real grip;       // 1 while sliding, else 0
+  Vec3 spring;       // force of the spring at the end of the step, for the history
+  Vec3 mean;         // mean force of spring and dashpot over the step
+  Real stiffness;    // [N/m]
+  Real elastic;      // the spring's part of the stiffness [N/m]
+  Vec3 direction;    // unit vector of sliding; zero while sticking
+  Real limit_slope;  // 1 while sliding, else 0
   SpringLosses losses;
 };
 
@@ -30,21 +30,21 @@ struct StepSpring {
 SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 displacement, Real h, Real end_limit) {
   StepSpring out{};
   const StiffnessStep k = stiffness_step(p);
-  const Vec3 retained = k.kept * old, start = shortened(retained, 2 * p.limit - end_limit),
-             trial = start + k.of_way * displacement;
+  const Vec3 retained = k.remaining * old, start = shortened(retained, 2 * p.limit - end_limit),
+             trial = start + k.step_stiffness * displacement;
   const Real rate = p.dashpot * reciprocal(h);
   const Vec3 trial_mean = Real(0.5) * (start + trial) + rate * displacement;
   out.spring = shortened(trial, end_limit);
   out.mean = shortened(trial_mean, p.limit);
-  out.elastic = k.of_way / 2, out.stiffness = out.elastic + rate;
+  out.elastic = k.step_stiffness / 2, out.stiffness = out.elastic + rate;
   const Real square = dot(trial_mean, trial_mean);
   if (square > p.limit * p.limit && square >= kNoSquare) {
     const Real inverse = root_and_inverse(square).inverse;
-    out.direction = inverse * trial_mean, out.grip = 1;
+    out.direction = inverse * trial_mean, out.limit_slope = 1;
     out.stiffness *= p.limit * inverse, out.elastic *= p.limit * inverse;
   }
-  const Real stored = spring_energy(out.spring, k.of_way) - spring_energy(retained, k.of_way);
-  out.losses.dashpot = out.grip > 0 ? 0 : rate * dot(displacement, displacement);
+  const Real stored = spring_energy(out.spring, k.step_stiffness) - spring_energy(retained, k.step_stiffness);
+  out.losses.dashpot = out.limit_slope > 0 ? 0 : rate * dot(displacement, displacement);
   out.losses.sliding = dot(out.mean, displacement) - stored - out.losses.dashpot;
   out.losses.unloading = unloading_loss(p, k, old, out.spring);
   return out;

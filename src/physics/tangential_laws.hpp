@@ -44,7 +44,7 @@ SCREE_HD Real slip_dashpot(Real damping_ratio, const PairSize& size, const Conta
 // Limit of the spring force T: mu F_n |r| / (R_i + R_j), for which the force on the centres obeys Coulomb's
 // law.
 SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const ContactMotion& c) {
-  return friction * normal.grip * reciprocal(c.leverage);
+  return friction * normal.friction_load * reciprocal(c.lever_arm_ratio);
 }
 
 // No tangential force.

@@ -26,7 +26,7 @@ TrialRebound rebound_of(Trial trial, Real approach, Real h, int most_steps) {
     const bool closed = trial.step(h);
     met = met || closed;
     open = met && !closed ? open + 1 : 0;
-    if (open == kApart) return {trial.parting() / approach, trial.across() / approach};
+    if (open == kApart) return {trial.parting() / approach, trial.tangential_part() / approach};
   }
   return {};
 }

@@ -30,9 +30,9 @@ inline Vec3 trial_start(const TrialImpact& impact, Real gap) {
          gap * Vec3{impact.sliding, 0, -impact.approach};
 }
 
-// Trial in velocity Verlet, or for laws with `kMoves` in its leapfrog form (dem/step_items.hpp). Every trial
-// has step(h), which returns whether the contact was closed at the end of the step, and parting() and
-// across(), the normal and tangential relative velocity.
+// Trial in velocity Verlet, or for laws with `kNeedsMotion` in its leapfrog form
+// (dem/implicit/step_items.hpp). Every trial has step(h), which returns whether the contact was closed at the
+// end of the step, and parting() and across(), the normal and tangential relative velocity.
 template <class Law>
 class ExplicitTrial {
  public:
@@ -44,13 +44,13 @@ class ExplicitTrial {
         velocity_{impact.sliding, 0, -impact.approach} {}
 
   bool step(Real h) {
-    if constexpr (Law::kMoves)
+    if constexpr (Law::kNeedsMotion)
       return step_by_halves(h);
     else
       return step_whole(h);
   }
   Real parting() const { return dot(velocity_, normal()); }
-  Real across() const { return scree::across(velocity_, normal()).x; }
+  Real tangential_part() const { return scree::tangential_part(velocity_, normal()).x; }
 
  private:
   Vec3 normal() const { return trial_geometry(impact_.size, r_).normal(); }
@@ -71,7 +71,7 @@ class ExplicitTrial {
     spin_j_ = verlet_half_kick(h, spin_j_, angular_acceleration_j_);
     const Vec3 displacement = h * velocity_;
     r_ += displacement;
-    const TurningPartner i{spin_i_, impact_.size.radius_i, impact_.inertia_i},
+    const RotatingPartner i{spin_i_, impact_.size.radius_i, impact_.inertia_i},
         j{spin_j_, on_plane(impact_.size) ? 0 : impact_.size.radius_j, impact_.inertia_j};
     const PairState state = pair(velocity_);
     const MovingPair moving{state, on_plane(impact_.size)
@@ -136,7 +136,7 @@ class ImplicitTrial {
     return overlap_ > 0;
   }
   Real parting() const { return -rate_; }
-  Real across() const { return 0; }
+  Real tangential_part() const { return 0; }
 
  private:
   // State at the end of a step with this acceleration.

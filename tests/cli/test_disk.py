@@ -110,7 +110,7 @@ class DiskTest(CommandLineTest):
 
     def test_contacts_that_are_remembered_make_a_range(self):
         rubbing = GAS.replace("stiffness = 1e6", "stiffness = 1e6\nfriction = 0.5").replace("hht", "velocity-verlet")
-        rubbing = self.write("rubbing.toml", rubbing)
+        rubbing = self.write("friction.toml", rubbing)
         found, said, report = self.sizes(rubbing, "time.end=0.02", "output.contacts=true")
         dense = named(report, r"\ncheckpoints .* each; ")
         self.assertTrue(0.8 * said[0] <= found[0] <= 1.2 * dense)

@@ -75,7 +75,7 @@ class LinesTest(CommandLineTest):
         self.assertGreater(apart, 0)  # held by their necks
 
     def test_forces_of_contacts_add_up_to_those_of_particles(self):
-        deck = RANKS / "rubbing_bodies.toml"
+        deck = RANKS / "frictional_bodies.toml"
         run = self.run_lines(deck, "out", *IMPLICIT, *CONTACTS)
         for snapshot in run.snapshots[1:]:
             number, force = per_particle(snapshot)

@@ -36,7 +36,7 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
   Run run(std::move(bed), options);
   Backend& backend = *run.backend;
   const Real skin = run.model.contact.skin;
-  backend.list().place_bodies({});
+  backend.list().set_body_motion({});
   backend.list().build(skin, run.timers);
   backend.particles().initial_forces();
   const std::unique_ptr<ExplicitRun> bed_run = backend.start_run(h);
@@ -207,7 +207,7 @@ void measure_all(const Options& options) {
   if (options.precision == "mixed" && (!options.on_gpu() || options.integrator == "hht"))
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
   if (options.on_gpu()) choose_device(options.ranks);
-  if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
+  if (options.on_gpu() && !device_error().empty()) throw InputError("--backend cuda: " + device_error());
   fmt::print("commit {}, {}, {}, {}{}{}{}\n", commit(),
              options.on_gpu()        ? device_name() + ", wall seconds around synchronised batches"
              : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
@@ -230,7 +230,7 @@ void measure_all(const Options& options) {
                   options.dimension, options.integrator, rebuild, options.friction),
       title_of(options), options.ranks);
   // Bodies are positioned in the complete bed.
-  const RanksShare share(options.with_bodies() ? Ranks() : options.ranks);
+  const RankShare share(options.with_bodies() ? Ranks() : options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();
   for (const std::int64_t size : options.particles) {

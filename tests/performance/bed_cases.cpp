@@ -219,7 +219,7 @@ std::vector<Vec3> settled_discs() {
   StageTimers timers;
   const std::unique_ptr<Backend> backend = make_cpu_backend(model);
   backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
-  BodyLink link(model);
+  BodyCoupling link(model);
   CoupledStep step(model, *backend, link, timers);
   MultibodyState bodies;
   step.start(bodies);

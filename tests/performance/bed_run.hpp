@@ -52,7 +52,7 @@ struct Run {
   Model model;
   StageTimers timers;
   std::unique_ptr<Backend> backend;
-  BodyLink link;
+  BodyCoupling link;
   Ranks ranks;
   CoupledStep step;
   MultibodyState bodies;

@@ -1,5 +1,5 @@
 """What a particle takes in memory, and a particle and a body in files: the numbers of src/model/checks/memory.hpp,
-src/model/checks/memory.cpp and src/dem/history/kept_contacts.cpp. Files: tests/cli/test_disk.py.
+src/model/checks/memory.cpp and src/dem/history/packed_history.cpp. Files: tests/cli/test_disk.py.
 Usage: bytes_per_item.py SCREE"""
 
 import os

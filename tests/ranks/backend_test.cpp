@@ -51,12 +51,12 @@ struct RankedBox {
   void start(const std::vector<Particle>& records) {
     const IdRange own = id_range(std::ssize(records), ranks.rank(), ranks.size());
     backend->particles().load({records.begin() + own.first, records.begin() + own.last}, {});
-    backend->list().place_bodies(motion);
+    backend->list().set_body_motion(motion);
     backend->list().build(skin, timers);
     backend->particles().initial_forces();
   }
   std::vector<Particle> records() const {
-    std::vector<Particle> all = ranks.gather_everywhere(backend->particles().records());
+    std::vector<Particle> all = ranks.all_gather(backend->particles().records());
     std::sort(all.begin(), all.end(), [](auto& a, auto& b) { return a.global_id < b.global_id; });
     return all;
   }
@@ -75,7 +75,7 @@ struct RankedBox {
 void step(RankedBox& box, Real h) {
   if (box.model.integrator.particles == ParticleIntegrator::hht) return hht_step(*box.backend, box.motion, h);
   const std::unique_ptr<ExplicitRun> run = box.backend->start_run(h);
-  box.backend->list().place_bodies(box.motion);
+  box.backend->list().set_body_motion(box.motion);
   run->take_steps(1, false, box.timers);
 }
 
@@ -157,8 +157,8 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       const std::vector<int> walls = c.walls ? std::vector{1, 0} : std::vector<int>{};
       const std::vector<ContactSum> walls_a = one.backend->reports().wall_contacts(walls),
                                     walls_b = many.backend->reports().wall_contacts(walls),
-                                    bodies_a = one.backend->reports().carrier_contacts(),
-                                    bodies_b = many.backend->reports().carrier_contacts(),
+                                    bodies_a = one.backend->reports().parent_contacts(),
+                                    bodies_b = many.backend->reports().parent_contacts(),
                                     shapes_a = one.backend->reports().surface_contacts(),
                                     shapes_b = many.backend->reports().surface_contacts();
       if (world.is_root()) CHECK((same_bits(walls_a, walls_b) && touched(walls_a) == c.walls));
@@ -179,7 +179,7 @@ TEST_CASE("escaped particles in contact, and their former partners, have the bit
   const Ranks world = Ranks::world();
   for (const BoxCase& c : kBoxes)
     for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
-      for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+      for (const OutsidePolicy leaving : {OutsidePolicy::drift, OutsidePolicy::remove}) {
         if (c.periodic_axes == c.dimension) continue;
         CAPTURE(c.name, static_cast<int>(integrator), static_cast<int>(leaving));
         Model model = random_box(c, kParticles, 21);
@@ -190,21 +190,21 @@ TEST_CASE("escaped particles in contact, and their former partners, have the bit
           model.particles.velocity[9 * id] = {0, 10, 0};
         }
         RankedBox many(model, world), one(model, Ranks());
-        std::vector<Leaver> leavers[2];
+        std::vector<EscapedParticle> escaped_particles[2];
         for (const bool alone : {false, true}) {
           RankedBox& box = alone ? one : many;
           step(box, 2e-4);
-          leavers[alone] = box.backend->particles().outside();
-          box.backend->particles().take_out(leavers[alone]);
+          escaped_particles[alone] = box.backend->particles().outside();
+          box.backend->particles().remove_escaped(escaped_particles[alone]);
           box.backend->list().build(kSkin, box.timers);
           step(box, 2e-4);
         }
-        REQUIRE(leavers[0].size() == leavers[1].size());
-        CHECK(leavers[0].size() >= 15);
+        REQUIRE(escaped_particles[0].size() == escaped_particles[1].size());
+        CHECK(escaped_particles[0].size() >= 15);
         bool same_energies = true;
         Real elastic = 0;
-        for (std::size_t k = 0; k < leavers[0].size(); ++k) {
-          const Leaver &a = leavers[0][k], &b = leavers[1][k];
+        for (std::size_t k = 0; k < escaped_particles[0].size(); ++k) {
+          const EscapedParticle &a = escaped_particles[0][k], &b = escaped_particles[1][k];
           same_energies = same_energies && a.energy == b.energy && a.elastic == b.elastic &&
                           a.contact_loss == b.contact_loss && a.integrator_loss == b.integrator_loss;
           elastic += a.elastic;
@@ -254,8 +254,7 @@ TEST_CASE("a particle that is not finite ends all ranks with the same message") 
       if (place) CHECK(message == kUnsoundPosition[0] + std::string("17") + kUnsoundPosition[1]);
       std::string of_all;
       for (int rank = 0; rank < Ranks::world().size(); ++rank) of_all += message;
-      const std::vector<char> own(message.begin(), message.end()),
-          all = Ranks::world().gather_everywhere(own);
+      const std::vector<char> own(message.begin(), message.end()), all = Ranks::world().all_gather(own);
       CHECK(std::string(all.begin(), all.end()) == of_all);
       // All ranks have reached the same point: the next collective is the same one everywhere.
       CHECK(Ranks::world().sum(std::int64_t{1}) == Ranks::world().size());

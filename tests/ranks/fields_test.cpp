@@ -17,9 +17,9 @@ TEST_CASE("every field goes with a particle to another rank") {
       const std::unique_ptr<Backend> backend = make_test_backend(model, ranks);
       backend->particles().load({all.begin() + own.first, all.begin() + own.last}, {});
       StageTimers timers;
-      backend->list().place_bodies(motion_of(model.bodies));
+      backend->list().set_body_motion(motion_of(model.bodies));
       backend->list().build(0.15, timers);
-      std::vector<Particle> found = ranks.gather_everywhere(backend->particles().records());
+      std::vector<Particle> found = ranks.all_gather(backend->particles().records());
       std::sort(found.begin(), found.end(), [](auto& a, auto& b) { return a.global_id < b.global_id; });
       CHECK(differing_fields(found, all) == "");
       CHECK((ranks.sum(backend->list().balance().migrated) > 0) == !ranks.alone());

@@ -2,10 +2,10 @@
 // number of ranks to any other. (One rank against brute force: unit/dem.)
 #include "output/checkpoint.hpp"
 #include "support/catch.hpp"
-#include "support/contact_book.hpp"
+#include "support/contact_record.hpp"
+#include "support/history_test_box.hpp"
 #include "support/particle_bits.hpp"
 #include "support/petsc_run.hpp"
-#include "support/remembering_box.hpp"
 #include "support/shared_folder.hpp"
 
 namespace scree {
@@ -13,18 +13,18 @@ namespace scree {
 namespace {
 
 // The state of all ranks, on each rank.
-State of_all(const RememberingBox& box) {
+State of_all(const HistoryTestBox& box) {
   const State own = box.in_id_order();
   State all;
-  all.particles = box.ranks.gather_everywhere(own.particles);
+  all.particles = box.ranks.all_gather(own.particles);
   all.contacts.numbers = own.contacts.numbers;
-  all.contacts.set_counts(box.ranks.gather_everywhere(own.contacts.counts()));
-  all.contacts.keys = box.ranks.gather_everywhere(own.contacts.keys);
-  all.contacts.values = box.ranks.gather_everywhere(own.contacts.values);
+  all.contacts.set_counts(box.ranks.all_gather(own.contacts.counts()));
+  all.contacts.keys = box.ranks.all_gather(own.contacts.keys);
+  all.contacts.values = box.ranks.all_gather(own.contacts.values);
   return all;
 }
 
-void check_equal(const RememberingBox& one, const RememberingBox& many) {
+void check_equal(const HistoryTestBox& one, const HistoryTestBox& many) {
   const State a = of_all(one), b = of_all(many);
   CHECK(differing_fields(a.particles, b.particles) == "");
   CHECK(difference(a.contacts, b.contacts) == "");
@@ -37,15 +37,15 @@ void check_equal(const RememberingBox& one, const RememberingBox& many) {
 TEST_CASE("contact histories over ranks, lists and cuts are those of one rank") {
   petsc();
   for (const BoxCase& c : kBoxes)
-    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+    for (const OutsidePolicy leaving : {OutsidePolicy::drift, OutsidePolicy::remove}) {
       CAPTURE(c.name, static_cast<int>(leaving));
       const Model model = moving_box(c, leaving);
-      RememberingBox many(model, Ranks::world()), one(model, Ranks());
-      for (RememberingBox* box : {&many, &one}) box->start();
+      HistoryTestBox many(model, Ranks::world()), one(model, Ranks());
+      for (HistoryTestBox* box : {&many, &one}) box->start();
       const auto migrated = [&] { return many.ranks.sum(many.backend->list().balance().migrated); };
       const std::int64_t at_start = migrated();
       for (int part = 0; part < 20; ++part) {
-        for (RememberingBox* box : {&many, &one}) box->take_steps(1 + 2 * part);
+        for (HistoryTestBox* box : {&many, &one}) box->take_steps(1 + 2 * part);
         check_equal(one, many);
       }
       CHECK((migrated() > at_start) == !many.ranks.alone());
@@ -57,24 +57,24 @@ TEST_CASE("contact histories pass through a checkpoint to any number of ranks") 
   petsc();
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
-    const Model model = moving_box(c, Leaving::remove);
+    const Model model = moving_box(c, OutsidePolicy::remove);
     const Ranks world = Ranks::world();
-    RememberingBox many(model, world), one(model, Ranks());
-    for (RememberingBox* box : {&many, &one}) box->start(), box->take_steps(100), box->take_steps(77);
+    HistoryTestBox many(model, world), one(model, Ranks());
+    for (HistoryTestBox* box : {&many, &one}) box->start(), box->take_steps(100), box->take_steps(77);
     const SharedFolder folder(world);
     const State of_many = many.in_id_order(), of_one = one.in_id_order();
     write_checkpoint(folder / "many.h5", pack(of_many), world);
     world.on_root([&] { write_checkpoint(folder / "one.h5", pack(of_one)); });
     for (const char* name : {"many.h5", "one.h5"}) {
       CAPTURE(name);
-      RememberingBox again(model, world), again_alone(model, Ranks());
+      HistoryTestBox again(model, world), again_alone(model, Ranks());
       again.motion = again_alone.motion = many.motion;
       again.start(unpack(read_checkpoint(folder / name, world), world));
       again_alone.start(unpack(read_checkpoint(folder / name)));
       check_equal(one, again), check_equal(one, again_alone);
-      RememberingBox onward(model, Ranks());
+      HistoryTestBox onward(model, Ranks());
       onward.motion = one.motion, onward.start(of_one);
-      for (RememberingBox* box : {&again, &again_alone, &onward}) box->take_steps(60);
+      for (HistoryTestBox* box : {&again, &again_alone, &onward}) box->take_steps(60);
       check_equal(onward, again), check_equal(onward, again_alone);
     }
   }

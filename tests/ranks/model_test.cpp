@@ -111,7 +111,7 @@ class GroupsDeck {
 
 TEST_CASE("the ranks' parts of a model are the whole model") {
   const Ranks ranks = world();
-  const RanksShare share(ranks);
+  const RankShare share(ranks);
   const GroupsDeck deck(ranks);
   std::vector<std::string> alone_warnings, warnings;
   const Model alone = built(deck.text(), {}, Share(), alone_warnings);
@@ -140,7 +140,7 @@ TEST_CASE("the ranks' parts of a model are the whole model") {
 
 TEST_CASE("ranks fill a region with the same positions, and refuse it with the same message") {
   const Ranks ranks = world();
-  const RanksShare share(ranks);
+  const RankShare share(ranks);
   const GroupsDeck deck(ranks);
   const std::vector<std::string> region{"particles.packing.cylinder_radius=0.5",
                                         "particles.packing.ends=[[1.2, 0.5, 0.5], [2.8, 0.5, 0.5]]"};
@@ -156,7 +156,7 @@ TEST_CASE("ranks fill a region with the same positions, and refuse it with the s
 
 TEST_CASE("overlaps at the start are found whichever ranks have the two, and named the same") {
   const Ranks ranks = world();
-  const RanksShare share(ranks);
+  const RankShare share(ranks);
   const GroupsDeck deck(ranks);
   struct Wrong {
     std::string override, message;
@@ -194,7 +194,7 @@ TEST_CASE("a value in a file that only one rank reads ends all with its message"
   const std::string text = kSmallDeck +
                            "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"file\"\n" +
                            "mass = 1.0\nfile = \"" + (folder / "p.csv") + "\"\n";
-  CHECK(contains(failure(text, {}, RanksShare(ranks)), "p.csv:39: column radius = -1: must be a positive"));
+  CHECK(contains(failure(text, {}, RankShare(ranks)), "p.csv:39: column radius = -1: must be a positive"));
 }
 
 }  // namespace scree

@@ -98,7 +98,7 @@ std::string common_failure(const Ranks& ranks, const std::function<void()>& acti
   } catch (const IoError& error) {
     message = error.what();
   }
-  std::vector<char> all = ranks.gather_everywhere(std::vector<char>(message.begin(), message.end()));
+  std::vector<char> all = ranks.all_gather(std::vector<char>(message.begin(), message.end()));
   std::string expected;
   for (int r = 0; r < ranks.size(); ++r) expected += message;
   CHECK(std::string(all.begin(), all.end()) == expected);
@@ -151,14 +151,14 @@ TEST_CASE("values find the ranks that write them, in the order of the ids") {
 TEST_CASE("an exception of one rank is thrown on every rank") {
   const Ranks ranks = world();
   const int last = ranks.size() - 1;
-  CHECK(common_failure(ranks, [&] { ranks.together([] {}); }).empty());
+  CHECK(common_failure(ranks, [&] { ranks.collectively([] {}); }).empty());
   CHECK(common_failure(ranks, [&] {
-          ranks.together([&] {
+          ranks.collectively([&] {
             if (ranks.rank() == last) throw IoError("from the last");
           });
         }) == "from the last");
   CHECK(common_failure(ranks, [&] {
-          ranks.together([&] { throw IoError("from " + std::to_string(ranks.rank())); });
+          ranks.collectively([&] { throw IoError("from " + std::to_string(ranks.rank())); });
         }) == "from 0");
 }
 

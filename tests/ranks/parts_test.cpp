@@ -100,9 +100,9 @@ TEST_CASE("contents find their ranks") {
     expected.insert(expected.end(), static_cast<std::size_t>(sender), 100 * sender + r);
     all.insert(all.end(), static_cast<std::size_t>(sender), sender);
   }
-  CHECK(ranks.deal_out(to) == expected);
+  CHECK(ranks.all_to_all(to) == expected);
   const std::vector<int> own(static_cast<std::size_t>(r), r);
-  CHECK(ranks.gather_everywhere(own) == all);
+  CHECK(ranks.all_gather(own) == all);
   CHECK(ranks.gather(own) == (r == 0 ? all : std::vector<int>{}));
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
         const bool mine = boxes.owner(p) == ranks.rank();
         if (mine) position.push_back(all.position[i]), id.push_back(static_cast<std::int64_t>(i));
         for_each_shift(period, [&](Vec3 shift, int image) {
-          if (image == kNoShift && (mine || ranks.alone())) return;
+          if (image == kZeroShift && (mine || ranks.alone())) return;
           const Vec3 q = p + shift;
           if (q.x >= box.min.x - width && q.x <= box.max.x + width && q.y >= box.min.y - width &&
               q.y <= box.max.y + width && q.z >= box.min.z - width && q.z <= box.max.z + width)

@@ -12,7 +12,7 @@ NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05"
 FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
           '"image", "force", "contacts", "stress", "group"]')
 # Spheres that fall, slide, stick, roll, part and leave; some of them do not rub on each other.
-RUBBING = [HERE / "rubbing.toml", "parallel.imbalance=0.05"]
+RUBBING = [HERE / "friction.toml", "parallel.imbalance=0.05"]
 RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
 FIXED = ["time.control=fixed"]
 # Motors, gears, a screw, a spring, a stop, friction, a bushing and a loop of hinges, all of them at work.
@@ -29,7 +29,7 @@ LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
-SHEETS = [HERE / "sheets.toml", "parallel.imbalance=0.0"]
+SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
 # The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -40,13 +40,13 @@ MAIN_CASES = {
     "periodic gas, implicit": ([*GAS, *LINES, *IMPLICIT], (1, 2, 3, 4, 8)),
     "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
     "rubbing": ([*RUBBING, "time.end=0.08"], (1, 2, 3, 4, 8)),
-    "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
+    "rubbing after Hertz and Mindlin": ([HERE / "friction_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (1, 2, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
-    "rubbing on bodies": ([HERE / "rubbing_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
+    "rubbing on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (1, 2, 3, 4)),
     "meshes, a light plate under heavy spheres": ([HERE / "loaded_plate.toml", "parallel.imbalance=0.0",
                                                    "time.end=0.08"], (1, 2, 4)),
@@ -56,10 +56,10 @@ MAIN_CASES = {
     "meshes at rest and their works": ([*AT_REST, *WORKS], (1, 2, 3, 4)),
     "meshes, soft sheets": ([*SHEETS, "time.end=0.08"], (1, 2, 4)),
     "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
-    "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
+    "rubbing after Hertz and Mindlin, implicit": ([HERE / "friction_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
                                                   (1, 2, 3, 4)),
-    "rubbing on bodies, implicit": ([HERE / "rubbing_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
+    "rubbing on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
                                      "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
 }
 CASES = {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "dem/backend.hpp"
+#include "dem/backend/backend.hpp"
 #include "support/catch.hpp"
 
 namespace scree {
@@ -26,7 +26,7 @@ void solve_step(Backend& backend, ImplicitStep& step, const std::vector<BodyMoti
       continue;
     }
     if (norms.residual <= 1e-10) return;
-    backend.list().place_bodies(motion);
+    backend.list().set_body_motion(motion);
     after(step.particle_correct().iterations);
   }
   FAIL("no convergence");

@@ -15,7 +15,7 @@ constexpr int kSkipped = 4, kBadUsage = 2;
 
 int main(int count, char** values) {
   if (count < 2) return kBadUsage;
-  const std::string trouble = scree::device_trouble();
+  const std::string trouble = scree::device_error();
   if (!trouble.empty()) {
     std::printf("skipped: %s\n", trouble.c_str());
     return kSkipped;

@@ -4,4 +4,4 @@
 
 #include "dem/backend/device.hpp"
 
-int main() { std::puts(scree::device_trouble().c_str()); }
+int main() { std::puts(scree::device_error().c_str()); }

@@ -98,16 +98,17 @@ class SimulationRun {
   Real time() const { return state_.clock.time; }
   const StepCounts& counts() const { return step_.counts(); }
   const MultibodyState& bodies() const { return state_.bodies; }
-  const Multibody& multibody() const { return *link_.multibody(); }
+  const Multibody& multibody() const { return *body_coupling_.multibody(); }
   std::vector<Particle> particles() const { return backend_->particles().records(); }  // ordered by global id
   ParticleLedger particle_ledger() { return backend_->reports().ledger(verlet_step(model_)); }
   Ledger ledger() {
-    return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies, time());
+    return make_ledger(particle_ledger(), state_.carried_out, body_coupling_.multibody(), state_.bodies,
+                       time());
   }
   // The columns of a history row for the recorded contacts.
   std::vector<Real> contact_values() {
     std::vector<Real> values;
-    for (const ContactSum& sum : target_contacts(model_, link_, state_, *backend_))
+    for (const ContactSum& sum : target_contacts(model_, body_coupling_, state_, *backend_))
       values.insert(values.end(), {sum.force.x, sum.force.y, sum.force.z, sum.torque.x, sum.torque.y,
                                    sum.torque.z, static_cast<Real>(sum.contacts)});
     return values;
@@ -125,14 +126,14 @@ class SimulationRun {
   SimulationRun(const Model& model, bool)
       : model_((petsc(), model)),
         backend_(make_test_backend(model_)),
-        link_(model_),
-        step_(model_, *backend_, link_, timers_),
+        body_coupling_(model_),
+        step_(model_, *backend_, body_coupling_, timers_),
         records_([this] { return particle_ledger(); }, [this] { return ledger(); }) {}
 
   void make_loop() {
     // By this clock everything takes 10 ms: batches of explicit steps end at the same steps on any machine.
     const LoopParts parts{
-        model_, *backend_, link_, step_, records_, timers_, [this] { return now_ += 0.01; }};
+        model_, *backend_, body_coupling_, step_, records_, timers_, [this] { return now_ += 0.01; }};
     loop_.emplace(
         parts, state_, [](State&) {}, [this](const State&, Real h) { last_step_ = h; });
   }
@@ -141,7 +142,7 @@ class SimulationRun {
   State state_;
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
-  BodyLink link_;
+  BodyCoupling body_coupling_;
   CoupledStep step_;
   MemoryRecords records_;
   std::optional<StepLoop> loop_;

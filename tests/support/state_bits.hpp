@@ -11,13 +11,13 @@
 namespace scree {
 
 inline auto fields(const ShapeLosses& l) {
-  const auto& [contact_loss, loss_power, integrator_loss, rubbing] = l;
-  const auto& [friction, rolling, twisting] = rubbing.of;
+  const auto& [contact_loss, loss_power, integrator_loss, tangential] = l;
+  const auto& [friction, rolling, twisting] = tangential.of;
   return std::tie(contact_loss, loss_power, integrator_loss, friction, rolling, twisting);
 }
 inline auto fields(const BodyWrench& w) {
-  const auto& [force, torque, slide_power] = w;
-  return std::tie(force, torque, slide_power);
+  const auto& [force, torque, belt_power] = w;
+  return std::tie(force, torque, belt_power);
 }
 inline auto fields(const ContactSum& s) {
   const auto& [force, torque, contacts] = s;

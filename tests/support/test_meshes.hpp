@@ -58,7 +58,7 @@ TriangleMesh mapped(TriangleMesh mesh, const Function& function) {
   return mesh;
 }
 
-inline TriangleMesh turned(const TriangleMesh& mesh, const Mat3& turn) {
+inline TriangleMesh rotated(const TriangleMesh& mesh, const Mat3& turn) {
   return mapped(mesh, [&](Vec3 v) { return turn * v; });
 }
 
@@ -197,7 +197,7 @@ inline TriangleMesh potato(int level, Real variation, unsigned seed) {
 
 // A random position near a mesh, or at the border of regions: over a vertex or a point of an edge along the
 // normal of one of the faces there.
-inline Vec3 place_near(const SurfaceMesh& mesh, Real height, MeshRandom& random) {
+inline Vec3 position_near(const SurfaceMesh& mesh, Real height, MeshRandom& random) {
   const MeshTriangle& triangle = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
   const Vec3 a = mesh.vertices[triangle.vertex[0]], b = mesh.vertices[triangle.vertex[1]];
   const Vec3 normal = mesh.parts[triangle.part].normal;

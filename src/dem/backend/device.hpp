@@ -24,12 +24,12 @@ struct TransportError : InputError {
 void choose_device(const Ranks& ranks);
 
 // Reason why this program cannot use a GPU on this machine, for the user; empty if it can.
-std::string device_trouble();
+std::string device_error();
 
-// "NVIDIA H200, 132 multiprocessors, 150 GB"; only where device_trouble() is empty.
+// "NVIDIA H200, 132 multiprocessors, 150 GB"; only where device_error() is empty.
 std::string device_name();
 
-// Device memory that is free now [B]; only where device_trouble() is empty.
+// Device memory that is free now [B]; only where device_error() is empty.
 std::size_t free_device_memory();
 
 // Device memory that the program holds now [B].
@@ -53,7 +53,7 @@ inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 16;
 // Rows of contact history that are copied at a time, with a buffer for this many contacts per row, more than
 // packings have.
 inline constexpr Index kRowsAtOnce = Index{1} << 16;
-inline constexpr std::size_t kRoomInRows = 8;
+inline constexpr std::size_t kContactsPerRow = 8;
 // Contact lines of a snapshot that are copied at a time; the buffer is allocated once they are used.
 inline constexpr std::size_t kLinesAtOnce = std::size_t{1} << 18;
 
@@ -70,7 +70,7 @@ struct DeviceClaim {
   std::size_t needed, free;     // [B]
 };
 
-// The claim of this rank; only where device_trouble() is empty.
+// The claim of this rank; only where device_error() is empty.
 DeviceClaim claim_device(const Model& model);
 
 // Total memory that all ranks need on the GPU of rank `own`. claims: of all ranks.

@@ -6,9 +6,9 @@
 #include "dem/backend/backend.hpp"
 #include "dem/backend/device.hpp"
 #include "dem/explicit/mixed_items.hpp"
-#include "dem/history/kept_contacts.hpp"
-#include "dem/host/surface_side.hpp"
-#include "dem/implicit/turning_items.hpp"
+#include "dem/history/packed_history.hpp"
+#include "dem/host/host_surfaces.hpp"
+#include "dem/implicit/rotation_items.hpp"
 #include "dem/reports/contact_line_items.hpp"
 #include "dem/reports/output_fields.hpp"
 #include "dem/reports/triangle_works.hpp"
@@ -33,31 +33,31 @@ constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and offset
 constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
-// CudaRubbingArrays, in place of matrix and solver arrays, for implicit steps with friction.
-constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
-                                  sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
+// CudaFrictionArrays, in place of matrix and solver arrays, for implicit steps with friction.
+constexpr double kFrictionArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
+                                   sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
 constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
-constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
-                                         sizeof(RubbingEntry::Shear) +
-                                         sizeof(Real);  // the last: lagged limits
+constexpr double kFrictionArraysPerSlot =
+    sizeof(FrictionEntry::Normal) + sizeof(FrictionEntry::SlipDirection) + sizeof(FrictionEntry::Shear) +
+    sizeof(Real);  // the last: lagged limits
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts have adhesion
 // Bytes per placed surface, and per entry of the surfaces' rows where there are any: DeviceSurfaces.
-constexpr double kSurfaceArrays = 2 * sizeof(PlacedSurface) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
                                 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
-constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPerSlot;
+constexpr double kFrictionArraysPerEntry = sizeof(SurfaceFriction) + kFrictionArraysPerSlot;
 // Bytes per entry, group and triangle with meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
-constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
+constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(CachedContact),
                  kRowOfTriangle = sizeof(Index);
 constexpr double kSpareCapacity = 1.125;  // capacity over size of arrays that may grow with every list
 constexpr double kFilledSlots = 0.8;      // of a list of a settled bed; only these have a contact history
 constexpr double kCellBytes = sizeof(Index);
-constexpr double kBrickMargin = 1.1;  // cells that fill up the last cell blocks
+constexpr double kCellBlockMargin = 1.1;  // cells that fill up the last cell blocks
 
 // Bytes per particle of a snapshot.
 double output_bytes(const Output& output) {
@@ -98,14 +98,14 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
 SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const ItemLayout& layout,
                           NeighborBuilder& builder) {
   const Subdomain subdomain(model.space);
-  SurfaceSide side(model, subdomain, Ranks());
+  HostSurfaces side(model, subdomain, Ranks());
   std::vector<BodyMotion> motion;
   for (const Body& body : model.bodies) motion.push_back(start_motion(body));
-  motion.resize(side.surfaces().carriers());  // walls start at their initial poses
+  motion.resize(side.surfaces().parents());  // walls start at their initial poses
   side.set_motion(motion);
-  side.bring_into_box(), side.place();
+  side.bring_into_box(), side.update_poses();
   SurfaceRows rows;
-  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), {side.places()},
+  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), {side.poses()},
                          model.contact.skin, rows);
   return rows;
 }
@@ -136,7 +136,7 @@ Sizes sizes_of(const Model& model) {
     sizes.ghosts =
         static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts;
-  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, particles).count());
+  sizes.cells = kCellBlockMargin * static_cast<double>(builder.grid(skin, particles).count());
   sizes.slots = slots_per_particle(model) * sizes.particles;
   if (sizes.on_bodies) {
     const SurfaceRows rows = rows_at_start(model, store, layout, builder);
@@ -149,14 +149,15 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
-// Scratch memory of explicit steps beside the list: `DeviceRoom`.
+// Scratch memory of explicit steps beside the list: `DeviceArena`.
 double bytes_of_steps(const Model& model, const Sizes& n) {
   // Row indices of the inner pair list; they alias the forces if they fit.
   const double row_indices = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
   double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
   if (row_indices > n.particles * sizeof(Vec3)) of_steps += row_indices;
   // Where particles rotate, these alias arrays of the instant.
-  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() && !model.attracts())
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() &&
+      !model.is_cohesive())
     of_steps += n.particles * kMixedArrays;
   return of_steps;
 }
@@ -168,12 +169,12 @@ double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
                  n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (numbers > 0) {
-    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kRoomInRows;
+    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kContactsPerRow;
     bytes += kFilledSlots * n.slots * records_of(numbers) * sizeof(Vec4) + 3 * n.particles * sizeof(Index) +
              at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
   }
   const double second = n.items * (kSecondMotion + (model.rotates() ? kSpinFields : 0)),
-               packed = std::max(0.0, n.particles * bytes_remembered(numbers, 0) - second);
+               packed = std::max(0.0, n.particles * history_bytes(numbers, 0) - second);
   if (!explicit_steps) return bytes + packed + n.particles * sizeof(Vec3);
   return bytes + n.particles * sizeof(Index) + std::max(packed, bytes_of_steps(model, n));
 }
@@ -184,7 +185,7 @@ double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   if (model.rotates())
     bytes += n.items * kSpinFields * (spare + 1) + n.particles * (kOwnedSpinFields + kSpinReportArrays);
   if (model.rolls()) bytes += n.particles * kRollingFields;
-  if (model.attracts()) bytes += n.particles * kCohesionReportArrays;
+  if (model.is_cohesive()) bytes += n.particles * kCohesionReportArrays;
   if (!explicit_steps) bytes += n.particles * kStartAcceleration * (model.rotates() ? 2 : 1);
   return bytes;
 }
@@ -194,9 +195,9 @@ double surface_bytes(const Model& model, const Sizes& n) {
   if (!n.on_bodies) return 0;
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   double per_entry = kEntryArrays;
-  if (implicit && model.rotates()) per_entry += kRubbingArraysPerEntry;
+  if (implicit && model.rotates()) per_entry += kFrictionArraysPerEntry;
   if (model.output.contacts) per_entry += sizeof(ShownContact);
-  if (const int numbers = kept_numbers(model, history_of(model.contact)); numbers != 0)
+  if (const int numbers = packed_numbers(model, history_of(model.contact)); numbers != 0)
     per_entry += kSpareCapacity * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
   const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
   if (!model.meshes.empty())
@@ -211,7 +212,7 @@ double surface_bytes(const Model& model, const Sizes& n) {
 double slots_per_particle(const Model& model) {
   constexpr double kDiscs = 8, kSpheres = 9.5, kPerDiameter = 15, kMost = 16;
   if (model.space.dimension == 2) return kDiscs;
-  const Real range = model.contact.skin + model.contact.reach,
+  const Real range = model.contact.skin + model.contact.interaction_range,
              diameter = 2 * model.particles.totals.largest_radius;
   return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * range / diameter) : kSpheres;
 }
@@ -228,7 +229,7 @@ std::size_t device_memory(const Model& model) {
   double bytes =
       field_bytes(model, n, explicit_steps) + n.ghosts * kGhostArrays + list_bytes(model, n, explicit_steps);
   if (!explicit_steps)
-    bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
+    bytes += model.rotates() ? n.items * kFrictionArrays + n.slots * kFrictionArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   bytes += surface_bytes(model, n) + static_cast<double>(device_memory_of_meshes(model));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +

@@ -41,7 +41,7 @@ class ImplicitStep {
   // From now on the friction limits are those of the current iterate: such a step converges where one whose
   // limits follow the normal forces may not. For particles with friction; at most once a step, after
   // contact_force.
-  virtual void freeze_limits() {}
+  virtual void lag_limits() {}
   virtual Real error() = 0;  // local position error of the step over the radius
 
   // Either function ends the step; no other function may be called afterwards. Destroying a step without

@@ -7,7 +7,7 @@
 namespace scree {
 
 // sums: of InsideItem, indexed by InsideTerm. bodies: their contact losses are included, as in the ledger.
-inline InsideEnergies make_inside_energies(const Real* sums, const SurfaceSide& bodies) {
+inline InsideEnergies make_inside_energies(const Real* sums, const HostSurfaces& bodies) {
   return {sums[kInsideKinetic], sums[kInsideGravitational],
           sums[kInsideIntegratorLoss] + bodies.losses().integrator_loss};
 }

@@ -26,7 +26,7 @@ class RankList {
  public:
   virtual ~RankList() = default;
 
-  virtual void place_bodies(std::span<const BodyMotion> motion) = 0;
+  virtual void set_body_motion(std::span<const BodyMotion> motion) = 0;
   // Largest displacement of any item since the list was built, over half its skin; above 1 the list has
   // expired. Waits for all queued work.
   virtual Real displacement() = 0;

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "dem/history/kept_contacts.hpp"
-#include "dem/host/surface_side.hpp"
+#include "dem/history/packed_history.hpp"
+#include "dem/host/host_surfaces.hpp"
 #include "dem/particles/particle_fields.hpp"
-#include "dem/reports/leaver_items.hpp"
+#include "dem/reports/escape_items.hpp"
 #include "model/data/body_exchange.hpp"
 
 namespace scree {
@@ -25,8 +25,8 @@ class RankParticles {
   virtual std::vector<Particle> records() = 0;  // ordered by global id
   // Packed contact history, in the order of the records; empty for laws without history. load_contacts():
   // after load(), before the first list; the history of another law is ignored.
-  virtual void load_contacts(const KeptContacts& contacts) = 0;
-  virtual KeptContacts contacts() = 0;
+  virtual void load_contacts(const PackedHistory& contacts) = 0;
+  virtual PackedHistory contacts() = 0;
   virtual ShapeLosses shape_losses() const = 0;
   // Packed history of the contacts of bodies' shapes, on rank 0.
   virtual void load_shape_contacts(const ShapeContacts& contacts) = 0;
@@ -42,10 +42,10 @@ class RankParticles {
   virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
 
   // Particles that have escaped from the domain and were not yet removed, ordered by global id.
-  virtual std::vector<Leaver> outside() = 0;
+  virtual std::vector<EscapedParticle> outside() = 0;
   // Removes escaped particles from the search, and their contacts from the state that the next step starts
   // from: from now on they move ballistically or are deleted, as the deck says. The list must be rebuilt.
-  virtual void take_out(const std::vector<Leaver>& leavers) = 0;
+  virtual void remove_escaped(const std::vector<EscapedParticle>& escaped_particles) = 0;
 };
 
 }  // namespace scree

@@ -6,7 +6,7 @@
 
 namespace scree {
 
-ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies) {
+ParticleLedger make_particle_ledger(const Real* sums, const HostSurfaces& bodies) {
   ParticleLedger out;
   out.kinetic = sums[kKinetic], out.gravitational = sums[kGravitational];
   const BodyContactTotals shapes = bodies.shape_totals();
@@ -19,14 +19,14 @@ ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies)
   return out;
 }
 
-RotationEnergies make_rotation_energies(const Real* sums, const SurfaceSide& bodies) {
-  const Real* losses = sums + kRubbingLosses;
+RotationEnergies make_rotation_energies(const Real* sums, const HostSurfaces& bodies) {
+  const Real* losses = sums + kTangentialLosses;
   const SpringEnergies shapes = bodies.shape_totals().springs;
   RotationEnergies out{sums[kRotational],
                        sums[kFrictionSprings] + shapes.friction,
                        sums[kRollingSprings] + shapes.rolling,
                        {{losses[kFrictionLoss], losses[kRollingLoss], losses[kTwistingLoss]}}};
-  out.losses.add(bodies.losses().rubbing);
+  out.losses.add(bodies.losses().tangential);
   return out;
 }
 

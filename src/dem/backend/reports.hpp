@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "dem/host/surface_side.hpp"
+#include "dem/host/host_surfaces.hpp"
 #include "dem/reports/contact_line_items.hpp"
 #include "dem/reports/output_fields.hpp"
 
@@ -17,7 +17,7 @@ namespace scree {
 struct RotationEnergies {
   Real kinetic = 0;                                // rotational kinetic energy
   Real friction_springs = 0, rolling_springs = 0;  // parts of contact_elastic, see `SpringEnergies`
-  RubbingLosses losses{};                          // parts of contact_loss
+  TangentialLosses losses{};                       // parts of contact_loss
 
   friend bool operator==(const RotationEnergies&, const RotationEnergies&) = default;
 };
@@ -42,9 +42,9 @@ struct ParticleLedger {
 };
 
 // Ledger from the sums of LedgerItem over the particles, indexed by LedgerTerm, and the contacts of bodies.
-ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
+ParticleLedger make_particle_ledger(const Real* sums, const HostSurfaces& bodies);
 // Rotational energies from the sums of RotationItem, indexed by RotationTerm, and the contacts of bodies.
-RotationEnergies make_rotation_energies(const Real* sums, const SurfaceSide& bodies);
+RotationEnergies make_rotation_energies(const Real* sums, const HostSurfaces& bodies);
 
 // One entry per particle of this rank, any order.
 struct ParticleOutput {
@@ -106,7 +106,7 @@ class Reports {
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> requested) = 0;
   // Contact sums of each parent (bodies, then placed walls), and of these static planes (indices into
   // Model::walls). Complete on rank 0.
-  virtual std::vector<ContactSum> carrier_contacts() = 0;
+  virtual std::vector<ContactSum> parent_contacts() = 0;
   // Contact sums of each surface of SurfaceSet, with torques about its parent's centre.
   virtual std::vector<ContactSum> surface_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;

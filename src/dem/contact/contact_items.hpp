@@ -18,7 +18,7 @@ struct LoadWithHistory : Load {
 };
 
 // Evaluates the load of a contact.
-struct LoadOf {
+struct EvaluateLoad {
   template <class Law, class Pair>
   SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
     return law.load(pair);
@@ -40,8 +40,8 @@ template <int kKinds>
 struct TotalForce {
   Vec3 force;       // [N], gravity included
   Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
-  Vec3 torque;      // about its centre, for laws with `kMoves` [N m]
-  [[no_unique_address]] LossesOf<kKinds> losses;  // parts of the dissipation, over the step [J]
+  Vec3 torque;      // about its centre, for laws with `kNeedsMotion` [N m]
+  [[no_unique_address]] LossesByKind<kKinds> losses;  // parts of the dissipation, over the step [J]
 
   SCREE_HD TotalForce& operator+=(const TotalForce& part) {
     force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
@@ -49,7 +49,7 @@ struct TotalForce {
   }
   // Load of one contact; losses: of at least kKinds kinds.
   template <int kMore>
-  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesOf<kMore>& losses) {
+  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesByKind<kMore>& losses) {
     TotalForce out{load.force, load.loss, load.torque_i, {}};
     out.losses.add(losses);
     return out;
@@ -65,9 +65,9 @@ struct TotalForce {
   }
 };
 
-// Evaluates the load on one partner, for laws with `kMoves`.
+// Evaluates the load on one partner, for laws with `kNeedsMotion`.
 template <int kKinds>
-struct TurningForceOf {
+struct EvaluateRotatingForce {
   using Result = TotalForce<kKinds>;
 
   template <class Law, class Pair, class History>
@@ -79,14 +79,14 @@ struct TurningForceOf {
 };
 
 // Load of a contact on both partners with its losses; contacts with bodies were evaluated before.
-struct TurningLoad {
+struct LoadWithLosses {
   ContactLoadOf<Real, Vec3> load;
-  RubbingLosses losses;
+  TangentialLosses losses;
 };
-struct TurningLoadOf {
+struct EvaluateLoadWithLosses {
   template <class Law, class Pair, class History>
-  SCREE_HD LoadWithHistory<TurningLoad, History> operator()(const Law& law, const Pair& pair,
-                                                            const History& old) const {
+  SCREE_HD LoadWithHistory<LoadWithLosses, History> operator()(const Law& law, const Pair& pair,
+                                                               const History& old) const {
     const auto outcome = law.load(pair, old);
     return {{outcome.load, outcome.losses()}, outcome.history};
   }
@@ -104,9 +104,9 @@ struct ContactForceItem {
   Vec3 gravity;
   Vec3* force;                 // [N]
   Real* loss_power;            // [W]
-  Vec3* angular_acceleration;  // for laws with `kMoves` [rad/s^2]
+  Vec3* angular_acceleration;  // for laws with `kNeedsMotion` [rad/s^2]
 
-  static constexpr bool kMoves = LawOf<Laws>::kMoves;
+  static constexpr bool kNeedsMotion = LawOf<Laws>::kNeedsMotion;
   static constexpr int kKinds = kLossKindsOf<LawOf<Laws>>;
   using Total = TotalForce<kKinds>;
 
@@ -115,7 +115,7 @@ struct ContactForceItem {
   SCREE_HD void store(Index i, const Total& sum) const {
     force[i] = sum.force;
     loss_power[i] = sum.loss_power;
-    if constexpr (kMoves) angular_acceleration[i] = reciprocal(walk.in.spin[i].w) * sum.torque;
+    if constexpr (kNeedsMotion) angular_acceleration[i] = reciprocal(walk.in.spin[i].w) * sum.torque;
   }
 
   SCREE_HD Total total(Index i) const {
@@ -130,19 +130,21 @@ struct ContactForceItem {
   using Self = typename decltype(walk)::Self;
   SCREE_HD Total weight(const Self& self) const { return {self.u.w * gravity, 0, {}, {}}; }
   SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
-    if constexpr (kMoves)
-      walk.template sum_neighbors<kAccepts>(self, TurningForceOf<kKinds>{}, sum);
+    if constexpr (kNeedsMotion)
+      walk.template sum_neighbors<kAccepts>(self, EvaluateRotatingForce<kKinds>{}, sum);
     else
-      walk.template neighbors<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+      walk.template neighbors<kAccepts>(self, EvaluateLoad{},
+                                        [&](const auto& load, Index) { add(load, sum); });
     sum.share();
   }
   SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
-    if constexpr (kMoves)
-      walk.template surfaces<kAccepts>(self, TurningLoadOf{}, [&](const auto& contact, Index) {
+    if constexpr (kNeedsMotion)
+      walk.template surfaces<kAccepts>(self, EvaluateLoadWithLosses{}, [&](const auto& contact, Index) {
         sum += Total::of(contact.load, contact.losses);
       });
     else
-      walk.template surfaces<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+      walk.template surfaces<kAccepts>(self, EvaluateLoad{},
+                                       [&](const auto& load, Index) { add(load, sum); });
   }
 
  private:
@@ -163,7 +165,7 @@ struct TouchSums {
 };
 
 // Elastic energy of a closed contact [J].
-struct EnergyOf {
+struct EvaluateEnergy {
   template <class Law>
   SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair) const {
     const auto normal = law.normal.of_pair(pair.size);
@@ -171,8 +173,8 @@ struct EnergyOf {
   }
   // Elastic energy including that of the springs in the history.
   template <class Law, class History>
-  requires Law::kMoves SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
-                                                         const History& history) const {
+  requires Law::kNeedsMotion SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
+                                                               const History& history) const {
     return law.energy_of(pair, history);
   }
   template <class Views>
@@ -187,14 +189,15 @@ SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, cons
   TouchSums sum;
   const auto add = [&](const ContactEnergy& energy, Real weight) {
     sum.energy += weight * energy.sum;
-    if constexpr (LawOf<Laws>::kMoves) sum.springs.add(energy.springs, weight);
-    if constexpr (kMayAttract<typename LawOf<Laws>::Normal>) sum.cohesion += weight * energy.cohesion;
+    if constexpr (LawOf<Laws>::kNeedsMotion) sum.springs.add(energy.springs, weight);
+    if constexpr (kMayBeCohesive<typename LawOf<Laws>::Normal>) sum.cohesion += weight * energy.cohesion;
     sum.share += weight;
     ++sum.contacts;
   };
   const auto self = walk.self(i);
-  walk.neighbors(self, EnergyOf{}, [&](const ContactEnergy& energy, Index j) { add(energy, share(j)); });
-  walk.surfaces(self, EnergyOf{}, [&](const ContactEnergy& energy, Index) { add(energy, 1); });
+  walk.neighbors(self, EvaluateEnergy{},
+                 [&](const ContactEnergy& energy, Index j) { add(energy, share(j)); });
+  walk.surfaces(self, EvaluateEnergy{}, [&](const ContactEnergy& energy, Index) { add(energy, 1); });
   return sum;
 }
 

@@ -32,10 +32,10 @@ struct LawTable {
 // Calls evaluate(j) for an entry of a row, or evaluate(j, slot) if it takes the number of the entry in the
 // list: its slot in packed rows, and the index of its history record in all rows.
 template <class Evaluate>
-inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
+inline constexpr bool kTakesSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
 template <class Evaluate>
 SCREE_HD auto evaluate_entry(const Evaluate& evaluate, Index j, std::int64_t slot) {
-  if constexpr (kAsksForSlot<Evaluate>)
+  if constexpr (kTakesSlot<Evaluate>)
     return evaluate(j, slot);
   else
     return evaluate(j);
@@ -83,7 +83,7 @@ struct ContactViews {
   const SurfaceStep* steps;  // per entry, over an implicit step
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
-  Real reach = 0;              // Contact::reach [m]
+  Real interaction_range = 0;  // Contact::reach [m]
   // Radii [m] that laws use at planes instead of the items' own; null: the items' own. Supported by packed
   // rows only.
   const Real* law_radius = nullptr;
@@ -92,8 +92,8 @@ struct ContactViews {
 // The views with other rows.
 template <class Rows, class From>
 SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
-  return {in.position, in.velocity, in.material, rows,    in.surface_offsets, in.surfaces,  in.numbers,
-          in.loads,    in.steps,    in.history,  in.spin, in.reach,           in.law_radius};
+  return {in.position, in.velocity, in.material, rows,    in.surface_offsets,   in.surfaces,  in.numbers,
+          in.loads,    in.steps,    in.history,  in.spin, in.interaction_range, in.law_radius};
 }
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -117,18 +117,18 @@ struct TouchTest {
 
 // Whether contacts may exist beyond touch with this law.
 template <class Law>
-inline constexpr bool kReaches = false;
+inline constexpr bool kHasRange = false;
 template <class Law>
-requires requires { Law::kReaches; }
-inline constexpr bool kReaches<Law> = Law::kReaches;
+requires requires { Law::kHasRange; }
+inline constexpr bool kHasRange<Law> = Law::kHasRange;
 
 // Tests whether items are within the interaction range of the law [m], where they may have a contact.
 template <class Test>
-struct ReachTest {
+struct RangeTest {
   Test test;
-  Real reach;
-  SCREE_HD bool operator()(Index j) const { return test.near(j, reach); }
-  SCREE_HD bool near(Index j, Real margin) const { return test.near(j, reach + margin); }
+  Real interaction_range;
+  SCREE_HD bool operator()(Index j) const { return test.near(j, interaction_range); }
+  SCREE_HD bool near(Index j, Real margin) const { return test.near(j, interaction_range + margin); }
 };
 
 SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "dem/contact/contact_looks.hpp"
+#include "dem/contact/contact_kinematics.hpp"
 
 namespace scree {
 
@@ -15,27 +15,27 @@ namespace scree {
 //
 // Where the law has a history, an `of` that takes it is called as of(law, pair, history), and its result has
 // the new one as member `history`. It is stored only by a walk with kAccepts, of an item that accepts a step.
-template <class Laws, class Rows, class Look = InstantLook<Laws>>
+template <class Laws, class Rows, class Kinematics = InstantKinematics<Laws>>
 struct ContactWalk {
   ContactViews<Rows> in;
   Laws laws;
-  Look look{};
+  Kinematics kinematics{};
 
-  using Self = typename Look::Self;
+  using Self = typename Kinematics::Self;
   using Law = LawOf<Laws>;
-  SCREE_HD Self self(Index i) const { return look.self(in, i); }
+  SCREE_HD Self self(Index i) const { return kinematics.self(in, i); }
 
   template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
-    walk<kAccepts>(self, in_range(look.test(in, self)), of, visit);
+    walk<kAccepts>(self, in_range(kinematics.test(in, self)), of, visit);
   }
   // Adds the contacts with neighbours to sum; `of` returns its Result for each.
   SCREE_HD_CALLER
   template <bool kAccepts, class Of, class Sum>
   SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
     if constexpr (kShared<Rows>) {
-      in.rows.sum_contacts(self.i, in_range(look.test(in, self)), SharedContact<kAccepts, Of>{*this, of},
-                           sum);
+      in.rows.sum_contacts(self.i, in_range(kinematics.test(in, self)),
+                           SharedContact<kAccepts, Of>{*this, of}, sum);
     } else {
       neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
     }
@@ -44,19 +44,19 @@ struct ContactWalk {
   template <class Of>
   SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
     const Self owner = self(i);
-    auto pair = look.pair(in, owner, j);
-    if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+    auto pair = kinematics.pair(in, owner, j);
+    if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
     return of(laws.get(owner.material, in.material[j]), pair,
               in.history.template read<Law>(in.history.neighbors, slot));
   }
   // Prefetches the history of the contact at the slot.
   SCREE_HD void prepare(std::int64_t slot) const {
-    fetch_ahead(in.history.neighbors + slot * records_of(Law::kHistory));
+    prefetch_record(in.history.neighbors + slot * records_of(Law::kHistory));
   }
   // Visits the neighbours for which only(j) is true.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
-    const auto test = in_range(look.test(in, self));
+    const auto test = in_range(kinematics.test(in, self));
     walk<false>(
         self, [&](Index j) { return only(j) && test(j); }, of, visit);
   }
@@ -64,13 +64,13 @@ struct ContactWalk {
   SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
     for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
       const Index surface = in.surfaces[entry];
-      if (!in.numbers.at_rest(surface)) {
+      if (!in.numbers.is_static(surface)) {
         if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
         continue;
       }
       const WallPlane& plane = in.numbers.planes[surface];
-      auto pair = look.wall(in, self, plane);
-      if constexpr (requires { look.at_entry(pair, entry); }) look.at_entry(pair, entry);
+      auto pair = kinematics.wall(in, self, plane);
+      if constexpr (requires { kinematics.at_entry(pair, entry); }) kinematics.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
       if constexpr (takes_history<Of, decltype(pair)>()) {
@@ -97,12 +97,12 @@ struct ContactWalk {
 
     SCREE_HD typename Of::Result operator()(Index i, Index j, std::int64_t slot) const {
       const auto& in = walk.in;
-      const Self owner = walk.look.self(in, i);
+      const Self owner = walk.kinematics.self(in, i);
       const Law& law = walk.laws.get(owner.material, in.material[j]);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-      const auto pair = walk.look.pair(in, owner, j);
+      const auto pair = walk.kinematics.pair(in, owner, j);
       [[maybe_unused]] const bool closed = found_closed(law, pair, history);
-      if constexpr (kReaches<Law>)
+      if constexpr (kHasRange<Law>)
         if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
       const auto contact = of(law, pair, history);
       if constexpr (kAccepts)
@@ -110,27 +110,29 @@ struct ContactWalk {
       return contact;
     }
     // Test for possible contacts of a row.
-    SCREE_HD auto test(const Self& of_row) const { return walk.in_range(walk.look.test(walk.in, of_row)); }
+    SCREE_HD auto test(const Self& of_row) const {
+      return walk.in_range(walk.kinematics.test(walk.in, of_row));
+    }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
 
   // The test, extended by the interaction range of the law.
   template <class Test>
   SCREE_HD auto in_range(const Test& test) const {
-    if constexpr (kReaches<Law> && requires { test.near(Index{}, Real{}); })
-      return ReachTest<Test>{test, in.reach};
+    if constexpr (kHasRange<Law> && requires { test.near(Index{}, Real{}); })
+      return RangeTest<Test>{test, in.interaction_range};
     else
       return test;
   }
   // Over an implicit step the kinematics policy alone decides which contacts act.
   template <class Pair>
-  static constexpr bool kLawCloses = kReaches<Law>&& std::is_base_of_v<PairState, Pair>;
+  static constexpr bool kLawCloses = kHasRange<Law>&& std::is_base_of_v<PairState, Pair>;
   template <class Pair>
   SCREE_HD bool may_be_closed(const Pair& pair) const {
     if constexpr (kLawCloses<Pair>)
-      return pair.geometry.overlap > -in.reach;
+      return pair.geometry.overlap > -in.interaction_range;
     else
-      return Look::closed(pair);
+      return Kinematics::closed(pair);
   }
   // Whether the law confirms a contact that `may_be_closed()`, or the test of a row, has accepted.
   template <class Pair, class History>
@@ -144,7 +146,7 @@ struct ContactWalk {
   // Whether a contact that opened in the step has stored energy to dissipate.
   template <class Pair, class History>
   SCREE_HD static bool found_breaking(const Pair&, const History& history) {
-    if constexpr (kReaches<Law> && std::is_same_v<Pair, MovingPair>)
+    if constexpr (kHasRange<Law> && std::is_same_v<Pair, MovingPair>)
       return Law::breaks(history);
     else
       return false;
@@ -170,7 +172,7 @@ struct ContactWalk {
 
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
-    using Pair = decltype(look.pair(in, self, 0));
+    using Pair = decltype(kinematics.pair(in, self, 0));
     if constexpr (kLawCloses<Pair>)
       walk_in_range<kAccepts>(self, test, of, visit);
     else if constexpr (takes_history<Of, Pair>())
@@ -182,13 +184,13 @@ struct ContactWalk {
   template <class Test, class Of, class Visit>
   SCREE_HD void walk_without(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     struct Found {
-      decltype(of(laws.get(0, 0), look.pair(in, self, 0))) contact;
+      decltype(of(laws.get(0, 0), kinematics.pair(in, self, 0))) contact;
       Index j;
     };
     in.rows.for_each_contact(
         self.i, test,
         [&](Index j) {
-          return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j)), j};
+          return Found{of(laws.get(self.material, in.material[j]), kinematics.pair(in, self, j)), j};
         },
         [&](const Found& found) { visit(found.contact, found.j); });
   }
@@ -197,7 +199,8 @@ struct ContactWalk {
   SCREE_HD void walk_with_history(const Self& self, const Test& test, const Of& of,
                                   const Visit& visit) const {
     struct Found {
-      decltype(of(laws.get(0, 0), look.pair(in, self, 0), in.history.template read<Law>(nullptr, 0))) contact;
+      decltype(of(laws.get(0, 0), kinematics.pair(in, self, 0),
+                  in.history.template read<Law>(nullptr, 0))) contact;
       Index j;
       std::int64_t slot;
     };
@@ -205,8 +208,8 @@ struct ContactWalk {
         self.i, test,
         [&](Index j, std::int64_t slot) {
           const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-          auto pair = look.pair(in, self, j);
-          if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+          auto pair = kinematics.pair(in, self, j);
+          if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
           return Found{of(laws.get(self.material, in.material[j]), pair, history), j, slot};
         },
         [&](const Found& found) {
@@ -220,7 +223,7 @@ struct ContactWalk {
   // The law decides whether an accepted entry is a contact: it is evaluated where it is added.
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk_in_range(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
-    using Pair = decltype(look.pair(in, self, 0));
+    using Pair = decltype(kinematics.pair(in, self, 0));
     constexpr bool kTakesHistory = takes_history<Of, Pair>();
     struct EntryIndex {
       Index j;
@@ -228,7 +231,7 @@ struct ContactWalk {
     };
     const auto add = [&](const EntryIndex& at) {
       const Law& law = laws.get(self.material, in.material[at.j]);
-      const auto pair = look.pair(in, self, at.j);
+      const auto pair = kinematics.pair(in, self, at.j);
       if constexpr (kTakesHistory) {
         const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
         const bool closed = found_closed(law, pair, history);
@@ -258,12 +261,12 @@ struct ContactWalk {
   }
 };
 
-// Walk over the explicit step of h [s] that ends now; laws without `kMoves` see its end.
+// Walk over the explicit step of h [s] that ends now; laws without `kNeedsMotion` see its end.
 template <class Laws, class Rows>
-using ExplicitWalk = ContactWalk<Laws, Rows, StepLook<Laws>>;
+using ExplicitWalk = ContactWalk<Laws, Rows, StepKinematics<Laws>>;
 template <class Laws, class Rows>
 SCREE_HD ExplicitWalk<Laws, Rows> explicit_walk(const ContactViews<Rows>& in, const Laws& laws, Real h) {
-  if constexpr (LawOf<Laws>::kMoves)
+  if constexpr (LawOf<Laws>::kNeedsMotion)
     return {in, laws, {h}};
   else
     return {in, laws};

@@ -6,7 +6,7 @@
 
 #include "dem/contact/contact_items.hpp"
 #include "dem/contact/contact_walk.hpp"
-#include "physics/contact_books.hpp"
+#include "physics/contact_losses.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {
@@ -47,7 +47,7 @@ struct NewtonWeights {
   SCREE_HD Real of(const StepContactForce& c) const { return stiffness * c.stiffness + damping * c.damping; }
 };
 
-struct StepContactOf {
+struct EvaluateStepContact {
   bool resolve_events;
 
   template <class Law>
@@ -68,24 +68,25 @@ struct StepContactOf {
 };
 
 // Energy accounting of a contact over the step.
-struct StepBooksOf {
-  StepContactOf step;
+struct EvaluateStepLosses {
+  EvaluateStepContact step;
 
   template <class Law>
-  SCREE_HD ContactBooks operator()(const Law& law, const ContactPath& c) const {
+  SCREE_HD ContactLosses operator()(const Law& law, const ContactPath& c) const {
     const auto normal = law.normal.of_pair(c.size);
     const Real force0 = start_force(normal, c.step);
     const Real force1 = step.of(normal, c).step.force;
-    return contact_books(normal, c.step, Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.travel));
+    return contact_losses(normal, c.step,
+                          Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.displacement));
   }
   template <class Views>
-  SCREE_HD const ContactBooks* stored(const Views& in, Index entry) const {
-    return in.steps[entry].touches ? &in.steps[entry].books : nullptr;
+  SCREE_HD const ContactLosses* stored(const Views& in, Index entry) const {
+    return in.steps[entry].touches ? &in.steps[entry].losses : nullptr;
   }
 };
 
 template <class Laws, class Rows>
-using StepWalk = ContactWalk<Laws, Rows, OverStep>;
+using StepWalk = ContactWalk<Laws, Rows, OverImplicitStep>;
 
 // Force and row of the Newton matrix of particle i in an implicit step.
 template <class Laws, class Rows>
@@ -112,7 +113,7 @@ struct ContactSystemItem {
       return s;
     };
     const auto self = walk.self(i);
-    const StepContactOf of{walk.look.start.resolve_events};
+    const EvaluateStepContact of{walk.kinematics.start.resolve_events};
     walk.neighbors(self, of, [&](const StepContact& c, Index j) {
       const Real s = add(c);
       matrix.entries[slot] = contact_entry(std::sqrt(s) * c.normal, j);
@@ -129,23 +130,23 @@ struct ContactSystemItem {
 // Energy accounting of item i's contacts over a step; share: of contacts with neighbours. kAccepts: as in
 // `ContactWalk`.
 template <bool kAccepts = false, class Laws, class Rows>
-SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
-  ContactBooks sum;
+SCREE_HD ContactLosses step_losses_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
+  ContactLosses sum;
   const auto self = walk.self(i);
-  const StepBooksOf of{{walk.look.start.resolve_events}};
-  walk.template neighbors<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, share); });
-  walk.template surfaces<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
+  const EvaluateStepLosses of{{walk.kinematics.start.resolve_events}};
+  walk.template neighbors<kAccepts>(self, of, [&](const ContactLosses& one, Index) { sum.add(one, share); });
+  walk.template surfaces<kAccepts>(self, of, [&](const ContactLosses& one, Index) { sum.add(one, 1); });
   return sum;
 }
 
 // Accounts for particle i's share of the energies of its contacts over an accepted step.
 template <class Laws, class Rows>
-struct ContactBooksItem {
+struct ContactLossesItem {
   StepWalk<Laws, Rows> walk;
   Real *contact_loss, *integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
-    const ContactBooks sum = books_of<true>(walk, i, kPairShare);
+    const ContactLosses sum = step_losses_of<true>(walk, i, kPairShare);
     contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
   }
 };

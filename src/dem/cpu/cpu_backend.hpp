@@ -7,10 +7,10 @@
 
 #include "dem/backend/backend.hpp"
 #include "dem/cpu/cpu_explicit.hpp"
+#include "dem/cpu/cpu_friction.hpp"
 #include "dem/cpu/cpu_implicit.hpp"
 #include "dem/cpu/cpu_particles.hpp"
 #include "dem/cpu/cpu_reports.hpp"
-#include "dem/cpu/cpu_rubbing.hpp"
 
 namespace scree {
 
@@ -27,7 +27,7 @@ class CpuBackend : public Backend {
   Reports& reports() override { return reports_; }
   std::unique_ptr<ImplicitStep> open_step(Real h) override {
     if (items_.store.rotates)
-      return std::make_unique<CpuRubbingStep>(items_, implicit_arrays_, rubbing_arrays_, h);
+      return std::make_unique<CpuFrictionStep>(items_, implicit_arrays_, friction_arrays_, h);
     return std::make_unique<CpuImplicitStep>(items_, implicit_arrays_, h);
   }
   std::unique_ptr<ExplicitRun> start_run(Real h) override {
@@ -40,7 +40,7 @@ class CpuBackend : public Backend {
   CpuParticles particles_;
   CpuReports reports_;
   CpuImplicitArrays implicit_arrays_;
-  CpuRubbingArrays rubbing_arrays_;
+  CpuFrictionArrays friction_arrays_;
 };
 
 }  // namespace scree

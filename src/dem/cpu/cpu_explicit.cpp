@@ -72,8 +72,8 @@ void CpuExplicitRun::shape_contacts() {
 // Contacts with surfaces at the end of the open step, before it is closed.
 void CpuExplicitRun::close_loads() {
   items_.find_loads(h_);
-  items_.side.book_losses(h_);
-  items_.surfaces.book_loads(items_.side.places(), items_.store, items_.list.surfaces, h_);
+  items_.side.accumulate_losses(h_);
+  items_.surfaces.accumulate_load_works(items_.side.poses(), items_.store, items_.list.surfaces, h_);
 }
 
 void CpuExplicitRun::advance() {
@@ -81,7 +81,7 @@ void CpuExplicitRun::advance() {
   ParticleStore& store = items_.store;
   // With friction a particle is not read again once it is advanced, except for contacts with bodies
   // (`shape_contacts`).
-  const bool in_place = store.rotates && items_.side.places().placed.empty();
+  const bool in_place = store.rotates && items_.side.poses().placed.empty();
   const VerletViews next = in_place
                                ? views_of(store.position, store.velocity, store.angular_velocity)
                                : views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin);

@@ -12,7 +12,7 @@ void CpuImplicitArrays::resize(const ItemLayout& layout, std::size_t list_entrie
   const auto owned = static_cast<std::size_t>(layout.owned);
   matrix_entries.resize(list_entries), direction.resize(static_cast<std::size_t>(layout.items));
   step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
-  stiffening.resize(owned), matrix_count.resize(owned);
+  stiffness_ratio.resize(owned), matrix_count.resize(owned);
   residual.resize(owned), right_hand_side.resize(owned), correction.resize(owned);
   matrix_diagonal.resize(owned), inverse_block.resize(owned);
 }
@@ -24,7 +24,7 @@ CpuImplicitStep::CpuImplicitStep(CpuItems& items, CpuImplicitArrays& arrays, Rea
   arrays_.start_velocity = items.store.velocity;
   arrays_.start_acceleration = items.store.acceleration;
   arrays_.start_force = items.store.force;
-  items.side.keep_start();
+  items.side.store_start();
 }
 
 StepViews CpuImplicitStep::step_views() {
@@ -83,31 +83,31 @@ Real CpuImplicitStep::step_displacement() {
 
 // Maxima over the particles of all ranks. Throws like `report_not_finite` where a residual is not finite.
 StepNorms CpuImplicitStep::largest_norms() {
-  Real residual = 0, bound = 0, force = 0, stiffening = 0;
+  Real residual = 0, bound = 0, force = 0, stiffness_ratio = 0;
   bool finite = true;
   const StepNormsItem of{step_views(), arrays_.residual.data(), arrays_.force_magnitude.data(),
-                         arrays_.stiffening.data()};
+                         arrays_.stiffness_ratio.data()};
   for (Index i = 0; i < items_.layout.owned; ++i) {
     const StepNorms one = of(i);
     finite = finite && std::isfinite(one.residual);
     residual = std::max(residual, one.residual);
     bound = std::max(bound, one.correction_bound);
     force = std::max(force, one.force);
-    stiffening = std::max(stiffening, one.stiffening);
+    stiffness_ratio = std::max(stiffness_ratio, one.stiffness_ratio);
   }
-  Real maxima[5] = {residual, bound, force, stiffening, finite ? Real(0) : Real(1)};
+  Real maxima[5] = {residual, bound, force, stiffness_ratio, finite ? Real(0) : Real(1)};
   items_.ranks.max(maxima);
   if (maxima[4] != 0) items_.report_not_finite(arrays_.residual);
   StepNorms largest;
   largest.residual = maxima[0], largest.correction_bound = maxima[1];
-  largest.force = maxima[2], largest.stiffening = maxima[3];
+  largest.force = maxima[2], largest.stiffness_ratio = maxima[3];
   return largest;
 }
 
 void CpuImplicitStep::find_steps() {
   if (items_.side.size() == 0) return;
   const SurfaceRows& rows = items_.list.surfaces;
-  items_.surfaces.find_steps(items_.side.places(), items_.store, rows, step_start(), items_.history.views());
+  items_.surfaces.find_steps(items_.side.poses(), items_.store, rows, step_start(), items_.history.views());
   items_.side.take_steps(items_.surfaces.step_sums(rows), h_);
 }
 
@@ -118,10 +118,10 @@ ParticleNorms CpuImplicitStep::contact_force() {
                          step_forces(), matrix());
   for_each(Serial{}, n,
            ResidualItem{step_views(), arrays_.step_force.data(), matrix(), arrays_.residual.data(),
-                        arrays_.inverse_block.data(), arrays_.stiffening.data()});
+                        arrays_.inverse_block.data(), arrays_.stiffness_ratio.data()});
   const StepNorms largest = largest_norms();
-  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
-  if (line_search_.is_open()) line_search_.look(along_correction(arrays_.residual));
+  force_scale_ = largest.force, largest_stiffness_ratio_ = largest.stiffness_ratio;
+  if (line_search_.is_open()) line_search_.update(along_correction(arrays_.residual));
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
@@ -166,7 +166,7 @@ void CpuImplicitStep::subtract_surface_steps() {
   for_each(Serial{}, items_.layout.owned,
            SurfaceShiftItem<PackedRows>{items_.views(),
                                         newton_weights(),
-                                        {items_.side.step().data(), items_.side.step_turn().data()},
+                                        {items_.side.step().data(), items_.side.step_rotation().data()},
                                         arrays_.residual.data()});
 }
 
@@ -189,8 +189,8 @@ ParticleCorrection CpuImplicitStep::particle_correct() {
   if (!std::isfinite(right_hand_side)) items_.report_not_finite(residual);
   const Real tolerance =
       solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, right_hand_side);
-  const BlockSolver::System system{system_matrix, arrays_.inverse_block, residual, items_.halo,
-                                   ranks,         largest_stiffening_,   tolerance};
+  const BlockSolver::System system{system_matrix, arrays_.inverse_block,    residual, items_.halo,
+                                   ranks,         largest_stiffness_ratio_, tolerance};
   ParticleCorrection out;
   line_search_ = {};
   if (right_hand_side > 0) {
@@ -209,11 +209,11 @@ Real CpuImplicitStep::error() {
 void CpuImplicitStep::accept() {
   ParticleStore& store = items_.store;
   find_steps();
-  items_.kernels->books(items_.views(), items_.layout.owned, step_start(), store.contact_loss.data(),
-                        store.integrator_loss.data());
+  items_.kernels->step_losses(items_.views(), items_.layout.owned, step_start(), store.contact_loss.data(),
+                              store.integrator_loss.data());
   items_.history.accepted();
   items_.side.book_step();
-  items_.surfaces.book_steps(items_.side.places(), store, items_.list.surfaces);
+  items_.surfaces.accumulate_step_works(items_.side.poses(), store, items_.list.surfaces);
   for_each(Serial{}, items_.layout.owned,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
 }

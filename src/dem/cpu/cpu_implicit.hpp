@@ -17,7 +17,7 @@ struct CpuImplicitArrays {
   std::vector<Vec3> start_acceleration, start_force;
   // used by contact_force
   std::vector<Vec3> step_force, end_force;
-  std::vector<Real> force_magnitude, stiffening;
+  std::vector<Real> force_magnitude, stiffness_ratio;
   std::vector<Index> matrix_count;
   std::vector<ContactEntry> matrix_entries;
   std::vector<Sym3> matrix_diagonal, inverse_block;
@@ -63,8 +63,8 @@ class CpuImplicitStep : public ImplicitStep {
   void subtract_surface_steps();
   Real along_correction(const std::vector<Vec3>& residual) const;
 
-  LineSearch line_search_;                         // along arrays_.correction
-  Real largest_stiffening_ = 0, force_scale_ = 0;  // of the last contact_force
+  LineSearch line_search_;                              // along arrays_.correction
+  Real largest_stiffness_ratio_ = 0, force_scale_ = 0;  // of the last contact_force
 };
 
 }  // namespace scree

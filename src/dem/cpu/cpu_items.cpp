@@ -14,15 +14,15 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
       subdomain(of.space),
       side(of, subdomain, on),
       kernels(std::move(law)),
-      surfaces(of, subdomain, *kernels, of.contact.reach),
-      history(kept_numbers(of, kernels->history()), {of.space.min, subdomain.period()}),
+      surfaces(of, subdomain, *kernels, of.contact.interaction_range),
+      history(packed_numbers(of, kernels->history()), {of.space.min, subdomain.period()}),
       hht(hht_coefficients(of.integrator.hht_alpha)) {
   static_cast<FieldsThere&>(store) = fields_there(of);
 }
 
 CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
                                 const std::vector<Vec4>& spin) {
-  leave_records();
+  return_records();
   return views_of(position, velocity, spin);
 }
 
@@ -30,17 +30,18 @@ CpuItems::Views CpuItems::views_of(const std::vector<Vec4>& position, const std:
                                    const std::vector<Vec4>& spin) {
   Views views =
       surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
-  views.history = history.views(), views.spin = spin.data(), views.reach = model.contact.reach;
+  views.history = history.views(), views.spin = spin.data(),
+  views.interaction_range = model.contact.interaction_range;
   return views;
 }
 
 void CpuItems::find_loads(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
                           const std::vector<Vec4>& spin, const HistoryViews& of, Real h) {
   if (side.size() == 0) return;
-  surfaces.find_loads(side.places(), store, list.surfaces,
+  surfaces.find_loads(side.poses(), store, list.surfaces,
                       {position.data(), velocity.data(), spin.data(), of, h});
   const bool in_step = h > 0;
-  if (in_step && side.surfaces().at_rest()) return;  // static surfaces do not need the sums
+  if (in_step && side.surfaces().is_static()) return;  // static surfaces do not need the sums
   side.take_loads(surfaces.load_sums(list.surfaces), h);
 }
 

@@ -7,7 +7,7 @@
 
 #include "dem/host/cpu_history.hpp"
 #include "dem/host/cpu_surfaces.hpp"
-#include "dem/host/surface_side.hpp"
+#include "dem/host/host_surfaces.hpp"
 #include "dem/laws/contact_kernels.hpp"
 #include "dem/particles/particle_store.hpp"
 #include "dem/search/neighbor_list.hpp"
@@ -52,13 +52,13 @@ struct CpuItems {
   PairList& listed_pairs() {
     if (!store.rotates) return pairs;
     if (!pairs.is_current) pairs.match(list, store);
-    if (!pairs.keeps_records) pairs.take_records(history.views().neighbors, history.records());
+    if (!pairs.has_records) pairs.fetch_records(history.views().neighbors, history.records());
     return pairs;
   }
   // Argument for functions of `history`, while there is a list.
   CpuHistory::Listed listed() {
-    leave_records();
-    return {store, list, side.places(), surfaces.numbers()};
+    return_records();
+    return {store, list, side.poses(), surfaces.numbers()};
   }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
@@ -67,8 +67,8 @@ struct CpuItems {
   // Throws a SimulationError on all ranks that names the first particle. id: kNone without one on this rank.
   void fail_if_any(GlobalId id, const char* before, const char* after) const;
 
-  void leave_records() {
-    if (pairs.keeps_records) kernels->leave_records(pairs, history.views());
+  void return_records() {
+    if (pairs.has_records) kernels->return_records(pairs, history.views());
   }
   Views views_of(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
                  const std::vector<Vec4>& spin);
@@ -76,7 +76,7 @@ struct CpuItems {
   const Model& model;
   Ranks ranks;
   Subdomain subdomain;
-  SurfaceSide side;
+  HostSurfaces side;
   std::unique_ptr<ContactKernels> kernels;
   CpuSurfaces surfaces;
   CpuHistory history;

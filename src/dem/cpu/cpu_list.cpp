@@ -10,10 +10,10 @@
 namespace scree {
 
 // Packs the contact history. Ghosts are refreshed first, because contact keys depend on current positions.
-void CpuList::leave_slots() {
+void CpuList::pack_history() {
   if (!items_.history.at_slots()) return;
   items_.refresh_ghosts();
-  items_.history.leave_slots(items_.listed());
+  items_.history.pack_history(items_.listed());
 }
 
 void CpuList::wrap_positions() {
@@ -59,7 +59,7 @@ void CpuList::migrate() {
     departing_indices[static_cast<std::size_t>(owner)].push_back(i);
   }
   balance_.migrated += store.owned - static_cast<std::int64_t>(remaining.size());
-  const std::vector<Particle> arriving = ranks.deal_out(departing);
+  const std::vector<Particle> arriving = ranks.all_to_all(departing);
   countable(remaining.size() + arriving.size(), kTooManyParticles);
   items_.history.migrate(ranks, departing_indices, remaining);
   store.reorder(remaining);
@@ -78,7 +78,7 @@ class CellOrder {
     Index stride = 1;
     for (const int axis : axes) stride_[axis] = std::exchange(stride, stride * grid.cells[axis]);
   }
-  Index operator()(const CellPlace& c) const {
+  Index operator()(const CellIndex& c) const {
     return stride_[0] * c.x + stride_[1] * c.y + stride_[2] * c.z;
   }
 
@@ -101,7 +101,7 @@ void CpuList::sort_cells(Real skin) {
   std::vector<Index> cell(store.owned), start(outside + 2, 0), from(store.owned);
   store.active = 0;
   for (Index i = 0; i < store.owned; ++i) {
-    const CellPlace c = cells_.place(xyz(store.position[i]));
+    const CellIndex c = cells_.cell_index(xyz(store.position[i]));
     // A particle without a cell is outside the domain; whether that is an error is decided at the end of the
     // step.
     cell[i] = store.drifting[i] || c.x < 0 ? outside : order(c);
@@ -124,23 +124,23 @@ void CpuList::lay_out_items(Real skin) {
   layout.items = countable(static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()),
                            kTooManyItems);
   store.resize_items(layout.items);
-  for_each_array<kNames | kGhostCopies>([&](auto& array) { halo.update(std::span(array), layout.owned); },
-                                        store);
+  for_each_array<kKeys | kGhostCopies>([&](auto& array) { halo.update(std::span(array), layout.owned); },
+                                       store);
   for (Index g = 0; g < halo.size(); ++g) {
     std::int64_t& key = store.row_key[layout.owned + g];
     key = row_key(id_of(key), halo.images()[g]);
   }
 }
 
-void CpuList::place_bodies(std::span<const BodyMotion> motion) {
+void CpuList::set_body_motion(std::span<const BodyMotion> motion) {
   items_.side.set_motion(motion);
-  if (current_) surface_bound_ += items_.side.place();
+  if (current_) surface_bound_ += items_.side.update_poses();
 }
 
 void CpuList::build(Real skin, StageTimers& timers) {
   {
     const auto scope = timers.time(Stage::migrate);
-    leave_slots();
+    pack_history();
     wrap_positions();
     if (!items_.ranks.alone()) migrate();
   }
@@ -153,15 +153,15 @@ void CpuList::build(Real skin, StageTimers& timers) {
     lay_out_items(skin);
     items_.refresh_ghosts();
     items_.side.bring_into_box();
-    items_.side.place();
+    items_.side.update_poses();
   }
   const auto scope = timers.time(Stage::neighbors);
   const ParticleStore& store = items_.store;
-  builder_.build(store, items_.layout, cells_, {items_.side.places(), items_.history.remembered()}, skin,
+  builder_.build(store, items_.layout, cells_, {items_.side.poses(), items_.history.stored_contacts()}, skin,
                  items_.list);
-  items_.pairs.is_current = items_.pairs.keeps_records = false;
+  items_.pairs.is_current = items_.pairs.has_records = false;
   items_.side.build_list(skin);
-  items_.history.take_slots(items_.listed());
+  items_.history.unpack_history(items_.listed());
   built_at_ = store.position;
   items_.spare_position = store.position, items_.spare_velocity = store.velocity;
   items_.spare_spin = store.angular_velocity;
@@ -198,7 +198,7 @@ Real CpuList::displacement() {
   return bound_ / (items_.list.skin / 2);
 }
 
-void CpuList::keep_rows(const std::vector<Index>& remaining) {
+void CpuList::retain_rows(const std::vector<Index>& remaining) {
   if (items_.ranks.alone()) return;
   for (std::size_t k = 0; k < remaining.size(); ++k) row_length_[k] = row_length_[remaining[k]];
   row_length_.resize(remaining.size());

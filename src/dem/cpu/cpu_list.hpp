@@ -12,7 +12,7 @@ class CpuList : public RankList {
  public:
   explicit CpuList(CpuItems& items) : items_(items), builder_(items.model) {}
 
-  void place_bodies(std::span<const BodyMotion> motion) override;
+  void set_body_motion(std::span<const BodyMotion> motion) override;
   Real displacement() override;
   void build(Real skin, StageTimers& timers) override;
   std::int64_t entries() const override { return static_cast<std::int64_t>(items_.list.neighbors.size()); }
@@ -25,11 +25,11 @@ class CpuList : public RankList {
   // Particles were added or removed: the list is invalid.
   void outdate() { current_ = false; }
   // Keeps the row lengths of these owned particles, in this order.
-  void keep_rows(const std::vector<Index>& remaining);
+  void retain_rows(const std::vector<Index>& remaining);
 
  private:
   // Parts of build, in this order.
-  void leave_slots();
+  void pack_history();
   void wrap_positions();
   void migrate();
   void decompose();

@@ -25,7 +25,7 @@ std::vector<Particle> CpuParticles::records() {
   return out;
 }
 
-KeptContacts CpuParticles::contacts() {
+PackedHistory CpuParticles::contacts() {
   if (!items_.history.exists()) return {};
   std::vector<Index> order(static_cast<std::size_t>(items_.store.owned));
   std::iota(order.begin(), order.end(), 0);
@@ -49,38 +49,38 @@ void CpuParticles::initial_forces() {
   for_each(Serial{}, items_.layout.owned,
            StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
   if (is_verlet(items_.model))
-    items_.side.book_losses(0);
+    items_.side.accumulate_losses(0);
   else
     std::fill(store.loss_power.begin(), store.loss_power.end(), 0);
 }
 
-std::vector<Leaver> CpuParticles::outside() {
+std::vector<EscapedParticle> CpuParticles::outside() {
   ParticleStore& store = items_.store;
   const Model& model = items_.model;
   const Ranks& ranks = items_.ranks;
   const ParticleViews views = views_of(store);
-  std::vector<Leaver> leavers;
-  if (!ranks.any(items_.any_outside())) return leavers;
+  std::vector<EscapedParticle> escaped_particles;
+  if (!ranks.any(items_.any_outside())) return escaped_particles;
   for (Index i = 0; i < store.owned; ++i) {
     const Vec3 p = xyz(store.position[i]);
     if (store.drifting[i] || items_.subdomain.inside(p)) continue;
     const Real energy = energy_of_motion(views, i, model.gravity, items_.subdomain.period());
     const Real shift = verlet_energy_shift(verlet_step(model), views, i);
-    leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
-                       store.contact_loss[i], store.integrator_loss[i] - shift, losses_of(views, i), 0,
-                       ranks.rank()});
+    escaped_particles.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.is_beyond_wall(p), energy,
+                                 store.contact_loss[i], store.integrator_loss[i] - shift, losses_of(views, i),
+                                 0, ranks.rank()});
   }
   items_.find_loads();
-  items_.kernels->leavers(items_.views(), items_.subdomain.box(), static_cast<Index>(leavers.size()),
-                          leavers.data());
-  leavers = ranks.gather_everywhere(std::move(leavers));
-  std::sort(leavers.begin(), leavers.end(),
-            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
-  return leavers;
+  items_.kernels->escaped_particles(items_.views(), items_.subdomain.box(),
+                                    static_cast<Index>(escaped_particles.size()), escaped_particles.data());
+  escaped_particles = ranks.all_gather(std::move(escaped_particles));
+  std::sort(escaped_particles.begin(), escaped_particles.end(),
+            [](const EscapedParticle& a, const EscapedParticle& b) { return a.global_id < b.global_id; });
+  return escaped_particles;
 }
 
 // Called before the escaped particles are wrapped and marked.
-void CpuParticles::take_contacts_out() {
+void CpuParticles::remove_escaped_contacts() {
   ParticleStore& store = items_.store;
   const Model& model = items_.model;
   const bool verlet = is_verlet(model);
@@ -93,23 +93,23 @@ void CpuParticles::take_contacts_out() {
        verlet_step(model), store.angular_acceleration.data()});
 }
 
-void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
+void CpuParticles::remove_escaped(const std::vector<EscapedParticle>& escaped_particles) {
   ParticleStore& store = items_.store;
-  take_contacts_out();
-  items_.history.leave_slots(items_.listed());
-  for (const Leaver& leaver : leavers) {
-    if (leaver.rank != items_.ranks.rank()) continue;
-    const auto i = static_cast<std::size_t>(leaver.local_index);
+  remove_escaped_contacts();
+  items_.history.pack_history(items_.listed());
+  for (const EscapedParticle& escaped_particle : escaped_particles) {
+    if (escaped_particle.rank != items_.ranks.rank()) continue;
+    const auto i = static_cast<std::size_t>(escaped_particle.local_index);
     const Vec4& p = store.position[i];
     store.position[i] = vec4(items_.subdomain.wrap(xyz(p), store.image[i]), p.w);
     store.drifting[i] = 1;
   }
   list_.outdate();
-  if (items_.model.space.leaving != Leaving::remove) return;
+  if (items_.model.space.leaving != OutsidePolicy::remove) return;
   std::vector<Index> remaining;
   for (Index i = 0; i < store.owned; ++i)
     if (!store.drifting[i]) remaining.push_back(i);
-  list_.keep_rows(remaining);
+  list_.retain_rows(remaining);
   store.reorder(remaining), items_.history.reorder(remaining);
 }
 

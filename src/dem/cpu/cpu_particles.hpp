@@ -14,10 +14,10 @@ class CpuParticles : public RankParticles {
 
   void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
   std::vector<Particle> records() override;
-  void load_contacts(const KeptContacts& contacts) override {
+  void load_contacts(const PackedHistory& contacts) override {
     items_.history.load(contacts, items_.store.owned);
   }
-  KeptContacts contacts() override;
+  PackedHistory contacts() override;
   ShapeLosses shape_losses() const override { return items_.side.losses(); }
   void load_shape_contacts(const ShapeContacts& contacts) override { items_.side.load_contacts(contacts); }
   ShapeContacts shape_contacts() override { return items_.side.shape_contacts(); }
@@ -25,11 +25,11 @@ class CpuParticles : public RankParticles {
   std::vector<std::int64_t> works() override;
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
-  std::vector<Leaver> outside() override;
-  void take_out(const std::vector<Leaver>& leavers) override;
+  std::vector<EscapedParticle> outside() override;
+  void remove_escaped(const std::vector<EscapedParticle>& escaped_particles) override;
 
  private:
-  void take_contacts_out();
+  void remove_escaped_contacts();
 
   CpuItems& items_;
   CpuList& list_;

@@ -15,12 +15,13 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
   std::vector<SpringEnergies> springs(store.rotates ? n : 0);
-  const bool attracts = items_.model.attracts();
-  std::vector<Real> cohesion(attracts ? n : 0);
+  const bool is_cohesive = items_.model.is_cohesive();
+  std::vector<Real> cohesion(is_cohesive ? n : 0);
   need_loads();
-  items_.kernels->energies(items_.views(), n,
-                           {elastic.data(), touching.data(), pairs.data(),
-                            store.rotates ? springs.data() : nullptr, attracts ? cohesion.data() : nullptr});
+  items_.kernels->energies(
+      items_.views(), n,
+      {elastic.data(), touching.data(), pairs.data(), store.rotates ? springs.data() : nullptr,
+       is_cohesive ? cohesion.data() : nullptr});
 
   const LedgerItem item{views_of(store),           elastic.data(), pairs.data(), items_.model.gravity,
                         items_.subdomain.period(), verlet_step};
@@ -35,7 +36,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
     reproducible_sums(n, RotationItem{views_of(store), springs.data()}, of_rotation, items_.ranks);
     out.rotation = make_rotation_energies(of_rotation, items_.side);
   }
-  if (attracts) {
+  if (is_cohesive) {
     Real sum[1];
     reproducible_sums(n, CohesionItem{cohesion.data()}, sum, items_.ranks);
     out.cohesion = sum[0];
@@ -81,7 +82,7 @@ ContactLines CpuReports::contact_lines() {
   const Index n = store.owned;
   need_loads();
   const std::vector<ShownContact> of_surfaces =
-      items_.surfaces.shown(items_.side.places(), store, items_.list.surfaces, items_.history.views());
+      items_.surfaces.shown(items_.side.poses(), store, items_.list.surfaces, items_.history.views());
   std::vector<Index> counts(static_cast<std::size_t>(n));
   ContactLines out;
   out.lines = scree::contact_lines(
@@ -108,9 +109,9 @@ std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> request
   return found;
 }
 
-std::vector<ContactSum> CpuReports::carrier_contacts() {
+std::vector<ContactSum> CpuReports::parent_contacts() {
   need_loads();
-  return items_.side.carrier_contacts();
+  return items_.side.parent_contacts();
 }
 
 std::vector<ContactSum> CpuReports::surface_contacts() {

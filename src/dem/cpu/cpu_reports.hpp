@@ -20,7 +20,7 @@ class CpuReports : public Reports {
   ShapePack pack_shapes() override;
   ContactLines contact_lines() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> requested) override;
-  std::vector<ContactSum> carrier_contacts() override;
+  std::vector<ContactSum> parent_contacts() override;
   std::vector<ContactSum> surface_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
   std::vector<TriangleLoad> triangle_loads() override;

@@ -6,7 +6,7 @@ namespace scree {
 
 void choose_device(const Ranks&) {}
 
-std::string device_trouble() {
+std::string device_error() {
   return "this program was built without CUDA (cmake --preset cuda builds it with)";
 }
 
@@ -18,8 +18,8 @@ std::size_t device_memory_in_use() { return 0; }
 
 std::vector<DeviceShare> device_shares(const Backend&) { return {}; }
 
-DeviceClaim claim_device(const Model&) { throw InputError(device_trouble()); }
+DeviceClaim claim_device(const Model&) { throw InputError(device_error()); }
 
-std::unique_ptr<Backend> make_cuda_backend(const Model&, const Ranks&) { throw InputError(device_trouble()); }
+std::unique_ptr<Backend> make_cuda_backend(const Model&, const Ranks&) { throw InputError(device_error()); }
 
 }  // namespace scree

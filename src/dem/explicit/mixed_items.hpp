@@ -16,7 +16,7 @@ namespace scree {
 
 // Fixed-point position in quanta modulo 2^32: the difference of two nearby positions is exact. This part is
 // read by other particles.
-struct alignas(16) MixedPlace {
+struct alignas(16) FixedPointPosition {
   std::uint32_t x, y, z;
   float radius;  // [m]
 };
@@ -30,7 +30,7 @@ struct alignas(16) MixedMotion {
 // Fraction of the position in units of 2^-16 quantum. This part is not read by other particles.
 struct alignas(8) MixedFraction {
   std::uint16_t x, y, z;
-  std::uint16_t near_side;  // whether the particle may escape from the domain before the list expires
+  std::uint16_t near_open_side;  // whether the particle may escape from the domain before the list expires
 };
 
 // Mid-step velocity less the one that the law uses: so small that single precision resolves it far below the
@@ -53,7 +53,7 @@ struct alignas(16) MixedSpinRest {
 };
 
 struct MixedViews {
-  MixedPlace* place[2];  // all items; double-buffered: a step reads one and writes the other
+  FixedPointPosition* position[2];  // all items; double-buffered: a step reads one and writes the other
   MixedMotion* motion[2];
   MixedFraction* fraction;  // owned particles
   MixedRest* rest;
@@ -79,7 +79,8 @@ struct QuantumGrid {
 };
 
 // Position displaced by dx [m]; rest: its fraction, updated.
-SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace position, MixedFraction& rest) {
+SCREE_HD FixedPointPosition moved_by(const QuantumGrid& grid, Vec3 dx, FixedPointPosition position,
+                                     MixedFraction& rest) {
   const auto move = [&](std::uint32_t& whole, std::uint16_t& part, Real by) {
     const std::int64_t parts = part + grid.count(by);
     whole += static_cast<std::uint32_t>(parts >> 16);
@@ -96,14 +97,14 @@ inline QuantumGrid make_quantum_grid(Real range) {
   return {quantum, std::ldexp(quantum, -16), std::ldexp(1 / quantum, 16)};
 }
 
-SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
+SCREE_HD FixedPointPosition fixed_point_position(const QuantumGrid& grid, Vec4 p) {
   return {static_cast<std::uint32_t>(grid.count(p.x) >> 16),
           static_cast<std::uint32_t>(grid.count(p.y) >> 16),
           static_cast<std::uint32_t>(grid.count(p.z) >> 16), static_cast<float>(p.w)};
 }
 
 // Position shifted by whole periods.
-SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace position, Vec3 shift) {
+SCREE_HD FixedPointPosition shifted(const QuantumGrid& grid, FixedPointPosition position, Vec3 shift) {
   // Rounded alike in both directions: two particles see each other at opposite differences.
   const auto whole = [&](Real x) { return static_cast<std::uint32_t>((grid.count(x) + 32768) >> 16); };
   position.x += whole(shift.x), position.y += whole(shift.y), position.z += whole(shift.z);
@@ -111,14 +112,14 @@ SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace position, Vec3 s
 }
 
 // Double-precision position of a particle that was at `from` when it was converted [m].
-SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& position,
+SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const FixedPointPosition& position,
                              const MixedFraction& part) {
   return {grid.moved(from.x, position.x, part.x), grid.moved(from.y, position.y, part.y),
           grid.moved(from.z, position.z, part.z)};
 }
 
 // Position of p relative to q [m].
-SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedPlace& q) {
+SCREE_HD Vec3f mixed_difference(float quantum, const FixedPointPosition& p, const FixedPointPosition& q) {
   const auto along = [](std::uint32_t a, std::uint32_t b) {
     return static_cast<float>(static_cast<std::int32_t>(a - b));
   };
@@ -127,12 +128,12 @@ SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedP
 
 // `TouchTest` for fixed-point positions.
 struct MixedTouchTest {
-  MixedPlace p;
-  const MixedPlace* place;  // all items
-  float quantum;            // [m]
+  FixedPointPosition p;
+  const FixedPointPosition* position;  // all items
+  float quantum;                       // [m]
   SCREE_HD bool operator()(Index j) const { return near(j, 0); }
   SCREE_HD bool near(Index j, Real margin) const {
-    const MixedPlace q = place[j];
+    const FixedPointPosition q = position[j];
     const Vec3f r = mixed_difference(quantum, p, q);
     const float distance = p.radius + q.radius + static_cast<float>(margin);
     return dot(r, r) < distance * distance;
@@ -151,7 +152,7 @@ struct ToMixedItem {
   SCREE_HD void operator()(Index i) const {
     const Vec4 p = position[i], v = velocity[i];
     const Vec3f law_velocity = in_single(xyz(v));
-    out.place[0][i] = mixed_place(grid, p);
+    out.position[0][i] = fixed_point_position(grid, p);
     out.motion[0][i] = {law_velocity.x, law_velocity.y, law_velocity.z, static_cast<float>(v.w)};
     const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
     out.fraction[i] = {part(p.x), part(p.y), part(p.z),
@@ -185,7 +186,7 @@ struct FromMixedItem {
   SCREE_HD void operator()(Index i) const {
     if (drifting[i]) return move_ballistically(i);
     const MixedMotion u = (parity == 0 ? in.motion[0] : in.motion[1])[i];
-    const MixedPlace fixed_position = (parity == 0 ? in.place[0] : in.place[1])[i];
+    const FixedPointPosition fixed_position = (parity == 0 ? in.position[0] : in.position[1])[i];
     const MixedRest rest = in.rest[i];
     const Vec3 law_velocity{u.x, u.y, u.z}, middle = law_velocity + Vec3{rest.x, rest.y, rest.z};
     // A velocity that is not finite must be visible in the position, which is always finite in fixed point.
@@ -225,7 +226,7 @@ struct FromMixedItem {
 // Kinematics at fixed-point positions: pairs of particles in single precision; walls, which need the whole
 // position, in double precision.
 struct AtMixedInstant {
-  const MixedPlace* place;  // all items
+  const FixedPointPosition* position;  // all items
   const MixedMotion* motion;
   const MixedFraction* fraction;
   QuantumGrid grid;
@@ -233,20 +234,20 @@ struct AtMixedInstant {
   struct Self {
     Index i;
     int material;
-    MixedPlace p;
+    FixedPointPosition p;
     MixedMotion u;
   };
   template <class Rows>
   SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
-    return {i, in.material[i], place[i], motion[i]};
+    return {i, in.material[i], position[i], motion[i]};
   }
   template <class Rows>
   SCREE_HD MixedTouchTest test(const ContactViews<Rows>&, const Self& self) const {
-    return {self.p, place, static_cast<float>(grid.quantum)};
+    return {self.p, position, static_cast<float>(grid.quantum)};
   }
   template <class Rows>
   SCREE_HD PairStateOf<float, Vec3f> pair(const ContactViews<Rows>&, const Self& self, Index j) const {
-    const MixedPlace p = self.p, q = place[j];
+    const FixedPointPosition p = self.p, q = position[j];
     const MixedMotion u = self.u, w = motion[j];
     const Vec3f r = mixed_difference(static_cast<float>(grid.quantum), p, q);
     return {sphere_pair(r, p.radius + q.radius),
@@ -282,11 +283,11 @@ struct MixedAdvanceItem {
     const Real mass = self.u.mass;
     Vec3 f = mass * gravity;
     float loss = 0;
-    walk.template neighbors<true>(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template neighbors<true>(self, EvaluateLoad{}, [&](const auto& load, Index) {
       f += in_double(load.force);
       loss += 0.5f * load.loss;
     });
-    walk.template surfaces<true>(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template surfaces<true>(self, EvaluateLoad{}, [&](const auto& load, Index) {
       f += load.force;
       loss += static_cast<float>(load.loss);
     });
@@ -295,17 +296,20 @@ struct MixedAdvanceItem {
 
  private:
   // No indexing by parity: a GPU would copy the arrays of pointers to local memory.
-  SCREE_HD MixedPlace* positions() const { return parity == 0 ? state.place[0] : state.place[1]; }
+  SCREE_HD FixedPointPosition* positions() const {
+    return parity == 0 ? state.position[0] : state.position[1];
+  }
   SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
 
-  SCREE_HD Real advance(Index i, const MixedPlace& p, const MixedMotion& u, Vec3 a, float loss) const {
+  SCREE_HD Real advance(Index i, const FixedPointPosition& p, const MixedMotion& u, Vec3 a,
+                        float loss) const {
     const MixedRest rest = state.rest[i];
     const Vec3 old_middle = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 middle = verlet_next_middle(h, old_middle, a), dx = h * middle;
     const Vec3f law_velocity = in_single(verlet_predicted_from_middle(h, middle, a));
     const Vec3f new_rest = in_single(middle - in_double(law_velocity));
     MixedFraction part = state.fraction[i];
-    (parity == 0 ? state.place[1] : state.place[0])[i] = moved_by(grid, dx, p, part);
+    (parity == 0 ? state.position[1] : state.position[0])[i] = moved_by(grid, dx, p, part);
     state.fraction[i] = part;
     (parity == 0 ? state.motion[1] : state.motion[0])[i] = {law_velocity.x, law_velocity.y, law_velocity.z,
                                                             u.mass};

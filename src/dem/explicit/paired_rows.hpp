@@ -13,7 +13,7 @@ namespace scree {
 // Loads on the particle of a row, stored per slot from their evaluation until the row is summed. Freed
 // entries are reused last-in, first-out: rows that are close to each other need few.
 template <class Packed>
-class KeptResults {
+class PendingResults {
  public:
   // Resets all slots to no load.
   void resize(std::size_t slots) { indices_.resize(slots); }
@@ -79,10 +79,10 @@ class PairSweep {
     for (; evaluated_rows_ < pairs_->rows(); ++evaluated_rows_) {
       const auto test = contact.test(contact.walk.self(evaluated_rows_));
       for (const Index end = pairs_->offsets[evaluated_rows_ + 1]; next_ < end; ++next_) {
-        if (found == Batch::kRoom) return evaluate(contact.walk, found);
+        if (found == Batch::kCapacity) return evaluate(contact.walk, found);
         const ListedPair& pair = pairs_->pairs[next_];
         Vec4* const records = records_of_pair(next_);
-        fetch_ahead(records);
+        prefetch_record(records);
         found_[found] = {evaluated_rows_, pair.j, pair.slot, pair.mirror, records};
         found += test(pair.j);
       }
@@ -95,7 +95,7 @@ class PairSweep {
     const HistoryViews& history = walk.in.history;
     for (Index k = 0; k < found; ++k)
       batch_.put(k, walk.self(found_[k].i), walk.self(found_[k].j), found_[k].records);
-    batch_.evaluate(found, walk.laws, walk.look, history);
+    batch_.evaluate(found, walk.laws, walk.kinematics, history);
     results_.reserve(2 * found);
     Index again = 0;
     for (Index k = 0; k < found; ++k) {
@@ -122,14 +122,14 @@ class PairSweep {
   PairList* pairs_ = nullptr;
   Index evaluated_rows_ = 0;  // rows whose contacts were evaluated
   Index next_ = 0;            // next pair to evaluate
-  KeptResults<Packed> results_;
+  PendingResults<Packed> results_;
   Batch batch_;
-  Found found_[Batch::kRoom];
+  Found found_[Batch::kCapacity];
 };
 
 // Writes the history of pairs back to the slots.
 template <class Law>
-void leave_records(PairList& pairs, const HistoryViews& history) {
+void return_records(PairList& pairs, const HistoryViews& history) {
   constexpr Index kRecords = records_of(Law::kHistory);
   const Vec4* records = pairs.records.data();
   for (const ListedPair& pair : pairs.pairs) {
@@ -140,7 +140,7 @@ void leave_records(PairList& pairs, const HistoryViews& history) {
         HistoryViews::mirror<Law>(records, mirror);
     records += kRecords;
   }
-  pairs.keeps_records = false;
+  pairs.has_records = false;
 }
 
 template <class Laws>

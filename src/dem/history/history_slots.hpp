@@ -32,7 +32,7 @@ SCREE_HD auto& number_of(Record* records, int k) {
 }
 
 // Prefetches a record.
-SCREE_HD void fetch_ahead(const Vec4* record) {
+SCREE_HD void prefetch_record(const Vec4* record) {
 #ifdef __CUDA_ARCH__
   asm volatile("prefetch.global.L2 [%0];" ::"l"(record));
 #else
@@ -47,9 +47,9 @@ struct HistoryViews {
   // Records of placed surfaces, whose contacts are evaluated before the particles' walk: after the last step,
   // and after the evaluated step if it is accepted. The latter is null for evaluations that do not store it.
   Vec4 *bodies = nullptr, *ahead = nullptr;
-  // Features of the contacts with meshes, per entry; on open surfaces with the side (mesh/sheet_sides.hpp).
-  // Without records kNoFeature marks entries without contact.
-  Index *features = nullptr, *features_ahead = nullptr;
+  // Features of the contacts with meshes, per entry; on open surfaces with the side
+  // (mesh/open_surface_sides.hpp). Without records kNoFeature marks entries without contact.
+  Index *features = nullptr, *next_features = nullptr;
   Real step = 0;  // number of the last accepted step, above 0
 
   // Views for an evaluation that stores nothing.
@@ -101,13 +101,13 @@ struct HistoryViews {
 // surfaces numbered after all particles, meshes with the feature in contact, and penetrated open surfaces
 // (the particle's centre is past the surface) after these. The image is that of the partner relative to the
 // particle with both in the periodic box, so that no key depends on when positions were last wrapped.
-inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPastId = 2 * kFirstSurfaceId,
+inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPenetratedId = 2 * kFirstSurfaceId,
                           kPartnersEnd = 3 * kFirstSurfaceId;
 SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool penetrated = false) {
-  return (penetrated ? kFirstPastId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
+  return (penetrated ? kFirstPenetratedId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
 }
 SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
-SCREE_HD bool is_past(std::int64_t contact_key) { return contact_key >= 27 * kFirstPastId; }
+SCREE_HD bool is_penetrated(std::int64_t contact_key) { return contact_key >= 27 * kFirstPenetratedId; }
 // Feature of a contact with a mesh.
 SCREE_HD Index feature_of(std::int64_t contact_key) {
   return static_cast<Index>((contact_key / 27 % kFirstSurfaceId) >> kSurfaceBits);
@@ -119,7 +119,7 @@ SCREE_HD Index surface_of(std::int64_t contact_key) {
 // The key with feature 0 and not penetrated.
 SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
   const GlobalId of_feature = GlobalId{feature_of(contact_key)} << kSurfaceBits;
-  return contact_key - 27 * (is_past(contact_key) ? of_feature + kFirstSurfaceId : of_feature);
+  return contact_key - 27 * (is_penetrated(contact_key) ? of_feature + kFirstSurfaceId : of_feature);
 }
 
 // Periodic box.
@@ -148,7 +148,7 @@ struct PeriodicBox {
   // The box with periodicity along the other axes only.
   SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image, relative to p, of the item at q that is shifted by `image`.
-  SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
+  SCREE_HD std::int8_t image_relative_to(Vec3 p, Vec3 q, std::int8_t image = kZeroShift) const {
     if (holds(p) && holds(q)) return image;  // the common case
     const ImageCount a = periods_at(p), b = periods_at(q);
     return static_cast<std::int8_t>(image + (b.x - a.x) + 3 * (b.y - a.y) + 9 * (b.z - a.z));

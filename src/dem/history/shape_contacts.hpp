@@ -11,10 +11,10 @@ namespace scree {
 
 // The contacts that were closed at the last step, ordered by shape and key.
 struct ShapeContacts {
-  int numbers = 0;                   // see KeptContacts
+  int numbers = 0;                   // see PackedHistory
   std::vector<std::int64_t> shapes;  // number of the placed surface (SurfaceSet)
   std::vector<std::int64_t> keys;    // contact key: the partner is a shape or another surface, see
-                                     // KeptContacts
+                                     // PackedHistory
   std::vector<Real> values;          // [contacts][width()]
 
   int width() const { return numbers > 0 ? numbers : 0; }

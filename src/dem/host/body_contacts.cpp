@@ -15,12 +15,12 @@ namespace scree {
 namespace {
 
 // Bins over the surfaces' positions, in which spheres that can touch are in neighbouring bins.
-SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
+SortedBins bins_of(std::span<const SurfacePose> placed, Real skin) {
   Vec3 min = placed.empty() ? Vec3{} : placed[0].point, max = min;
   Real radius = 0;
   std::vector<StartItem> points;
   for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
-    const PlacedSurface& s = placed[i];
+    const SurfacePose& s = placed[i];
     if (s.kind != SurfaceKind::sphere) continue;
     min = {std::min(min.x, s.point.x), std::min(min.y, s.point.y), std::min(min.z, s.point.z)};
     max = {std::max(max.x, s.point.x), std::max(max.y, s.point.y), std::max(max.z, s.point.z)};
@@ -31,20 +31,20 @@ SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
 }
 
 // Mass of the body of each placed surface, for the damping of Hertz's law; infinite for walls [kg].
-std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfaces) {
+std::vector<Real> masses_of_parents(const Model& model, const SurfaceSet& surfaces) {
   std::vector<Real> masses;
   for (Index s = 0; s < surfaces.placed(); ++s)
     masses.push_back(surfaces.is_on_body(s)
-                         ? model.bodies[static_cast<std::size_t>(surfaces.at(s).carrier)].mass
+                         ? model.bodies[static_cast<std::size_t>(surfaces.at(s).parent)].mass
                          : kInfinity);
   return masses;
 }
 
 }  // namespace
 
-Contact without_attraction(Contact contact) {
-  for (KelvinVoigt& law : contact.laws)
-    if (law.attracts()) law = law.without_attraction(), law.tension = true;
+Contact without_cohesion(Contact contact) {
+  for (NormalLawParameters& law : contact.laws)
+    if (law.is_cohesive()) law = law.without_cohesion(), law.tension = true;
   return contact;
 }
 
@@ -60,15 +60,15 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       corners_(model, surfaces),
       period_(subdomain.period()),
       snap_(subdomain.snap_constant()),
-      kernels_(make_contact_kernels(corners_.with_own_materials(without_attraction(model.contact)))),
+      kernels_(make_contact_kernels(corners_.with_own_materials(without_cohesion(model.contact)))),
       planes_(wall_planes(model)),
-      entries_(model, subdomain, *kernels_, 0, masses_of_carriers(model, surfaces)),
-      held_(kept_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
-      found_(held_) {}
+      entries_(model, subdomain, *kernels_, 0, masses_of_parents(model, surfaces)),
+      accepted_(packed_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
+      trial_(accepted_) {}
 
 // Possible partners of each placed surface, in order.
-std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
-    std::span<const PlacedSurface> placed, Real skin) const {
+std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(std::span<const SurfacePose> placed,
+                                                                         Real skin) const {
   std::vector<std::vector<Item>> partners(placed.size());
   if (!rule_.bodies_may_touch()) return partners;
   const SortedBins bins = bins_of(placed, skin);
@@ -80,7 +80,7 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
         const Vec3 d = placed[i].point - other.position - shift;
         const Real distance = placed[i].radius + other.radius + skin;
         const Surface &one = surfaces_.at(i), &two = surfaces_.at(j);
-        if (dot(d, d) < distance * distance && rule_.may_touch(one.carrier, two.carrier) &&
+        if (dot(d, d) < distance * distance && rule_.may_touch(one.parent, two.parent) &&
             model_.contact.law(one.material, two.material).acts())
           partners[i].push_back({j, image});
       });
@@ -90,7 +90,7 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   return partners;
 }
 
-std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& poses, Real skin) const {
+std::vector<Index> BodyContacts::find_shapes(const SurfacePoses& poses, Real skin) const {
   std::vector<Index> shapes;
   for (Index s = 0; s < static_cast<Index>(poses.placed.size()); ++s)
     if (poses.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
@@ -100,14 +100,14 @@ std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& poses, Real sk
 
 // Finds the rows of these shapes with all surfaces that are not spheres. Vertices of meshes move as far as
 // their meshes: planes near them are searched in the range used for particles near meshes.
-void BodyContacts::find_surfaces(const SurfacePlaces& poses, Real skin, const std::vector<Index>& shapes,
+void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std::vector<Index>& shapes,
                                  SurfaceRows& rows) const {
   std::vector<Vec4> position;
   Vec3 min, max;
   Real largest = 0;
   for (const Index s : shapes) {
     const bool is_corner = corners_.has(s);
-    const PlacedSurface& shape = poses.placed[static_cast<std::size_t>(corners_.surface_of(s))];
+    const SurfacePose& shape = poses.placed[static_cast<std::size_t>(corners_.surface_of(s))];
     const Vec3 p =
         is_corner ? shape.point + poses.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
     const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
@@ -127,10 +127,10 @@ void BodyContacts::find_surfaces(const SurfacePlaces& poses, Real skin, const st
   const auto may_touch = [&](Index i, Index s) {
     if (corners_.has(shapes[i])) return surfaces_.at(s).kind == SurfaceKind::plane;
     return surfaces_.at(s).kind != SurfaceKind::sphere &&
-           rule_.may_touch(carrier_of(shapes[i]), surfaces_.at(s).carrier);
+           rule_.may_touch(parent_of(shapes[i]), surfaces_.at(s).parent);
   };
   const auto stored_contacts = [&](Index i, Index surface) {
-    return kept_.contacts_with(shapes[i], surface);
+    return packed_.contacts_with(shapes[i], surface);
   };
   build_rows({grid, start, items, position, n, largest}, n,
              {surfaces_, planes_, poses, period_, skin, stored_contacts, may_touch}, rows);
@@ -142,8 +142,8 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
   std::map<Item, Index> item_of;
   items_.clear(), list_.neighbors.clear(), list_.offsets = {0};
   for (const Index s : shapes) {
-    item_of.emplace(Item{s, kNoShift}, static_cast<Index>(items_.size()));
-    items_.push_back({s, kNoShift});
+    item_of.emplace(Item{s, kZeroShift}, static_cast<Index>(items_.size()));
+    items_.push_back({s, kZeroShift});
   }
   const std::vector<Item> none;  // for mesh vertices
   for (const Index s : shapes) {
@@ -167,7 +167,7 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
   entries_.set_law_radii(corners_.empty() ? std::vector<Real>{} : std::move(law_radius));
 }
 
-void BodyContacts::build(const SurfacePlaces& poses, Real skin) {
+void BodyContacts::build(const SurfacePoses& poses, Real skin) {
   const std::vector<std::vector<Item>> partners = find_partners(poses.placed, skin);
   const std::vector<Index> all = find_shapes(poses, skin);
   std::vector<Index> near;
@@ -178,44 +178,44 @@ void BodyContacts::build(const SurfacePlaces& poses, Real skin) {
       near.push_back(all[k]);
   if (near.size() < all.size()) find_surfaces(poses, skin, near, list_.surfaces);
   list_items(near, partners);
-  place(poses, Instant::now, 0);
-  if (held_.exists()) take_contacts(poses);
+  set_items(poses, Instant::now, 0);
+  if (accepted_.exists()) unpack_shape_contacts(poses);
   has_list_ = true;
 }
 
 // Unpacks the history of the shapes in the list; the contacts of all others have ended.
-void BodyContacts::take_contacts(const SurfacePlaces& poses) {
-  KeptContacts rows;
-  rows.numbers = kept_.numbers;
+void BodyContacts::unpack_shape_contacts(const SurfacePoses& poses) {
+  PackedHistory rows;
+  rows.numbers = packed_.numbers;
   std::size_t k = 0;
   for (Index i = 0; i < store_.owned; ++i) {
-    for (; k < kept_.shapes.size() && kept_.shapes[k] <= items_[i].surface; ++k)
-      if (kept_.shapes[k] == items_[i].surface) rows.add(kept_.keys[k], kept_.values_of(k));
+    for (; k < packed_.shapes.size() && packed_.shapes[k] <= items_[i].surface; ++k)
+      if (packed_.shapes[k] == items_[i].surface) rows.add(packed_.keys[k], packed_.values_of(k));
     rows.end_row();
   }
-  held_.load(rows, store_.owned);
-  held_.take_slots(listed(poses));
+  accepted_.load(rows, store_.owned);
+  accepted_.unpack_history(listed(poses));
 }
 
-void BodyContacts::leave_list(const SurfacePlaces& poses) {
-  if (!has_list_ || !held_.exists()) return;
-  kept_ = contacts(poses);
+void BodyContacts::pack_list(const SurfacePoses& poses) {
+  if (!has_list_ || !accepted_.exists()) return;
+  packed_ = contacts(poses);
   has_list_ = false;
 }
 
 void BodyContacts::load(const ShapeContacts& contacts) {
-  kept_ = contacts.numbers == held_.numbers() ? contacts : ShapeContacts{};
-  kept_.numbers = held_.numbers();
+  packed_ = contacts.numbers == accepted_.numbers() ? contacts : ShapeContacts{};
+  packed_.numbers = accepted_.numbers();
   has_list_ = false;
 }
 
-ShapeContacts BodyContacts::contacts(const SurfacePlaces& poses) {
-  if (!has_list_) return kept_;
+ShapeContacts BodyContacts::contacts(const SurfacePoses& poses) {
+  if (!has_list_) return packed_;
   ShapeContacts out;
-  out.numbers = held_.numbers();
-  if (!held_.exists()) return out;
-  place(poses, Instant::now, 0);
-  const KeptContacts rows = held_.contacts(listed(poses));
+  out.numbers = accepted_.numbers();
+  if (!accepted_.exists()) return out;
+  set_items(poses, Instant::now, 0);
+  const PackedHistory rows = accepted_.contacts(listed(poses));
   for (Index i = 0; i < store_.owned; ++i)
     out.shapes.insert(out.shapes.end(), static_cast<std::size_t>(rows.contacts(i)), items_[i].surface);
   out.keys = rows.keys, out.values = rows.values;
@@ -224,34 +224,34 @@ ShapeContacts BodyContacts::contacts(const SurfacePlaces& poses) {
 
 void BodyContacts::accept() {
   if (!has_step_) return;
-  std::swap(held_, found_);
+  std::swap(accepted_, trial_);
   has_step_ = false;
 }
 
-void BodyContacts::reopen() { std::swap(held_, found_); }
+void BodyContacts::reopen() { std::swap(accepted_, trial_); }
 
-void BodyContacts::place(const SurfacePlaces& poses, Instant when, Real h) {
+void BodyContacts::set_items(const SurfacePoses& poses, Instant when, Real h) {
   const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
   store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
   for (const Item& item : items_) {
-    const PlacedSurface& s = (at_start ? poses.start : poses.placed)[corners_.surface_of(item.surface)];
-    const Body& body = model_.bodies[static_cast<std::size_t>(carrier_of(item.surface))];
+    const SurfacePose& s = (at_start ? poses.start : poses.placed)[corners_.surface_of(item.surface)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(parent_of(item.surface))];
     const bool is_corner = corners_.has(item.surface);
-    const PlacedCorner at = is_corner ? placed_corner(s, poses.frames[s.frame],
-                                                      corners_.position_of(item.surface), at_start, snap_)
-                                      : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
+    const CornerPose at =
+        is_corner ? corner_pose(s, poses.frames[s.frame], corners_.position_of(item.surface), at_start, snap_)
+                  : CornerPose{s.point, s.arm, s.velocity_at({}), s.displacement};
     store_.position.push_back(vec4(at.point + image_shift(item.image, period_), s.radius));
-    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.travel : at.velocity, body.mass));
+    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.displacement : at.velocity, body.mass));
     store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
     arm_.push_back(at.arm);
   }
 }
 
 // Sets the start arrays; the items are left at the start of the step.
-void BodyContacts::place_start(const SurfacePlaces& poses, Real h) {
-  place(poses, Instant::now, h);
+void BodyContacts::set_start_items(const SurfacePoses& poses, Real h) {
+  set_items(poses, Instant::now, h);
   mean_spin_ = store_.angular_velocity;
-  place(poses, Instant::start, 0);
+  set_items(poses, Instant::start, 0);
   start_position_ = store_.position, start_velocity_ = store_.velocity;
   start_spin_ = store_.angular_velocity;
 }
@@ -268,39 +268,40 @@ ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const 
   return views;
 }
 
-void BodyContacts::find_loads(const SurfacePlaces& poses, Real h) {
-  const bool in_step = h > 0 && held_.exists();
+void BodyContacts::find_loads(const SurfacePoses& poses, Real h) {
+  const bool in_step = h > 0 && accepted_.exists();
   if (!in_step) h = 0;
-  if (in_step) found_ = held_, has_step_ = true;
-  const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
-  place(poses, Instant::now, h);
+  if (in_step) trial_ = accepted_, has_step_ = true;
+  const HistoryViews history = in_step ? trial_.views() : accepted_.views().only_read();
+  set_items(poses, Instant::now, h);
   entries_.find_loads(
       poses, store_, list_.surfaces,
       {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
   kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
   for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = corners_.surface_of(items_[i].surface);
-  if (in_step) found_.accepted();
+  if (in_step) trial_.accepted();
 }
 
-void BodyContacts::find_steps(const SurfacePlaces& poses, Real h) {
-  place_start(poses, h);
-  place(poses, Instant::now, 0);
+void BodyContacts::find_steps(const SurfacePoses& poses, Real h) {
+  set_start_items(poses, h);
+  set_items(poses, Instant::now, 0);
   steps_.resize(static_cast<std::size_t>(store_.owned));
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
   const StepStart start = step_start(h);
-  if (held_.exists()) found_ = held_, has_step_ = true;
+  if (accepted_.exists()) trial_ = accepted_, has_step_ = true;
   if (model_.rotates()) {
-    RubbingStart friction{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
-    entries_.find_rubs(poses, store_, list_.surfaces, friction, found_.views());
-    friction.on_bodies = entries_.rubs();
-    kernels_->body_rubs(views(found_.views()), store_.owned, friction, arm_.data(), steps_.data(), to);
+    FrictionStart friction{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
+    entries_.find_friction_steps(poses, store_, list_.surfaces, friction, trial_.views());
+    friction.on_bodies = entries_.friction_steps();
+    kernels_->body_friction_steps(views(trial_.views()), store_.owned, friction, arm_.data(), steps_.data(),
+                                  to);
   } else {
-    entries_.find_steps(poses, store_, list_.surfaces, start, found_.views());
+    entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
     kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
   }
-  if (held_.exists()) found_.accepted();
+  if (accepted_.exists()) trial_.accepted();
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
   find_pairs();
 }
@@ -310,7 +311,7 @@ void BodyContacts::find_steps(const SurfacePlaces& poses, Real h) {
 void BodyContacts::find_pairs() {
   pairs_.clear();
   const auto touched = [&](Index item, Vec3 towards) -> TouchedBody {
-    return {carrier_of(items_[item].surface), arm_[item] + store_.position[item].w * towards};
+    return {parent_of(items_[item].surface), arm_[item] + store_.position[item].w * towards};
   };
   for (Index i = 0; i < store_.owned; ++i)
     for (Index k = 0; k < steps_[i].partners; ++k) {
@@ -322,7 +323,7 @@ void BodyContacts::find_pairs() {
   entries_.for_each_slope(
       list_.surfaces, [&](Index item, Index surface, Vec3 contact_point, const auto& slopes) {
         if (surfaces_.is_on_body(surface))
-          pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).carrier, contact_point}, slopes);
+          pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).parent, contact_point}, slopes);
       });
 }
 
@@ -337,7 +338,7 @@ void BodyContacts::add_sums(std::vector<StepSums>& to) const {
   for (const BodyStep& step : steps_)
     if (step.sums.contacts > 0) to.push_back(step.sums);
   const std::vector<StepSums> of_surfaces =
-      model_.rotates() ? entries_.rub_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
+      model_.rotates() ? entries_.friction_step_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
   to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
 }
 
@@ -352,19 +353,19 @@ BodyContactTotals BodyContacts::totals() const {
 
 BodyStep BodyContacts::step_totals() const {
   BodyStep sum;
-  for (const BodyStep& step : steps_) sum.books.add(step.books, 1), sum.friction += step.friction;
+  for (const BodyStep& step : steps_) sum.losses.add(step.losses, 1), sum.friction += step.friction;
   return sum;
 }
 
-void BodyContacts::book_loads(const SurfacePlaces& poses, Real h) {
-  entries_.book_loads(poses, store_, list_.surfaces, h);
+void BodyContacts::accumulate_load_works(const SurfacePoses& poses, Real h) {
+  entries_.accumulate_load_works(poses, store_, list_.surfaces, h);
 }
 
-void BodyContacts::book_steps(const SurfacePlaces& poses) {
+void BodyContacts::accumulate_step_works(const SurfacePoses& poses) {
   if (model_.rotates())
-    entries_.book_rubs(poses, store_, list_.surfaces);
+    entries_.accumulate_friction_works(poses, store_, list_.surfaces);
   else
-    entries_.book_steps(poses, store_, list_.surfaces);
+    entries_.accumulate_step_works(poses, store_, list_.surfaces);
 }
 
 std::vector<TriangleSums> BodyContacts::triangle_sums() const {
@@ -373,13 +374,13 @@ std::vector<TriangleSums> BodyContacts::triangle_sums() const {
 
 ContactSum BodyContacts::on_wall(int wall) {
   Real sums[kWallTerms];
-  kernels_->wall_sums(views(held_.views().only_read()), store_.owned, {wall, model_.space.min, period_},
+  kernels_->wall_sums(views(accepted_.views().only_read()), store_.owned, {wall, model_.space.min, period_},
                       Ranks(), sums);
   return make_wall_contact(sums);
 }
 
-std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& poses) {
-  const HistoryViews history = held_.views().only_read();
+std::vector<ContactLine> BodyContacts::lines(const SurfacePoses& poses) {
+  const HistoryViews history = accepted_.views().only_read();
   const std::vector<ShownContact> of_surfaces = entries_.shown(poses, store_, list_.surfaces, history);
   std::vector<Index> counts(static_cast<std::size_t>(store_.owned));
   std::vector<ContactLine> lines =

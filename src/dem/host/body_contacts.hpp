@@ -40,30 +40,30 @@ ContactSum make_wall_contact(const Real* sums);
 
 // Totals over all contacts of shapes at an instant, or over the explicit step that ended there.
 struct BodyContactTotals {
-  Real loss_power = 0;      // [W]
-  Real elastic_energy = 0;  // [J]
-  SpringEnergies springs;   // parts of elastic_energy
-  RubbingLosses losses{};   // over the step [J]
-  Real pairs = 0;           // number of contacts
+  Real loss_power = 0;        // [W]
+  Real elastic_energy = 0;    // [J]
+  SpringEnergies springs;     // parts of elastic_energy
+  TangentialLosses losses{};  // over the step [J]
+  Real pairs = 0;             // number of contacts
 };
 
 // Contact laws of bodies. Bodies attract neither each other nor walls: cohesive laws are replaced by their
 // repulsive part, with tension because of their dampers.
-Contact without_attraction(Contact contact);
+Contact without_cohesion(Contact contact);
 
 class BodyContacts {
  public:
   BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain);
 
   // Packs the contact history by keys before surfaces are wrapped into the periodic box for another list.
-  void leave_list(const SurfacePlaces& poses);
+  void pack_list(const SurfacePoses& poses);
   // Finds possible contacts until some surface has moved by half the skin [m]. Called on rank 0 only.
-  void build(const SurfacePlaces& poses, Real skin);
+  void build(const SurfacePoses& poses, Real skin);
 
   // Evaluates the contacts at an instant (h = 0), or over the explicit step of length h that ends now; and
   // over an implicit step that began at `poses.start`.
-  void find_loads(const SurfacePlaces& poses, Real h);
-  void find_steps(const SurfacePlaces& poses, Real h);
+  void find_loads(const SurfacePoses& poses, Real h);
+  void find_steps(const SurfacePoses& poses, Real h);
   // Adds the sums of the last evaluation; a surface may occur twice.
   void add_sums(std::vector<InstantSums>& to) const;
   void add_sums(std::vector<StepSums>& to) const;
@@ -74,12 +74,12 @@ class BodyContacts {
   // Load of shapes on a static wall at the last evaluation at an instant. wall: index into Model::walls.
   ContactSum on_wall(int wall);
   // Contacts of `find_loads` at an instant, each one once.
-  std::vector<ContactLine> lines(const SurfacePlaces& poses);
+  std::vector<ContactLine> lines(const SurfacePoses& poses);
 
   // Accumulates the dissipation of the last evaluation at the triangles of meshes: over an explicit step of
   // length h, and over an implicit one.
-  void book_loads(const SurfacePlaces& poses, Real h);
-  void book_steps(const SurfacePlaces& poses);
+  void accumulate_load_works(const SurfacePoses& poses, Real h);
+  void accumulate_step_works(const SurfacePoses& poses);
   std::vector<std::int64_t> works() const { return entries_.works(); }
   void clear_works() { entries_.load_works({}); }
 
@@ -90,7 +90,7 @@ class BodyContacts {
   void reopen();
   // Packed history of the contacts; that of another law is ignored. load: before the first list.
   void load(const ShapeContacts& contacts);
-  ShapeContacts contacts(const SurfacePlaces& poses);
+  ShapeContacts contacts(const SurfacePoses& poses);
 
  private:
   // A shape, one of its periodic images, or a vertex of a mesh.
@@ -99,22 +99,22 @@ class BodyContacts {
     std::int8_t image;
     auto operator<=>(const Item&) const = default;
   };
-  std::vector<std::vector<Item>> find_partners(std::span<const PlacedSurface> placed, Real skin) const;
+  std::vector<std::vector<Item>> find_partners(std::span<const SurfacePose> placed, Real skin) const;
   // Spheres, then vertices near planes, by number.
-  std::vector<Index> find_shapes(const SurfacePlaces& poses, Real skin) const;
-  int carrier_of(Index shape) const { return surfaces_.at(corners_.surface_of(shape)).carrier; }
-  void find_surfaces(const SurfacePlaces& poses, Real skin, const std::vector<Index>& shapes,
+  std::vector<Index> find_shapes(const SurfacePoses& poses, Real skin) const;
+  int parent_of(Index shape) const { return surfaces_.at(corners_.surface_of(shape)).parent; }
+  void find_surfaces(const SurfacePoses& poses, Real skin, const std::vector<Index>& shapes,
                      SurfaceRows& rows) const;
-  void take_contacts(const SurfacePlaces& poses);
+  void unpack_shape_contacts(const SurfacePoses& poses);
   void list_items(const std::vector<Index>& shapes, const std::vector<std::vector<Item>>& partners);
   // Sets positions and velocities of the items to those of now, or of the start of the step. h: length of the
   // step that ends now [s], for mid-step velocities; 0: velocities of the instant.
   enum class Instant { now, start };
-  void place(const SurfacePlaces& poses, Instant when, Real h);
-  void place_start(const SurfacePlaces& poses, Real h);
+  void set_items(const SurfacePoses& poses, Instant when, Real h);
+  void set_start_items(const SurfacePoses& poses, Real h);
   StepStart step_start(Real h) const;
   void find_pairs();
-  CpuHistory::Listed listed(const SurfacePlaces& poses) const {
+  CpuHistory::Listed listed(const SurfacePoses& poses) const {
     return {store_, list_, poses, entries_.numbers()};
   }
   ContactViews<PackedRows> views(const HistoryViews& history) const;
@@ -134,8 +134,8 @@ class BodyContacts {
   std::vector<Vec3> arm_;
   std::vector<Vec4> start_position_, start_velocity_, start_spin_, mean_spin_;
   // Contact history after the last accepted step, and after the step evaluated since.
-  CpuHistory held_, found_;
-  ShapeContacts kept_;  // packed history, while there is no list
+  CpuHistory accepted_, trial_;
+  ShapeContacts packed_;  // packed history, while there is no list
   bool has_list_ = false, has_step_ = false;
   std::vector<BodyLoad> loads_;
   std::vector<BodyStep> steps_;

@@ -23,14 +23,15 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
 }
 
 // The planes under the particles are scattered in memory: each is prefetched some groups ahead of its use.
-template <bool kReaches, bool kSheets>
-void touch_with_prefetch(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
+template <bool kHasRange, bool kOpenSurfaces>
+void touch_with_prefetch(const MeshTouchItem<kHasRange, kOpenSurfaces>& item, Index groups) {
   constexpr Index kAhead = 8;
   const SurfaceViews& in = item.in;
   for (Index g = 0; g < groups; ++g) {
-    if (const Index ahead = g + kAhead; ahead < groups && item.standings[ahead].part >= 0) {
-      const PlacedSurface& surface = in.placed[in.surface_of(in.meshes.groups[ahead].entry)];
-      __builtin_prefetch(&in.meshes.meshes[in.frames[surface.frame].mesh].parts[item.standings[ahead].part]);
+    if (const Index ahead = g + kAhead; ahead < groups && item.cached_contacts[ahead].part >= 0) {
+      const SurfacePose& surface = in.placed[in.surface_of(in.meshes.groups[ahead].entry)];
+      __builtin_prefetch(
+          &in.meshes.meshes[in.frames[surface.frame].mesh].parts[item.cached_contacts[ahead].part]);
     }
     item(g);
   }
@@ -39,19 +40,19 @@ void touch_with_prefetch(const MeshTouchItem<kReaches, kSheets>& item, Index gro
 }  // namespace
 
 CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels,
-                         Real reach, std::vector<Real> masses)
+                         Real interaction_range, std::vector<Real> masses)
     : kernels_(kernels),
       masses_(std::move(masses)),
       planes_(wall_planes(model)),
-      reach_(reach),
-      sheets_(has_sheets(model)),
+      interaction_range_(interaction_range),
+      open_surfaces_(has_open_surfaces(model)),
       box_{model.space.min, subdomain.period()},
       works_(model),
       work_sums_(works_.sums({})),
       moves_(model.rotates()) {}
 
-SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& poses, const ParticleStore& store,
-                                      const SurfaceRows& rows, const SurfaceLook& query) const {
+SurfaceViews CpuSurfaces::entry_views(const SurfacePoses& poses, const ParticleStore& store,
+                                      const SurfaceRows& rows, const SurfaceQuery& query) const {
   return {query.position,
           query.velocity,
           store.material.data(),
@@ -67,52 +68,56 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& poses, const Particle
           records_of(kernels_.history()),
           query.spin,
           query.h,
-          reach_,
+          interaction_range_,
           masses_.empty() ? nullptr : masses_.data(),
           law_radii()};
 }
 
-void CpuSurfaces::find_loads(const SurfacePlaces& poses, const ParticleStore& store, SurfaceRows& rows,
-                             const SurfaceLook& query) {
+void CpuSurfaces::find_loads(const SurfacePoses& poses, const ParticleStore& store, SurfaceRows& rows,
+                             const SurfaceQuery& query) {
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
     const SurfaceViews views = entry_views(poses, store, rows, query);
     const auto groups = static_cast<Index>(rows.groups.size());
-    if (reach_ > 0 && sheets_)
-      touch_with_prefetch(MeshTouchItem<true, true>{views, touches_.data(), rows.standings.data()}, groups);
-    else if (reach_ > 0)
-      touch_with_prefetch(MeshTouchItem<true, false>{views, touches_.data(), rows.standings.data()}, groups);
-    else if (sheets_)
-      touch_with_prefetch(MeshTouchItem<false, true>{views, touches_.data(), rows.standings.data()}, groups);
+    if (interaction_range_ > 0 && open_surfaces_)
+      touch_with_prefetch(MeshTouchItem<true, true>{views, touches_.data(), rows.cached_contacts.data()},
+                          groups);
+    else if (interaction_range_ > 0)
+      touch_with_prefetch(MeshTouchItem<true, false>{views, touches_.data(), rows.cached_contacts.data()},
+                          groups);
+    else if (open_surfaces_)
+      touch_with_prefetch(MeshTouchItem<false, true>{views, touches_.data(), rows.cached_contacts.data()},
+                          groups);
     else
-      touch_with_prefetch(MeshTouchItem<false, false>{views, touches_.data(), rows.standings.data()}, groups);
+      touch_with_prefetch(MeshTouchItem<false, false>{views, touches_.data(), rows.cached_contacts.data()},
+                          groups);
   }
   kernels_.surface_loads(entry_views(poses, store, rows, query), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
 }
 
 void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
-                                  const PlacedSurface* start_placed) {
+                                  const SurfacePose* start_surface_poses) {
   const auto groups = static_cast<Index>(rows.groups.size());
-  if (sheets_)
+  if (open_surfaces_)
     for_each(Serial{}, groups,
-             MeshStepTouchItem<true>{views, start.position, start_placed, touches_.data(),
+             MeshStepTouchItem<true>{views, start.position, start_surface_poses, touches_.data(),
                                      touches_before_.data()});
   else
     for_each(Serial{}, groups,
-             MeshStepTouchItem<false>{views, start.position, start_placed, touches_.data(),
+             MeshStepTouchItem<false>{views, start.position, start_surface_poses, touches_.data(),
                                       touches_before_.data()});
 }
 
-void CpuSurfaces::make_room(const SurfaceRows& rows) {
+void CpuSurfaces::reserve_entries(const SurfaceRows& rows) {
   if (!rows.groups.empty())
     touches_.resize(rows.surfaces.size()), touches_before_.resize(rows.surfaces.size());
 }
 
-void CpuSurfaces::find_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::find_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                              const StepStart& start, const HistoryViews& history) {
-  steps_.resize(rows.surfaces.size()), make_room(rows);
+  steps_.resize(rows.surfaces.size()), reserve_entries(rows);
   const SurfaceViews views =
       entry_views(poses, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
   touch_over_step(views, rows, start, poses.start.data());
@@ -120,15 +125,16 @@ void CpuSurfaces::find_steps(const SurfacePlaces& poses, const ParticleStore& st
                          steps_.data());
 }
 
-void CpuSurfaces::find_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-                            const RubbingStart& start, const HistoryViews& history) {
-  rubs_.resize(rows.surfaces.size()), make_room(rows);
+void CpuSurfaces::find_friction_steps(const SurfacePoses& poses, const ParticleStore& store,
+                                      const SurfaceRows& rows, const FrictionStart& start,
+                                      const HistoryViews& history) {
+  friction_steps_.resize(rows.surfaces.size()), reserve_entries(rows);
   const SurfaceViews views =
       entry_views(poses, store, rows,
                   {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
   touch_over_step(views, rows, start.step, poses.start.data());
-  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, poses.start.data(),
-                        rubs_.data());
+  kernels_.surface_friction_steps(views, static_cast<Index>(rows.by_surface.size()), start,
+                                  poses.start.data(), friction_steps_.data());
 }
 
 std::vector<InstantSums> CpuSurfaces::load_sums(const SurfaceRows& rows) const {
@@ -137,11 +143,11 @@ std::vector<InstantSums> CpuSurfaces::load_sums(const SurfaceRows& rows) const {
 std::vector<StepSums> CpuSurfaces::step_sums(const SurfaceRows& rows) const {
   return sums_of<StepSums>(steps_, rows, numbers());
 }
-std::vector<StepSums> CpuSurfaces::rub_sums(const SurfaceRows& rows) const {
-  return sums_of<StepSums>(rubs_, rows, numbers());
+std::vector<StepSums> CpuSurfaces::friction_step_sums(const SurfaceRows& rows) const {
+  return sums_of<StepSums>(friction_steps_, rows, numbers());
 }
 
-std::vector<ShownContact> CpuSurfaces::shown(const SurfacePlaces& poses, const ParticleStore& store,
+std::vector<ShownContact> CpuSurfaces::shown(const SurfacePoses& poses, const ParticleStore& store,
                                              const SurfaceRows& rows, const HistoryViews& history) const {
   std::vector<ShownContact> shown(rows.surfaces.size());
   const SurfaceViews views =
@@ -156,8 +162,8 @@ std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) co
 }
 
 template <class Works>
-void CpuSurfaces::book(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-                       const Works& works) {
+void CpuSurfaces::accumulate(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
+                             const Works& works) {
   if (!works_.exist()) return;
   struct Add {
     static void add(std::int64_t& limb, std::int64_t term) { limb += term; }
@@ -168,21 +174,22 @@ void CpuSurfaces::book(const SurfacePlaces& poses, const ParticleStore& store, c
     for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
   for_each(
       Serial{}, static_cast<Index>(rows.groups.size()),
-      TriangleBookItem<Works, Add>{entry_views(poses, store, rows, {}), table, works, work_sums_.data()});
+      TriangleWorkItem<Works, Add>{entry_views(poses, store, rows, {}), table, works, work_sums_.data()});
 }
 
-void CpuSurfaces::book_loads(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-                             Real h) {
-  book(poses, store, rows, ExplicitWorks{loads_.data(), h, moves_});
+void CpuSurfaces::accumulate_load_works(const SurfacePoses& poses, const ParticleStore& store,
+                                        const SurfaceRows& rows, Real h) {
+  accumulate(poses, store, rows, ExplicitWorks{loads_.data(), h, moves_});
 }
 
-void CpuSurfaces::book_steps(const SurfacePlaces& poses, const ParticleStore& store,
-                             const SurfaceRows& rows) {
-  book(poses, store, rows, ImplicitWorks{steps_.data()});
+void CpuSurfaces::accumulate_step_works(const SurfacePoses& poses, const ParticleStore& store,
+                                        const SurfaceRows& rows) {
+  accumulate(poses, store, rows, ImplicitWorks{steps_.data()});
 }
 
-void CpuSurfaces::book_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows) {
-  book(poses, store, rows, ImplicitRubbingWorks{rubs_.data()});
+void CpuSurfaces::accumulate_friction_works(const SurfacePoses& poses, const ParticleStore& store,
+                                            const SurfaceRows& rows) {
+  accumulate(poses, store, rows, ImplicitFrictionWorks{friction_steps_.data()});
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,

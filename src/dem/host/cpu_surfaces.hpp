@@ -16,26 +16,26 @@ namespace scree {
 class CpuSurfaces {
  public:
   // reach, masses: see `SurfaceViews`; empty masses: null.
-  CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels, Real reach,
-              std::vector<Real> masses = {});
+  CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels,
+              Real interaction_range, std::vector<Real> masses = {});
   // Radii of the items that laws use instead of the items' own [m]; empty: their own.
   void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
   // of `look`.
-  void find_loads(const SurfacePlaces& poses, const ParticleStore& store, SurfaceRows& rows,
-                  const SurfaceLook& query);
+  void find_loads(const SurfacePoses& poses, const ParticleStore& store, SurfaceRows& rows,
+                  const SurfaceQuery& query);
   // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
-  void find_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
+  void find_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                   const StepStart& start, const HistoryViews& history);
   // Contacts over an implicit step with friction.
-  void find_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-                 const RubbingStart& start, const HistoryViews& history);
+  void find_friction_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
+                           const FrictionStart& start, const HistoryViews& history);
   // Sums of the last evaluation, per surface in contact.
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
-  std::vector<StepSums> rub_sums(const SurfaceRows& rows) const;
+  std::vector<StepSums> friction_step_sums(const SurfaceRows& rows) const;
   // Calls visit(particle, placed surface, contact point relative to the parent's centre, slopes) for the
   // contacts over the step that was evaluated last.
   template <class Visit>
@@ -47,26 +47,32 @@ class CpuSurfaces {
                 slopes_of(contact.contact));
       };
       if (moves_)
-        show(rubs_[entry], rubs_[entry].arm + rubs_[entry].radius * rubs_[entry].contact.normal.normal);
+        show(friction_steps_[entry],
+             friction_steps_[entry].arm +
+                 friction_steps_[entry].radius * friction_steps_[entry].contact.normal.normal);
       else
         show(steps_[entry], steps_[entry].arm);
     }
   }
   // Output of the contacts of the last find_loads() at an instant; per entry.
-  std::vector<ShownContact> shown(const SurfacePlaces& poses, const ParticleStore& store,
+  std::vector<ShownContact> shown(const SurfacePoses& poses, const ParticleStore& store,
                                   const SurfaceRows& rows, const HistoryViews& history) const;
   // Sums per triangle of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
   // Accumulates at the triangles the dissipation of the contacts that were evaluated last, over a closed
   // step: the explicit one of length h, or the implicit one.
-  void book_loads(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows, Real h);
-  void book_steps(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows);
-  void book_rubs(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows);
+  void accumulate_load_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
+                             Real h);
+  void accumulate_step_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows);
+  void accumulate_friction_works(const SurfacePoses& poses, const ParticleStore& store,
+                                 const SurfaceRows& rows);
   std::vector<std::int64_t> works() const {
-    return works_.exist() ? works_.words(work_sums_) : std::vector<std::int64_t>{};
+    return works_.exist() ? works_.limbs(work_sums_) : std::vector<std::int64_t>{};
   }
   void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
-  const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
+  const SurfaceFriction* friction_steps() const {
+    return friction_steps_.data();
+  }  // per entry, of the last find_friction_steps()
 
   // Views of particles at these positions, with the contacts that were evaluated last.
   ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,
@@ -75,27 +81,27 @@ class CpuSurfaces {
 
  private:
   const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
-  SurfaceViews entry_views(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-                           const SurfaceLook& query) const;
+  SurfaceViews entry_views(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
+                           const SurfaceQuery& query) const;
   template <class Works>
-  void book(const SurfacePlaces& poses, const ParticleStore& store, const SurfaceRows& rows,
-            const Works& works);
-  void make_room(const SurfaceRows& rows);  // for contacts with meshes
-  // Finds the contacts with meshes at both ends of a step that began at start_placed.
+  void accumulate(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
+                  const Works& works);
+  void reserve_entries(const SurfaceRows& rows);  // for contacts with meshes
+  // Finds the contacts with meshes at both ends of a step that began at start_surface_poses.
   void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
-                       const PlacedSurface* start_placed);
+                       const SurfacePose* start_surface_poses);
 
   const ContactKernels& kernels_;
   std::vector<Real> masses_, law_radii_;
   std::vector<WallPlane> planes_;
-  Real reach_;  // [m]
-  bool sheets_;
+  Real interaction_range_;  // [m]
+  bool open_surfaces_;
   PeriodicBox box_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;
   std::vector<SurfaceLoad> loads_;  // per entry
   std::vector<SurfaceStep> steps_;
-  std::vector<SurfaceRub> rubs_;
+  std::vector<SurfaceFriction> friction_steps_;
   TriangleWorks works_;
   std::vector<TriangleWork> work_sums_;
   TermCount terms_;

@@ -36,8 +36,8 @@ class ChebyshevWeights {
 };
 
 // Weights with the eigenvalue bounds of the particles' matrix; see `BlockSolver`.
-inline ChebyshevWeights solver_weights(Real largest_stiffening) {
-  return ChebyshevWeights(1 / (1 + largest_stiffening), 2);
+inline ChebyshevWeights solver_weights(Real largest_stiffness_ratio) {
+  return ChebyshevWeights(1 / (1 + largest_stiffness_ratio), 2);
 }
 
 // Tolerance on the largest |residual| of the linear solve for one Newton correction [N]: a tenth of the
@@ -52,7 +52,7 @@ inline Real solver_tolerance(Real residual_tolerance, Real force_scale, Real rig
 // small terms. Once the contacts have settled into sticking or sliding, the Newton residual is then as small
 // as that of the linear solve; the tolerance decreases with the convergence of the last correction (Eisenstat
 // and Walker, SIAM J. Sci. Comput. 17, 1996, choice 2 with the exponent 3/2).
-class RubbingTolerance {
+class FrictionTolerance {
  public:
   Real next(bool consistent, Real residual_tolerance, Real force_scale, Real right_hand_side) {
     if (!consistent) return solver_tolerance(residual_tolerance, force_scale, right_hand_side);
@@ -88,8 +88,8 @@ inline constexpr int kMostProducts = 2000;  // matrix products of one solve
 // Chebyshev iteration: take(weights) finds the next directions, adds them to the solution and returns the
 // largest |residual| over all ranks. Returns the number of matrix products.
 template <class Take>
-int iterate_chebyshev(Real largest_stiffening, Real tolerance, const Take& take) {
-  ChebyshevWeights weights = solver_weights(largest_stiffening);
+int iterate_chebyshev(Real largest_stiffness_ratio, Real tolerance, const Take& take) {
+  ChebyshevWeights weights = solver_weights(largest_stiffness_ratio);
   int products = 0;
   while (products < kMostProducts) {
     ++products;
@@ -100,8 +100,8 @@ int iterate_chebyshev(Real largest_stiffening, Real tolerance, const Take& take)
 }
 
 // The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha). Each pair term is at
-// most twice its own diagonal, so that the eigenvalues of D^-1 A lie between 1 / (1 + largest_stiffening) and
-// 2.
+// most twice its own diagonal, so that the eigenvalues of D^-1 A lie between 1 / (1 +
+// largest_stiffness_ratio) and 2.
 class BlockSolver {
  public:
   struct System {
@@ -110,7 +110,7 @@ class BlockSolver {
     std::span<Vec3> residual;  // in: right-hand side; out: remaining residual
     const Halo& halo;
     const Ranks& ranks;
-    Real largest_stiffening;
+    Real largest_stiffness_ratio;
     Real tolerance;  // on the largest |residual| [N]
   };
 

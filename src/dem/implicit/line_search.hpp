@@ -21,7 +21,7 @@ class LineSearch {
   bool is_open() const { return share_ > kMinFraction; }
 
   // Updates the slope while the search is open. along: sum of SlopeItem at the iterate.
-  void look(Real along) { slope_ = -along; }
+  void update(Real along) { slope_ = -along; }
 
   // Whether the iterate is too far along the correction.
   bool overshoots() const { return is_open() && slope_ > kMostSlope * std::abs(start_slope_); }
@@ -62,7 +62,7 @@ class ResidualSearch {
   // Begins after the full correction was applied. residual: at its start.
   void open(Real residual) { share_ = 1, start_ = residual, residual_ = 0; }
   bool is_open() const { return share_ > kMinFraction; }
-  void look(Real residual) { residual_ = residual; }
+  void update(Real residual) { residual_ = residual; }
   bool overshoots() const { return is_open() && residual_ > kMostGrowth * start_; }
   // Halves the fraction; returns its change, to be applied to the correction.
   Real shorten() {

@@ -53,7 +53,7 @@ struct ResidualItem {
   ContactMatrix matrix;
   Vec3* residual;  // [N]
   Sym3* inverse_block;
-  Real* stiffening;  // norm of the block's contact part over its mass part
+  Real* stiffness_ratio;  // norm of the block's contact part over its mass part
 
   SCREE_HD void operator()(Index i) const {
     const Real mass = step.velocity[i].w, scaled_mass = mass / (1 + step.hht.hht_alpha);
@@ -64,7 +64,7 @@ struct ResidualItem {
                           std::abs(block.xz) + std::abs(block.yz) + std::abs(block.zz)};
     const Real largest =
         rows[0] > rows[1] ? (rows[0] > rows[2] ? rows[0] : rows[2]) : (rows[1] > rows[2] ? rows[1] : rows[2]);
-    stiffening[i] = largest / scaled_mass;
+    stiffness_ratio[i] = largest / scaled_mass;
     block += Sym3{scaled_mass, 0, 0, scaled_mass, 0, scaled_mass};
     inverse_block[i] = inverse(block);
   }
@@ -76,7 +76,7 @@ struct StepNorms {
   Real correction_bound;  // bound of the position correction that the residual can still cause, over the
                           // radius
   Real force;             // at the iterate and at the start of the step [N]
-  Real stiffening;        // see ResidualItem
+  Real stiffness_ratio;   // see ResidualItem
 };
 
 // Largest residual over the largest force, from the maxima over all particles.
@@ -87,14 +87,14 @@ inline Real scaled_residual(const StepNorms& largest) {
 struct StepNormsItem {
   StepViews step;
   const Vec3* residual;
-  const Real *magnitude, *stiffening;
+  const Real *magnitude, *stiffness_ratio;
 
   SCREE_HD StepNorms operator()(Index i) const {
     const Real r = norm(residual[i]), mass = step.velocity[i].w;
     const Real bound =
         newmark_position_gain(step.hht, step.h) * r * (1 + step.hht.hht_alpha) / (mass * step.position[i].w);
     const Real at_start = norm(step.start_force[i]) + mass * norm(step.start_acceleration[i]);
-    return {r, bound, magnitude[i] + at_start, stiffening[i]};
+    return {r, bound, magnitude[i] + at_start, stiffness_ratio[i]};
   }
 };
 
@@ -208,7 +208,7 @@ struct VerletViews {
 };
 
 // State of a rotating particle at an instant, from which the next step starts.
-struct TurningState {
+struct RotatingState {
   Vec4 position, velocity;
   Vec3 acceleration;
   Vec4 spin;
@@ -216,13 +216,13 @@ struct TurningState {
 };
 
 // Opens a step of a rotating particle. Returns the square of the displacement.
-SCREE_HD Real verlet_open(const VerletViews& out, Index i, const TurningState& s) {
+SCREE_HD Real verlet_open(const VerletViews& out, Index i, const RotatingState& s) {
   const Vec3 velocity = verlet_half_kick(out.h, xyz(s.velocity), s.acceleration);
   const Vec3 spin = verlet_half_kick(out.h, xyz(s.spin), s.angular_acceleration);
   const Vec3 dx = snap(out.h * velocity, out.snap);
   out.position[i] = vec4(xyz(s.position) + dx, s.position.w);
   out.velocity[i] = vec4(velocity, s.velocity.w), out.spin[i] = vec4(spin, s.spin.w);
-  out.orientation[i] = turned_by(out.orientation[i], spin, out.h);
+  out.orientation[i] = rotated_by(out.orientation[i], spin, out.h);
   return dot(dx, dx);
 }
 
@@ -262,13 +262,13 @@ struct VerletFinishItem {
     forces.store(i, total);
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * forces.force[i];
-    if constexpr (LawOf<Laws>::kMoves) {
+    if constexpr (LawOf<Laws>::kNeedsMotion) {
       const Vec4 w = forces.walk.in.spin[i];
       const Vec3 angular_acceleration = forces.angular_acceleration[i];
       state.velocity[i] = vec4(verlet_half_kick(state.h, xyz(v), a), v.w);
       state.spin[i] = vec4(verlet_half_kick(state.h, xyz(w), angular_acceleration), w.w);
       state.contact_loss[i] += state.h * forces.loss_power[i];
-      total.losses.book(state.losses, i);
+      total.losses.accumulate(state.losses, i);
     } else {
       state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
       if (forces.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * forces.loss_power[i];
@@ -292,7 +292,7 @@ struct VerletAdvanceItem {
   SCREE_HD Real advance(Index i, const Total& total) const {
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
-    if constexpr (LawOf<Laws>::kMoves) return advance_rotating(i, total, a);
+    if constexpr (LawOf<Laws>::kNeedsMotion) return advance_rotating(i, total, a);
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
     state.acceleration[i] = a;
     if (total.loss_power != 0) {
@@ -308,7 +308,7 @@ struct VerletAdvanceItem {
     const Vec4 v = in.velocity[i], w = in.spin[i];
     const Vec3 angular_acceleration = reciprocal(w.w) * total.torque;
     if (total.loss_power != 0) state.contact_loss[i] += state.h * total.loss_power;
-    total.losses.book(state.losses, i);
+    total.losses.accumulate(state.losses, i);
     return verlet_open(
         state, i,
         {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,

@@ -3,7 +3,7 @@
 
 namespace scree {
 
-template std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<ContactLaw<AttractedLaw<HertzLaw>>>&,
+template std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<ContactLaw<CohesiveLaw<HertzLaw>>>&,
                                                      int);
 
 }  // namespace scree

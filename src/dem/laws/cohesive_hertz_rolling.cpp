@@ -4,6 +4,6 @@
 namespace scree {
 
 template std::unique_ptr<ContactKernels> cpu_kernels(
-    const std::vector<ContactLaw<AttractedLaw<HertzLaw>, MindlinSlider, AnyRolling>>&, int);
+    const std::vector<ContactLaw<CohesiveLaw<HertzLaw>, MindlinSlider, AnyRolling>>&, int);
 
 }  // namespace scree

@@ -4,6 +4,6 @@
 namespace scree {
 
 template std::unique_ptr<ContactKernels> cpu_kernels(
-    const std::vector<ContactLaw<AttractedLaw<RatedLinearLaw>>>&, int);
+    const std::vector<ContactLaw<CohesiveLaw<LinearRestitutionLaw>>>&, int);
 
 }  // namespace scree

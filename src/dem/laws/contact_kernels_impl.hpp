@@ -41,8 +41,8 @@ class CpuContactKernels : public ContactKernels {
                                                        gravity, nullptr, nullptr, nullptr},
                                                       state});
   }
-  void leave_records(PairList& pairs, const HistoryViews& history) const override {
-    if constexpr (kPaired) ::scree::leave_records<LawOf<Laws>>(pairs, history);
+  void return_records(PairList& pairs, const HistoryViews& history) const override {
+    if constexpr (kPaired) ::scree::return_records<LawOf<Laws>>(pairs, history);
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
@@ -53,26 +53,27 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
   }
   void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
-                     const PlacedSurface* start_placed, SurfaceStep* steps) const override {
-    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
+                     const SurfacePose* start_surface_poses, SurfaceStep* steps) const override {
+    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_surface_poses, laws_, steps});
   }
-  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& query,
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyQuery& query,
                   BodyLoad* out) const override {
-    if constexpr (LawOf<Laws>::kMoves)
+    if constexpr (LawOf<Laws>::kNeedsMotion)
       if (query.h > 0) {
-        using Item = BodyLoadItem<Laws, PackedRows, OverMotion>;
+        using Item = BodyLoadItem<Laws, PackedRows, OverExplicitStep>;
         return for_each(Serial{}, n, Item{{in, laws_, {query.h}}, query.arm, out});
       }
-    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, query.arm, out});
+    for_each(Serial{}, n,
+             BodyLoadItem<Laws, PackedRows, InstantKinematics<Laws>>{{in, laws_}, query.arm, out});
   }
   void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
                   BodyStep* out, const ShapeContactsTo& to) const override {
     for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
   }
-  void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start, const Vec3* arm,
-                 BodyStep* out, const ShapeContactsTo& to) const override {
-    over_rubbing_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, BodyRubItem<Laws, PackedRows>{walk, arm, out, to});
+  void body_friction_steps(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
+                           const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const override {
+    over_friction_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, BodyFrictionItem<Laws, PackedRows>{walk, arm, out, to});
     });
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
@@ -93,62 +94,63 @@ class CpuContactKernels : public ContactKernels {
   void contact_lines(const ContactViews<PackedRows>& in, Index n, const LineRequest& request) const override {
     for_each(Serial{}, n, ContactLineItem<Laws, PackedRows>{{in, laws_}, request});
   }
-  void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
-             Real* integrator_loss) const override {
+  void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
+                   Real* integrator_loss) const override {
     for_each(Serial{}, n,
-             ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+             ContactLossesItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
-  void surface_rubs(const SurfaceViews& in, Index n, const RubbingStart& start,
-                    const PlacedSurface* start_placed, SurfaceRub* rubs) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>)
-      for_each(Serial{}, n, SurfaceRubItem<Laws>{in, start, start_placed, laws_, rubs});
+  void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
+                              const SurfacePose* start_surface_poses,
+                              SurfaceFriction* friction_steps) const override {
+    if constexpr (kFrictionOnly<LawOf<Laws>>)
+      for_each(Serial{}, n, SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, friction_steps});
     else
-      refuse_rubbing();
+      refuse_friction();
   }
-  void rubbing_system(const ContactViews<PackedRows>& in, Index n, const RubbingRequest& r) const override {
-    over_rubbing_step(in, r.start, [&](const auto& walk) {
+  void friction_system(const ContactViews<PackedRows>& in, Index n, const FrictionRequest& r) const override {
+    over_friction_step(in, r.start, [&](const auto& walk) {
       for_each(Serial{}, n,
-               RubbingSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
-                                                   r.sharpness});
+               FrictionSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
+                                                    r.phase_squared});
     });
   }
-  void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
-                     const RubbingBooksTo& to) const override {
-    over_rubbing_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, RubbingBooksItem<Laws, PackedRows>{walk, to});
+  void friction_losses(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
+                       const FrictionLossOutputs& to) const override {
+    over_friction_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, FrictionLossesItem<Laws, PackedRows>{walk, to});
     });
   }
-  void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
-              const FrozenLimits& to) const override {
-    over_rubbing_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, FreezeItem<Laws, PackedRows>{walk, to});
+  void store_lagged_limits(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
+                           const LaggedLimits& to) const override {
+    over_friction_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, LaggedLimitItem<Laws, PackedRows>{walk, to});
     });
   }
-  void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
-               Leaver* leavers) const override {
-    for_each(Serial{}, n, LeaverEnergyItem<Laws, PackedRows>{{in, laws_}, box, leavers});
+  void escaped_particles(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
+                         EscapedParticle* escaped_particles) const override {
+    for_each(Serial{}, n, EscapeEnergyItem<Laws, PackedRows>{{in, laws_}, box, escaped_particles});
   }
   void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
                   const StartViews& start) const override {
-    for_each(Serial{}, n, DepartureItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
+    for_each(Serial{}, n, EscapedContactsItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
   }
 
  private:
   // Calls use(walk), compiled only for laws that have implicit steps with friction.
   template <class Use>
-  void over_rubbing_step(const ContactViews<PackedRows>& in, const RubbingStart& start,
-                         const Use& use) const {
-    if constexpr (kFrictionAlone<LawOf<Laws>>)
-      use(RubbingWalk<Laws, PackedRows>{in, laws_, {start}});
+  void over_friction_step(const ContactViews<PackedRows>& in, const FrictionStart& start,
+                          const Use& use) const {
+    if constexpr (kFrictionOnly<LawOf<Laws>>)
+      use(FrictionWalk<Laws, PackedRows>{in, laws_, {start}});
     else
-      refuse_rubbing();
+      refuse_friction();
   }
-  [[noreturn]] static void refuse_rubbing() {
+  [[noreturn]] static void refuse_friction() {
     throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
   }
 
-  // Evaluating a contact twice is faster than storing its result for laws without `kMoves`.
-  static constexpr bool kPaired = LawOf<Laws>::kMoves;
+  // Evaluating a contact twice is faster than storing its result for laws without `kNeedsMotion`.
+  static constexpr bool kPaired = LawOf<Laws>::kNeedsMotion;
   using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;
   // Views for an explicit step.
   ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, PairList& pairs) {

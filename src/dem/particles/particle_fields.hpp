@@ -73,7 +73,7 @@ struct FieldsThere {
 
 // Key that orders the entries of a neighbour list's row, by global id and then by image, independent of local
 // indices.
-SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image = kNoShift) { return id * 27 + image; }
+SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image = kZeroShift) { return id * 27 + image; }
 SCREE_HD GlobalId id_of(std::int64_t row_key) { return row_key / 27; }
 
 // One Array per FIELD and PACKED, and the items' keys. Array: device or host memory, or a plain pointer.
@@ -105,14 +105,14 @@ struct Particle {
 
 // Kinds of arrays for loops.
 enum FieldArrayKind : unsigned {
-  kNames = 1,                                     // row_key
-  kMotion = 2,                                    // PACKED
-  kGhostCopies = 4,                               // FIELD with kGhost
-  kOwnedArrays = 8,                               // other FIELD: owned particles only
-  kSpins = 16,                                    // PACKED with kRotation
-  kOwnedSpins = 32,                               // FIELD with kRotation: owned particles only
-  kOwnedRolling = 64,                             // FIELD with kRolling: owned particles only
-  kItemArrays = kNames | kMotion | kGhostCopies,  // all items
+  kKeys = 1,                                     // row_key
+  kMotion = 2,                                   // PACKED
+  kGhostCopies = 4,                              // FIELD with kGhost
+  kOwnedArrays = 8,                              // other FIELD: owned particles only
+  kSpins = 16,                                   // PACKED with kRotation
+  kOwnedSpins = 32,                              // FIELD with kRotation: owned particles only
+  kOwnedRolling = 64,                            // FIELD with kRolling: owned particles only
+  kItemArrays = kKeys | kMotion | kGhostCopies,  // all items
   kAllArrays = kItemArrays | kOwnedArrays,
   kRotationArrays = kSpins | kOwnedSpins,
   kOptionalArrays = kRotationArrays | kOwnedRolling
@@ -137,7 +137,7 @@ constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
   SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
 #undef SCREE_FIELD
 #undef SCREE_PACKED
-  if constexpr ((kinds & kNames) != 0) visit(sets.row_key...);
+  if constexpr ((kinds & kKeys) != 0) visit(sets.row_key...);
 }
 
 // Includes the optional arrays of the same items that exist in the run.

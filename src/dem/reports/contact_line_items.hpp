@@ -61,10 +61,10 @@ struct ShownSurfaceItem {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
     const SurfaceLoad& load = loads[entry];
     if (!load.touches) return;
-    const PlacedSurface& surface = in.placed[in.surface_of(entry)];
+    const SurfacePose& surface = in.placed[in.surface_of(entry)];
     const Vec4 p = in.position[i];
     const ContactGeometry geometry =
-        surface_touch(in, surface, entry, p, kReaches<Law> ? in.reach : 0).pair.geometry;
+        surface_touch(in, surface, entry, p, kHasRange<Law> ? in.interaction_range : 0).pair.geometry;
     Real slip = 0;
     if constexpr (Law::Tangential::acts)
       slip = slip_of(laws.get(in.material[i], surface.material),
@@ -74,7 +74,7 @@ struct ShownSurfaceItem {
   }
 };
 
-struct ShownContactOf {
+struct EvaluateShownContact {
   const ShownContact* of_surfaces;  // from `ShownSurfaceItem`
 
   template <class Law>
@@ -122,7 +122,7 @@ struct ContactLineItem {
                                                            contact};
       ++count;
     };
-    const ShownContactOf of{to.of_surfaces};
+    const EvaluateShownContact of{to.of_surfaces};
     walk.neighbors_if(
         self, [&](Index j) { return to.row_key[j] > own_key; }, of,
         [&](const ShownContact& contact, Index j) { add(id_of(to.row_key[j]), contact); });

@@ -121,7 +121,7 @@ struct CohesionItem {
 };
 
 // Dissipation of friction, rolling and twisting in the particle's share of its contacts.
-SCREE_HD RubbingLosses losses_of(const ParticleViews& in, Index i) {
+SCREE_HD TangentialLosses losses_of(const ParticleViews& in, Index i) {
   const auto value = [i](const Real* losses) { return losses != nullptr ? losses[i] : 0; };
   return {{value(in.friction_loss), value(in.rolling_loss), value(in.twisting_loss)}};
 }
@@ -131,8 +131,8 @@ enum RotationTerm {
   kRotational,       // kinetic energy [J]
   kFrictionSprings,  // elastic energies [J]
   kRollingSprings,
-  kRubbingLosses,  // by LossKind [J]
-  kRotationTerms = kRubbingLosses + kLossKinds
+  kTangentialLosses,  // by LossKind [J]
+  kRotationTerms = kTangentialLosses + kLossKinds
 };
 
 struct RotationTerms {
@@ -145,7 +145,7 @@ struct RotationItem {
 
   SCREE_HD RotationTerms operator()(Index i) const {
     const Vec4 w = in.angular_velocity[i];
-    const RubbingLosses losses = losses_of(in, i);
+    const TangentialLosses losses = losses_of(in, i);
     return {{rotational_energy(w.w, xyz(w)), springs[i].friction, springs[i].rolling,
              losses.of[kFrictionLoss], losses.of[kRollingLoss], losses.of[kTwistingLoss]}};
   }

@@ -30,26 +30,26 @@ void TriangleWorks::for_each_row(const Visit& visit) const {
   }
 }
 
-std::vector<std::int64_t> TriangleWorks::words(const std::vector<TriangleWork>& sums) const {
-  std::vector<std::int64_t> words(kWordsPerTriangle * triangles_);
+std::vector<std::int64_t> TriangleWorks::limbs(const std::vector<TriangleWork>& sums) const {
+  std::vector<std::int64_t> limbs(kLimbsPerTriangle * triangles_);
   for_each_row([&](std::size_t row, std::size_t t) {
-    auto to = words.begin() + static_cast<std::ptrdiff_t>(kWordsPerTriangle * row);
+    auto to = limbs.begin() + static_cast<std::ptrdiff_t>(kLimbsPerTriangle * row);
     for (FixedSum sum : sums[t].of) {
       sum.normalize();
       to = std::ranges::copy(sum.word, to).out;
     }
   });
-  return words;
+  return limbs;
 }
 
-std::vector<TriangleWork> TriangleWorks::sums(const std::vector<std::int64_t>& words) const {
+std::vector<TriangleWork> TriangleWorks::sums(const std::vector<std::int64_t>& limbs) const {
   std::vector<TriangleWork> sums(triangles_);
-  if (words.empty()) return sums;
+  if (limbs.empty()) return sums;
   for_each_row([&](std::size_t row, std::size_t t) {
-    auto from = words.begin() + static_cast<std::ptrdiff_t>(kWordsPerTriangle * row);
+    auto from = limbs.begin() + static_cast<std::ptrdiff_t>(kLimbsPerTriangle * row);
     for (FixedSum& sum : sums[t].of) {
-      std::ranges::copy_n(from, FixedSum::kWords, sum.word);
-      from += FixedSum::kWords;
+      std::ranges::copy_n(from, FixedSum::kNumbers, sum.word);
+      from += FixedSum::kNumbers;
     }
   });
   return sums;
@@ -57,40 +57,40 @@ std::vector<TriangleWork> TriangleWorks::sums(const std::vector<std::int64_t>& w
 
 namespace {
 
-FixedSum sum_at(const std::vector<std::int64_t>& words, std::size_t first) {
+FixedSum sum_at(const std::vector<std::int64_t>& limbs, std::size_t first) {
   FixedSum sum;
-  std::copy_n(words.begin() + static_cast<std::ptrdiff_t>(first), FixedSum::kWords, sum.word);
+  std::copy_n(limbs.begin() + static_cast<std::ptrdiff_t>(first), FixedSum::kNumbers, sum.word);
   return sum;
 }
 
 // Normalizes limbs that were added one by one.
-void normalize(std::vector<std::int64_t>& words) {
-  for (std::size_t at = 0; at < words.size(); at += FixedSum::kWords) {
-    FixedSum sum = sum_at(words, at);
+void normalize(std::vector<std::int64_t>& limbs) {
+  for (std::size_t at = 0; at < limbs.size(); at += FixedSum::kNumbers) {
+    FixedSum sum = sum_at(limbs, at);
     sum.normalize();
-    std::ranges::copy(sum.word, words.begin() + static_cast<std::ptrdiff_t>(at));
+    std::ranges::copy(sum.word, limbs.begin() + static_cast<std::ptrdiff_t>(at));
   }
 }
 
 }  // namespace
 
-std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks) {
-  if (ranks.alone()) return words;
-  ranks.sum(words);
-  normalize(words);
-  return words;
+std::vector<std::int64_t> all_works(std::vector<std::int64_t> limbs, const Ranks& ranks) {
+  if (ranks.alone()) return limbs;
+  ranks.sum(limbs);
+  normalize(limbs);
+  return limbs;
 }
 
-void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& words) {
-  for (std::size_t k = 0; k < more.size(); ++k) words[k] += more[k];
-  normalize(words);
+void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& limbs) {
+  for (std::size_t k = 0; k < more.size(); ++k) limbs[k] += more[k];
+  normalize(limbs);
 }
 
-std::vector<TriangleWorkValues> work_values(const std::vector<std::int64_t>& words) {
+std::vector<TriangleWorkValues> work_values(const std::vector<std::int64_t>& limbs) {
   std::vector<TriangleWorkValues> values;
-  for (std::size_t row = 0; row < words.size(); row += kWordsPerTriangle) {
+  for (std::size_t row = 0; row < limbs.size(); row += kLimbsPerTriangle) {
     FixedSum sum[kTriangleWorks];
-    for (std::size_t k = 0; k < kTriangleWorks; ++k) sum[k] = sum_at(words, row + k * FixedSum::kWords);
+    for (std::size_t k = 0; k < kTriangleWorks; ++k) sum[k] = sum_at(limbs, row + k * FixedSum::kNumbers);
     values.push_back(
         {sum[kImpactWork].value(), sum[kSlidingWork].value(), sum[kWornVolume].value() / kWornScale});
   }

@@ -8,7 +8,7 @@
 
 #include "base/fixed_sum.hpp"
 #include "base/hd.hpp"
-#include "dem/surface_contact/rubbing_surfaces.hpp"
+#include "dem/surface_contact/friction_surfaces.hpp"
 #include "dem/surface_contact/surface_items.hpp"
 #include "partition/ranks.hpp"
 
@@ -52,7 +52,7 @@ struct ExplicitWorks {
     const SurfaceLoad& contact = loads[entry];
     const Real lost = h * contact.load.loss;
     if (!moves) return {lost, 0};
-    const RubbingLosses& losses = contact.losses;
+    const TangentialLosses& losses = contact.losses;
     return {lost - (losses.of[kFrictionLoss] + losses.of[kRollingLoss] + losses.of[kTwistingLoss]),
             losses.of[kFrictionLoss]};
   }
@@ -61,22 +61,22 @@ struct ImplicitWorks {
   const SurfaceStep* steps;
 
   SCREE_HD bool touches(Index entry) const { return steps[entry].touches; }
-  SCREE_HD ContactWorks of(Index entry) const { return {steps[entry].books.dissipated, 0}; }
+  SCREE_HD ContactWorks of(Index entry) const { return {steps[entry].losses.dissipated, 0}; }
 };
-struct ImplicitRubbingWorks {
-  const SurfaceRub* rubs;
+struct ImplicitFrictionWorks {
+  const SurfaceFriction* friction_steps;
 
-  SCREE_HD bool touches(Index entry) const { return rubs[entry].touches; }
+  SCREE_HD bool touches(Index entry) const { return friction_steps[entry].touches; }
   SCREE_HD ContactWorks of(Index entry) const {
-    const RubbingBooks& books = rubs[entry].books;
-    return {books.dissipated - books.friction, books.friction};
+    const FrictionLosses& losses = friction_steps[entry].losses;
+    return {losses.dissipated - losses.friction, losses.friction};
   }
 };
 
 // Accumulates the dissipation of the contacts of the g-th group over a closed step. Add: adds an integer to a
 // limb, possibly concurrently.
 template <class Works, class Add>
-struct TriangleBookItem {
+struct TriangleWorkItem {
   SurfaceViews in;
   TriangleWorkTable table;
   Works works;
@@ -134,11 +134,11 @@ class TriangleWorks {
   const std::vector<Real>& wear() const { return wear_; }
   int materials() const { return materials_; }
 
-  // Limbs of a state, [triangles][kTriangleWorks][FixedSum::kWords], with triangles in the order of their
+  // Limbs of a state, [triangles][kTriangleWorks][FixedSum::kNumbers], with triangles in the order of their
   // files or shapes and meshes in the order of SurfaceSet; and the sums in the order of accumulation. Without
   // limbs the sums are zero.
-  std::vector<std::int64_t> words(const std::vector<TriangleWork>& sums) const;
-  std::vector<TriangleWork> sums(const std::vector<std::int64_t>& words) const;
+  std::vector<std::int64_t> limbs(const std::vector<TriangleWork>& sums) const;
+  std::vector<TriangleWork> sums(const std::vector<std::int64_t>& limbs) const;
 
  private:
   // Calls visit(row in the limbs, row in the sums) for all triangles.
@@ -153,16 +153,16 @@ class TriangleWorks {
 };
 
 // Number of limbs per triangle in a state.
-inline constexpr std::size_t kWordsPerTriangle = std::size_t{kTriangleWorks} * FixedSum::kWords;
+inline constexpr std::size_t kLimbsPerTriangle = std::size_t{kTriangleWorks} * FixedSum::kNumbers;
 // Sum of the limbs of all ranks. Collective.
-std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks);
+std::vector<std::int64_t> all_works(std::vector<std::int64_t> limbs, const Ranks& ranks);
 // Adds the limbs of other contacts at the same triangles.
-void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& words);
+void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& limbs);
 // Values of the sums, each rounded once.
 struct TriangleWorkValues {
   Real impact, sliding;  // [J]
   Real worn;             // [m^3]
 };
-std::vector<TriangleWorkValues> work_values(const std::vector<std::int64_t>& words);
+std::vector<TriangleWorkValues> work_values(const std::vector<std::int64_t>& limbs);
 
 }  // namespace scree

@@ -46,7 +46,7 @@ SearchCells NeighborBuilder::cells(Real skin, std::int64_t particles, const Doma
   out.own = make_cell_grid(finite(box.min, model_.space.min), finite(box.max, model_.space.max),
                            model_.space.dimension, cutoff(skin), most_cells(items));
   out.same = false;
-  out.box = box, out.reach = cutoff(skin) * (1 + kBoxRoundOff);
+  out.box = box, out.list_radius = cutoff(skin) * (1 + kBoxRoundOff);
   return out;
 }
 
@@ -82,7 +82,7 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
         const Index j = near_.items[k];
         const Vec4 q = store.position[j];
         const Vec3 d = xyz(p) - xyz(q);
-        const Real distance = p.w + q.w + past_touch(list.skin);
+        const Real distance = p.w + q.w + search_margin(list.skin);
         if (dot(d, d) < distance * distance && j != i) list.neighbors.push_back(j);
       }
 }
@@ -122,7 +122,8 @@ void NeighborBuilder::find_surfaces(const ParticleStore& store, const ItemLayout
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
   build_rows(sorted, layout.owned,
-             {surfaces_, planes_, surfaces.places, period_, past_touch(skin), surfaces.remembered}, rows);
+             {surfaces_, planes_, surfaces.poses, period_, search_margin(skin), surfaces.stored_contacts},
+             rows);
 }
 
 }  // namespace scree

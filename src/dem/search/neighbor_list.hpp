@@ -34,24 +34,24 @@ struct SearchCells {
   CellGrid space;  // items in one of its cells are searched, for any number of ranks
   CellGrid own;    // cells over the box of this rank; the same with one rank
   bool same = true;
-  DomainBox box{};  // of this rank, unless same
-  Real reach = 0;   // of the list beyond the box [m]
+  DomainBox box{};       // of this rank, unless same
+  Real list_radius = 0;  // of the list beyond the box [m]
 
   // Cell index in `own`; x is -1 for items that are not searched.
-  SCREE_HD CellPlace place(Vec3 p) const {
-    const CellPlace c = space.place(p);
-    return c.x < 0 || same ? c : own.nearest_place(p);
+  SCREE_HD CellIndex cell_index(Vec3 p) const {
+    const CellIndex c = space.cell_index(p);
+    return c.x < 0 || same ? c : own.nearest_cell(p);
   }
   Index cell(Vec3 p) const {
-    const CellPlace c = place(p);
+    const CellIndex c = cell_index(p);
     return c.x < 0 ? -1 : own.index(c.x, c.y, c.z);
   }
 };
 
 // Surfaces for the build of a list.
 struct ListedSurfaces {
-  SurfacePlaces places;
-  RememberedCount remembered{};
+  SurfacePoses poses;
+  StoredContactCount stored_contacts{};
 };
 
 class NeighborBuilder {
@@ -64,9 +64,9 @@ class NeighborBuilder {
   SearchCells cells(Real skin, std::int64_t particles) const;
   SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
   // Largest distance of centres in the list: largest diameter, interaction range and skin [m].
-  Real cutoff(Real skin) const { return 2 * largest_radius_ + past_touch(skin); }
+  Real cutoff(Real skin) const { return 2 * largest_radius_ + search_margin(skin); }
   // Search distance beyond touch [m].
-  Real past_touch(Real skin) const { return skin + model_.contact.reach; }
+  Real search_margin(Real skin) const { return skin + model_.contact.interaction_range; }
   // Largest radius of a particle [m].
   Real largest_radius() const { return largest_radius_; }
   // Fills the list from the positions of all items and the poses of the placed surfaces.

@@ -29,15 +29,15 @@ void PairList::match(const NeighborList& list, const ParticleStore& store) {
     offsets.push_back(static_cast<Index>(pairs.size()));
   }
   slots = list.neighbors.size(), is_current = true;
-  keeps_records = false;
+  has_records = false;
 }
 
-void PairList::take_records(const Vec4* at_slots, Index count) {
+void PairList::fetch_records(const Vec4* at_slots, Index count) {
   const auto n = static_cast<std::size_t>(count);
   records.resize(pairs.size() * n);
   for (std::size_t p = 0; p < pairs.size(); ++p)
     std::copy_n(at_slots + static_cast<std::size_t>(pairs[p].slot) * n, n, records.data() + p * n);
-  keeps_records = true;
+  has_records = true;
 }
 
 }  // namespace scree

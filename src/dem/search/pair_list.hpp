@@ -29,12 +29,12 @@ struct PairList {
   // row has it. The other particle's is its mirror image, unless the mirror slot has a record of the last
   // step.
   std::vector<Vec4> records;
-  bool keeps_records = false;
+  bool has_records = false;
 
   Index rows() const { return static_cast<Index>(offsets.size()) - 1; }
   void match(const NeighborList& list, const ParticleStore& store);
   // Copies the history from the slots; count: records per contact.
-  void take_records(const Vec4* at_slots, Index count);
+  void fetch_records(const Vec4* at_slots, Index count);
 };
 
 }  // namespace scree

@@ -33,10 +33,10 @@ class EntryFinder {
       : sorted_(sorted), search_(search) {}
 
   std::vector<Entry> find() {
-    for (Index s = 0; s < static_cast<Index>(search_.places.placed.size()); ++s)
+    for (Index s = 0; s < static_cast<Index>(search_.poses.placed.size()); ++s)
       for_each_shift(images_of(s), [&](Vec3 shift, std::int8_t image) {
         const Entry entry{0, search_.surfaces.number_of(s), image};
-        switch (search_.places.placed[static_cast<std::size_t>(s)].kind) {
+        switch (search_.poses.placed[static_cast<std::size_t>(s)].kind) {
           case SurfaceKind::sphere:
             return add_near_sphere(s, shift, entry);
           case SurfaceKind::plane:
@@ -52,10 +52,10 @@ class EntryFinder {
   // Periods along which the surface has images [m].
   Vec3 images_of(Index s) const {
     if (placed(s).kind == SurfaceKind::sphere) return search_.period;
-    return search_.period - search_.places.frames[static_cast<std::size_t>(placed(s).frame)].spanned;
+    return search_.period - search_.poses.frames[static_cast<std::size_t>(placed(s).frame)].spanned;
   }
   void add_near_sphere(Index s, Vec3 shift, Entry entry) {
-    const PlacedSurface& surface = placed(s);
+    const SurfacePose& surface = placed(s);
     const Real range = surface.radius + sorted_.largest_radius + search_.skin;
     for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, range), [&](Index i) {
       const SurfacePair pair = surface_pair(surface, shift, position(i));
@@ -64,24 +64,24 @@ class EntryFinder {
   }
   // A plane has no images, because it cannot be periodic along its normal.
   void add_near_plane(Index s, Vec3 shift, Entry entry) {
-    if (entry.image != kNoShift) return;
+    if (entry.image != kZeroShift) return;
     for (Index i = 0; i < sorted_.active; ++i)
       if (surface_pair(placed(s), shift, position(i)).geometry.overlap > -search_.skin && may_touch(i, s))
         add(entry, i, 1);
   }
   void add_near_mesh(Index s, Vec3 shift, Entry entry) {
     const Real skin = search_.surfaces.skin_of(s, search_.skin);
-    const Box box = box_near(search_.places, s, shift, sorted_.largest_radius, skin);
+    const Box box = box_near(search_.poses, s, shift, sorted_.largest_radius, skin);
     for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
       if (!may_touch(i, s)) return;
       triangles_.clear();
-      const MeshSight query = sight_of(search_.places, s, position(i), shift, skin);
+      const MeshQuery query = mesh_query(search_.poses, s, position(i), shift, skin);
       query.for_each_triangle([&](Index t) { triangles_.push_back(t); });
       const auto count = static_cast<Index>(triangles_.size());
       if (count == 0) return;
-      const Index remembered = search_.remembered ? search_.remembered(i, entry.surface) : 0;
+      const Index stored_contacts = search_.stored_contacts ? search_.stored_contacts(i, entry.surface) : 0;
       const RowKind kind = kind_of_row(query.mesh, triangles_.data(), count);
-      add(entry, i, query.entries(kind, triangles_.data(), count, remembered));
+      add(entry, i, query.entries(kind, triangles_.data(), count, stored_contacts));
     });
   }
   void add(Entry entry, Index particle, Index times) {
@@ -91,7 +91,7 @@ class EntryFinder {
   bool may_touch(Index particle, Index s) const {
     return !search_.may_touch || search_.may_touch(particle, s);
   }
-  const PlacedSurface& placed(Index s) const { return search_.places.placed[static_cast<std::size_t>(s)]; }
+  const SurfacePose& placed(Index s) const { return search_.poses.placed[static_cast<std::size_t>(s)]; }
   Vec4 position(Index i) const { return sorted_.position[static_cast<std::size_t>(i)]; }
 
   const SortedParticles& sorted_;
@@ -114,11 +114,11 @@ void order_row(SurfaceRows& rows, Index first, Index end) {
 void group_by_surface(const SurfaceNumbers& numbers, Index placed, SurfaceRows& rows) {
   std::vector<Index> next(static_cast<std::size_t>(placed) + 1);
   for (const Index number : rows.surfaces)
-    if (!numbers.at_rest(number)) ++next[numbers.placed(number) + 1];
+    if (!numbers.is_static(number)) ++next[numbers.placed(number) + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
   rows.by_surface.resize(static_cast<std::size_t>(next.back()));
   for (Index entry = 0; entry < static_cast<Index>(rows.surfaces.size()); ++entry)
-    if (!numbers.at_rest(rows.surfaces[entry]))
+    if (!numbers.is_static(rows.surfaces[entry]))
       rows.by_surface[next[numbers.placed(rows.surfaces[entry])]++] = entry;
 }
 
@@ -129,31 +129,31 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
   const auto entries = static_cast<Index>(rows.surfaces.size());
   for (Index entry = 0, end; entry < entries; entry = end) {
     end = entry + 1;
-    const Index number = rows.surfaces[entry], s = numbers.at_rest(number) ? -1 : numbers.placed(number);
-    if (s < 0 || search.places.placed[static_cast<std::size_t>(s)].kind != SurfaceKind::mesh) continue;
+    const Index number = rows.surfaces[entry], s = numbers.is_static(number) ? -1 : numbers.placed(number);
+    if (s < 0 || search.poses.placed[static_cast<std::size_t>(s)].kind != SurfaceKind::mesh) continue;
     const Index i = rows.particles[entry];
     while (end < entries && rows.particles[end] == i && rows.surfaces[end] == number &&
            rows.images[end] == rows.images[entry])
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
-    const MeshSight query =
-        sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
-                 image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
+    const MeshQuery query =
+        mesh_query(search.poses, s, sorted.position[static_cast<std::size_t>(i)],
+                   image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
     query.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
     const RowKind kind = kind_of_row(query.mesh, rows.triangles.data() + first, last - first);
     rows.groups.push_back({entry, end - entry, first, last - first, kind});
   }
-  rows.standings.assign(rows.groups.size(), kNoStanding);
+  rows.cached_contacts.assign(rows.groups.size(), kNoCachedContact);
 }
 
 Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
 
 }  // namespace
 
-Box box_near(const SurfacePlaces& poses, Index s, Vec3 shift, Real radius, Real skin) {
+Box box_near(const SurfacePoses& poses, Index s, Vec3 shift, Real radius, Real skin) {
   constexpr Real kRoundOff = 1e-9;  // of the rotated box, with a wide margin
-  const PlacedSurface& surface = poses.placed[static_cast<std::size_t>(s)];
+  const SurfacePose& surface = poses.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = poses.meshes[static_cast<std::size_t>(frame.mesh)];
   const MeshBox& of_mesh = mesh.boxes[mesh.level_start[mesh.levels - 1]];
@@ -168,8 +168,8 @@ Box box_near(const SurfacePlaces& poses, Index s, Vec3 shift, Real radius, Real 
   return {middle - to_sides, middle + to_sides};
 }
 
-MeshSight sight_of(const SurfacePlaces& poses, Index s, Vec4 p, Vec3 shift, Real skin) {
-  const PlacedSurface& surface = poses.placed[static_cast<std::size_t>(s)];
+MeshQuery mesh_query(const SurfacePoses& poses, Index s, Vec4 p, Vec3 shift, Real skin) {
+  const SurfacePose& surface = poses.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = poses.meshes[static_cast<std::size_t>(frame.mesh)];
   return {surface, frame, mesh, p, shift, mesh_skin(p.w, skin)};
@@ -184,14 +184,14 @@ void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch&
   std::vector<Index> next;  // next free entry of each row
   for (Index i = 0; i < owned; ++i) {
     for (Index w = 0; i < sorted.active && w < numbers.ground; ++w)
-      if (numbers.at_rest(w) &&
+      if (numbers.is_static(w) &&
           wall_pair(sorted.position[i], search.planes[w]).distance < sorted.position[i].w + search.skin)
         rows.surfaces.push_back(w);
     next.push_back(static_cast<Index>(rows.surfaces.size()));
     rows.surfaces.resize(rows.surfaces.size() + static_cast<std::size_t>(counts[i]));
     rows.offsets.push_back(countable(rows.surfaces.size(), "stage neighbors: more surfaces near particles"));
   }
-  rows.images.assign(rows.surfaces.size(), kNoShift), rows.particles.assign(rows.surfaces.size(), 0);
+  rows.images.assign(rows.surfaces.size(), kZeroShift), rows.particles.assign(rows.surfaces.size(), 0);
   for (const Entry& entry : placed) {
     const Index slot = next[entry.particle]++;
     rows.surfaces[slot] = entry.surface, rows.images[slot] = entry.image;

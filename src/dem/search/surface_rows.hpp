@@ -11,7 +11,7 @@
 #include "dem/contact/contact_walk.hpp"
 #include "dem/surfaces/mesh_rows.hpp"
 #include "dem/surfaces/surfaces.hpp"
-#include "mesh/standing.hpp"
+#include "mesh/cached_contact.hpp"
 #include "partition/cell_grid.hpp"
 
 namespace scree {
@@ -25,8 +25,9 @@ struct SurfaceRows {
   std::vector<Index> particles;     // [entries]
   std::vector<Index> by_surface;    // [entries with placed surfaces], surface by surface
   std::vector<MeshGroup> groups;
-  std::vector<Index> triangles;     // of the groups
-  std::vector<Standing> standings;  // per group, from previous queries; the rows do not depend on it
+  std::vector<Index> triangles;  // of the groups
+  std::vector<CachedContact>
+      cached_contacts;  // per group, from previous queries; the rows do not depend on it
 
   SurfaceEntries entries() const {
     return {surfaces.data(), images.data(), particles.data(), by_surface.data()};
@@ -47,38 +48,37 @@ struct SortedParticles {
 
 // Range of cells with the centres of particles that come within `reach` of p; upper is included.
 struct CellRange {
-  CellPlace lower, upper;
+  CellIndex lower, upper;
 };
 SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real range) {
-  return {grid.nearest_place(p - Vec3{range, range, range}),
-          grid.nearest_place(p + Vec3{range, range, range})};
+  return {grid.nearest_cell(p - Vec3{range, range, range}), grid.nearest_cell(p + Vec3{range, range, range})};
 }
 // Range of cells of a box.
 inline CellRange cells_near(const CellGrid& grid, const Box& box) {
-  return {grid.nearest_place(box.min), grid.nearest_place(box.max)};
+  return {grid.nearest_cell(box.min), grid.nearest_cell(box.max)};
 }
 
 // Box with the centres of all particles of at most `radius` that come within `skin` of the mesh of the placed
 // surface s, shifted by `shift` [m]. It is infinite along periods that the mesh spans.
-Box box_near(const SurfacePlaces& poses, Index s, Vec3 shift, Real radius, Real skin);
+Box box_near(const SurfacePoses& poses, Index s, Vec3 shift, Real radius, Real skin);
 
 // Number of contacts of a particle with a surface in the history; empty: no history.
-using RememberedCount = std::function<Index(Index particle, Index surface)>;
+using StoredContactCount = std::function<Index(Index particle, Index surface)>;
 
 // Input of the search.
 struct SurfaceSearch {
   const SurfaceSet& surfaces;
   std::span<const WallPlane> planes;
-  SurfacePlaces places;
+  SurfacePoses poses;
   Vec3 period;  // [m]
   Real skin;    // search distance beyond touch [m]
-  RememberedCount remembered{};
+  StoredContactCount stored_contacts{};
   // Whether a particle may touch a placed surface; empty: it may touch all.
   std::function<bool(Index particle, Index placed)> may_touch{};
 };
 
 // A particle at p (x, y, z, radius) and the mesh of the placed surface s, for the search within skin.
-MeshSight sight_of(const SurfacePlaces& poses, Index s, Vec4 p, Vec3 shift, Real skin);
+MeshQuery mesh_query(const SurfacePoses& poses, Index s, Vec4 p, Vec3 shift, Real skin);
 
 // owned: particles with a row, of which the first `active` are in the search.
 void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows);

@@ -6,7 +6,7 @@
 
 #include "dem/contact/contact_items.hpp"
 #include "dem/contact/system_items.hpp"
-#include "dem/surface_contact/rubbing_surfaces.hpp"
+#include "dem/surface_contact/friction_surfaces.hpp"
 #include "dem/surfaces/surface_sums.hpp"
 
 namespace scree {
@@ -15,17 +15,17 @@ namespace scree {
 // energies: half of a contact with another body's shape.
 struct BodyLoad {
   InstantSums sums;
-  Real loss = 0;           // dissipation [W]
-  Real energy = 0;         // elastic [J]
-  Real pairs = 0;          // number of contacts
-  SpringEnergies springs;  // parts of the energy, with friction
-  RubbingLosses losses{};  // parts of the dissipation, over the step [J]
+  Real loss = 0;              // dissipation [W]
+  Real energy = 0;            // elastic [J]
+  Real pairs = 0;             // number of contacts
+  SpringEnergies springs;     // parts of the energy, with friction
+  TangentialLosses losses{};  // parts of the dissipation, over the step [J]
 };
 
 // Contacts of one shape over an implicit step.
 struct BodyStep {
   StepSums sums;
-  ContactBooks books;
+  ContactLosses losses;
   Real friction = 0;   // part of the dissipation [J]
   Index partners = 0;  // shapes of other bodies in contact
 };
@@ -60,27 +60,28 @@ SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
 }
 
 // Input of the evaluation of shapes.
-struct BodyLook {
+struct BodyQuery {
   const Vec3* arm;  // of their centres from the bodies' centres [m]
-  Real h;           // length of the explicit step that ends now, for laws with `kMoves` [s]; 0: an instant
+  Real h;  // length of the explicit step that ends now, for laws with `kNeedsMotion` [s]; 0: an instant
 };
 
 // Load on the body of a shape. In `SurfaceLoad` the other partner takes the role of the particle.
-struct BodyLoadOf {
+struct EvaluateBodyLoad {
   struct Found {
     SurfaceLoad contact;
     Vec3 normal;
   };
   template <class Law>
   SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    return {{true, law.normal_load(pair).exchanged(), EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
+    return {{true, law.normal_load(pair).exchanged(), EvaluateEnergy{}(law, pair), {}, {}},
+            pair.geometry.normal()};
   }
   template <class Law, class Pair, class History>
-  requires Law::kMoves SCREE_HD LoadWithHistory<Found, History>
+  requires Law::kNeedsMotion SCREE_HD LoadWithHistory<Found, History>
   operator()(const Law& law, const Pair& pair, const History& old) const {
     const auto outcome = law.load(pair, old);
     const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
-    return {{{true, outcome.load.exchanged(), EnergyOf{}(law, pair, now), {}, {}, outcome.losses()},
+    return {{{true, outcome.load.exchanged(), EvaluateEnergy{}(law, pair, now), {}, {}, outcome.losses()},
              pair.geometry.normal()},
             outcome.history};
   }
@@ -92,21 +93,22 @@ struct BodyLoadOf {
 };
 
 // Loads of the shapes; over a step the history is stored.
-template <class Laws, class Rows, class Look>
+template <class Laws, class Rows, class Kinematics>
 struct BodyLoadItem {
-  ContactWalk<Laws, Rows, Look> walk;
+  ContactWalk<Laws, Rows, Kinematics> walk;
   const Vec3* arm;
   BodyLoad* out;
 
-  static constexpr bool kAccepts = std::is_same_v<Look, OverMotion>;
+  static constexpr bool kAccepts = std::is_same_v<Kinematics, OverExplicitStep>;
 
   SCREE_HD void operator()(Index i) const {
     BodyLoad sum;
     const auto self = walk.self(i);
-    walk.template neighbors<kAccepts>(self, BodyLoadOf{}, [&](const BodyLoadOf::Found& found, Index) {
-      add(found.contact, application_point(i, self.p.w, found.normal), kPairShare, sum);
-    });
-    walk.template surfaces<kAccepts>(self, BodyLoadOf{}, [&](const auto& found, Index) {
+    walk.template neighbors<kAccepts>(
+        self, EvaluateBodyLoad{}, [&](const EvaluateBodyLoad::Found& found, Index) {
+          add(found.contact, application_point(i, self.p.w, found.normal), kPairShare, sum);
+        });
+    walk.template surfaces<kAccepts>(self, EvaluateBodyLoad{}, [&](const auto& found, Index) {
       if constexpr (std::is_same_v<decltype(found), const SurfaceLoad&>)
         add(from_surface(found), arm[i], 1, sum);
       else
@@ -116,20 +118,20 @@ struct BodyLoadItem {
   }
 
  private:
-  // Application point of the force, from the body's centre; laws with `kMoves` act at the shape's centre with
-  // a couple.
+  // Application point of the force, from the body's centre; laws with `kNeedsMotion` act at the shape's
+  // centre with a couple.
   SCREE_HD Vec3 application_point(Index i, Real radius, Vec3 normal) const {
-    return LawOf<Laws>::kMoves ? arm[i] : arm[i] - radius * normal;
+    return LawOf<Laws>::kNeedsMotion ? arm[i] : arm[i] - radius * normal;
   }
   SCREE_HD static SurfaceLoad from_surface(SurfaceLoad contact) {
-    contact.load = contact.load.exchanged(), contact.slide_power = 0;
+    contact.load = contact.load.exchanged(), contact.belt_power = 0;
     return contact;
   }
   SCREE_HD static void add(SurfaceLoad contact, Vec3 point, Real share, BodyLoad& sum) {
     contact.arm = point;
     sum.sums.add_contact(contact);
     sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
-    if constexpr (!LawOf<Laws>::kMoves) return;
+    if constexpr (!LawOf<Laws>::kNeedsMotion) return;
     sum.springs.add(contact.energy.springs, share);
     contact.losses.scale(share), sum.losses.add(contact.losses);
   }
@@ -149,49 +151,49 @@ struct BodyStepItem {
       contact.normal = -contact.normal;
       sum.sums.add_contact(SurfaceStep{true, contact, {}, arm[i] + self.p.w * contact.normal});
     };
-    const StepContactOf of{walk.look.start.resolve_events};
+    const EvaluateStepContact of{walk.kinematics.start.resolve_events};
     walk.neighbors(self, of, [&](const StepContact& contact, Index j) {
       add(contact, j);
       to.put(i, sum, {j, slopes_of(contact)});
     });
     walk.surfaces(self, of, add);
-    sum.books = books_of(walk, i, kPairShare);
+    sum.losses = step_losses_of(walk, i, kPairShare);
     out[i] = sum;
   }
 };
 
-SCREE_HD ContactSlopes slopes_of(const RubbingContact& c) {
+SCREE_HD ContactSlopes slopes_of(const FrictionalContact& c) {
   ContactSlopes slopes = slopes_of(c.normal);
-  slopes.direction = c.rub.direction, slopes.shear = c.rub.stiffness;
+  slopes.direction = c.friction.direction, slopes.shear = c.friction.stiffness;
   return slopes;
 }
 
 // Friction of a contact over an implicit step, with its energy accounting.
-struct BodyRubOf {
-  RubbingContactOf contact;
+struct EvaluateBodyFriction {
+  EvaluateFrictionalContact contact;
 
   struct Found {
-    RubbingContact contact;
-    RubbingBooks books;
+    FrictionalContact contact;
+    FrictionLosses losses;
     bool lasts;
     ContactHistory history;
   };
   template <class Law>
-  SCREE_HD Found operator()(const Law& law, const RubbingPath& path, const ContactHistory& old) const {
-    const RubbingContact found = contact(law, path, old);
-    return {found, rubbing_books(law, path, found, contact.start.step.resolve_events), found.lasts,
+  SCREE_HD Found operator()(const Law& law, const FrictionalPath& path, const ContactHistory& old) const {
+    const FrictionalContact found = contact(law, path, old);
+    return {found, friction_losses(law, path, found, contact.start.step.resolve_events), found.lasts,
             found.history};
   }
   template <class Views>
-  SCREE_HD const SurfaceRub* stored(const Views&, Index entry) const {
-    const SurfaceRub& at = contact.start.on_bodies[entry];
+  SCREE_HD const SurfaceFriction* stored(const Views&, Index entry) const {
+    const SurfaceFriction& at = contact.start.on_bodies[entry];
     return at.touches ? &at : nullptr;
   }
 };
 
 template <class Laws, class Rows>
-struct BodyRubItem {
-  RubbingWalk<Laws, Rows> walk;
+struct BodyFrictionItem {
+  FrictionWalk<Laws, Rows> walk;
   const Vec3* arm;  // at the end of the step
   BodyStep* out;
   ShapeContactsTo to;
@@ -199,15 +201,15 @@ struct BodyRubItem {
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
-    const BodyRubOf of{{walk.look.start, walk.in.spin}};
+    const EvaluateBodyFriction of{{walk.kinematics.start, walk.in.spin}};
     const auto add = [&](const auto& found, Real share) {
-      if (!found.books.acts) return;
-      sum.sums.add_contact(SurfaceRub{true, from_surface(found.contact), {}, arm[i], self.p.w, {}, {}});
-      sum.books.add(found.books, share), sum.friction += share * found.books.friction;
+      if (!found.losses.acts) return;
+      sum.sums.add_contact(SurfaceFriction{true, from_surface(found.contact), {}, arm[i], self.p.w, {}, {}});
+      sum.losses.add(found.losses, share), sum.friction += share * found.losses.friction;
     };
     walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
       add(found, kPairShare);
-      if (found.books.acts) to.put(i, sum, {j, slopes_of(found.contact)});
+      if (found.losses.acts) to.put(i, sum, {j, slopes_of(found.contact)});
     });
     walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
     out[i] = sum;
@@ -215,9 +217,10 @@ struct BodyRubItem {
 
  private:
   // The contact from the surface's side: quantities that are odd under exchange change sign.
-  SCREE_HD static RubbingContact from_surface(RubbingContact c) {
+  SCREE_HD static FrictionalContact from_surface(FrictionalContact c) {
     c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
-    c.rub.start = -c.rub.start, c.rub.step = -c.rub.step, c.rub.end = -c.rub.end;
+    c.friction.start = -c.friction.start, c.friction.step = -c.friction.step,
+    c.friction.end = -c.friction.end;
     return c;
   }
 };

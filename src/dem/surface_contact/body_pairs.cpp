@@ -1,11 +1,11 @@
 #include "dem/surface_contact/body_pairs.hpp"
 
-#include "dem/surface_contact/rubbing_surfaces.hpp"
+#include "dem/surface_contact/friction_surfaces.hpp"
 
 namespace scree {
 
 // The relative motion of both bodies at the contact point determines the force: the blocks are those of
-// `sum_term(SurfaceRub)`, with the other body's motion and the opposite sign.
+// `sum_term(SurfaceFriction)`, with the other body's motion and the opposite sign.
 void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const ContactSlopes& slopes) {
   if (other.body < one.body) return add(other, one, slopes);  // the blocks are even in the normal
   PairStiffness& sum = blocks_[{one.body, other.body}];
@@ -13,7 +13,7 @@ void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const Cont
   const Vec3 n = slopes.normal, t = slopes.direction;
   for (int row = 0; row < kBlockRows; ++row)
     for (int column = 0; column < kBlockRows; ++column) {
-      const Vec3 a = moved_by_unit(one.place, row), b = moved_by_unit(other.place, column);
+      const Vec3 a = unit_displacement(one.arm, row), b = unit_displacement(other.arm, column);
       const Real along = dot(n, a) * dot(n, b);
       const auto at = static_cast<std::size_t>(kBlockRows * row + column);
       sum.stiffness[at] -=

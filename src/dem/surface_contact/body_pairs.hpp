@@ -15,7 +15,7 @@ namespace scree {
 // A body at a contact. place: contact point relative to its centre of mass [m].
 struct TouchedBody {
   int body;
-  Vec3 place;
+  Vec3 arm;
 };
 
 // Blocks summed over contacts, in the order in which they are added.

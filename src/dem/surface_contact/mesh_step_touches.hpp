@@ -6,42 +6,43 @@
 namespace scree {
 
 // Contacts of the g-th group at both ends of the step; those at the start are matched with those at the end.
-template <bool kSheets>
+template <bool kOpenSurfaces>
 struct MeshStepTouchItem {
   SurfaceViews in;
   const Vec4* start_position;
-  const PlacedSurface* start_placed;
+  const SurfacePose* start_surface_poses;
   MeshTouch* touches;       // per entry; touches: a contact at either end
   MeshTouchBefore* before;  // per entry
 
   SCREE_HD void operator()(Index g) const {
     const MeshGroup group = in.meshes.groups[g];
     const Index i = in.entries.particles[group.entry], s = in.surface_of(group.entry);
-    const PlacedSurface &surface = in.placed[s], &surface0 = start_placed[s];
+    const SurfacePose &surface = in.placed[s], &surface0 = start_surface_poses[s];
     const SurfaceFrame& frame = in.frames[surface.frame];
     const MeshView& mesh = in.meshes.meshes[frame.mesh];
     const Vec4 p = in.position[i];
-    const Vec3 position = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
+    const Vec3 position = nearest_image(surface, frame, xyz(p)) - in.shift_of(group.entry),
                position0 = position - (xyz(p) - xyz(start_position[i]));
     const SphereInMesh end{frame.axes, transposed_times(frame.axes, position - surface.point), p.w},
         start{frame.before, transposed_times(frame.before, position0 - surface0.point), p.w};
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
     MeshContact now[kMeshSlots];
-    RememberedTouches old;
+    PreviousTouches old;
     int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
     old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
-    if (is_sheet<kSheets>(mesh)) count = track_sides(group, {mesh, end.c, start.c}, now, count, old);
+    if (is_open_surface<kOpenSurfaces>(mesh))
+      count = track_sides(group, {mesh, end.c, start.c}, now, count, old);
     for (int k = 0; k < old.count; ++k)
-      old.entry[k] = entry_of_feature(group, remembered_feature<kSheets>(mesh, old.contact[k]));
+      old.entry[k] = entry_of_feature(group, stored_feature<kOpenSurfaces>(mesh, old.contact[k]));
     // The contacts at the end of the step come first, whether they existed at the start or not.
     bool matched[kMeshSlots] = {};
-    for (const Kinship match : {Kinship::same, Kinship::same_patch})
+    for (const HistoryMatch match : {HistoryMatch::same, HistoryMatch::same_patch})
       for (int k = 0; k < count && k < group.entries; ++k) {
         if (matched[k]) continue;
-        const int at = find_kin(mesh, now[k], old, match, 0);
+        const int at = find_matching_contact(mesh, now[k], old, match, 0);
         if (at < 0) continue;
         put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
-        matched[k] = true, old.take_out(at);
+        matched[k] = true, old.remove_escaped(at);
       }
     Overlaps ending{}, beginning{};  // of the nearest contacts that exist at one end only
     for (int k = 0; k < count && k < group.entries; ++k) {
@@ -62,7 +63,7 @@ struct MeshStepTouchItem {
     if (!mesh.sheet && (beginning.at_end > p.w || ending.at_start > p.w))
       change_over(group.entry + count, ending, group.entry, beginning);
     for (; next < group.entries; ++next) touches[group.entry + next].set_none();
-    if (is_sheet<kSheets>(mesh))
+    if (is_open_surface<kOpenSurfaces>(mesh))
       for (Index k = 0; k < group.entries; ++k)
         memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
@@ -82,26 +83,26 @@ struct MeshStepTouchItem {
     const MeshView& mesh;
     Vec3 c, c0;
   };
-  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  SCREE_HD SideHistory memory() const { return {in.history, in.records}; }
   // Tracks the sides of the contacts at the start, then of those at the end, which continue them.
   SCREE_HD int track_sides(const MeshGroup& group, const CentreAtEnds& of, MeshContact* now, int count,
-                           RememberedTouches& old) const {
-    old.count = SideKeeper(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
-    RememberedSides sides;
-    for (int k = 0; k < old.count; ++k) sides.add(sided_feature(of.mesh, old.contact[k]));
-    return SideKeeper(of.mesh, of.c, sides).keep(now, count);
+                           PreviousTouches& old) const {
+    old.count = SideTracker(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
+    PreviousSides sides;
+    for (int k = 0; k < old.count; ++k) sides.add(side_feature(of.mesh, old.contact[k]));
+    return SideTracker(of.mesh, of.c, sides).keep(now, count);
   }
   SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
                     const SphereAtEnds& ends, Index from) const {
     const SphereInMesh &end = ends.end, &start = ends.start;
-    const FeaturePair pair = feature_pair<kSheets>(mesh, now, end.axes, end.c, end.radius),
-                      pair0 = feature_pair<kSheets>(mesh, was, start.axes, start.c, start.radius);
+    const FeaturePair pair = feature_pair<kOpenSurfaces>(mesh, now, end.axes, end.c, end.radius),
+                      pair0 = feature_pair<kOpenSurfaces>(mesh, was, start.axes, start.c, start.radius);
     touches[entry] = {true,
-                      acts_as_face<kSheets>(mesh, now),
+                      acts_as_face<kOpenSurfaces>(mesh, now),
                       pair.geometry,
                       pair.contact,
                       pair0.geometry.normal(),
-                      remembered_feature<kSheets>(mesh, now),
+                      stored_feature<kOpenSurfaces>(mesh, now),
                       now.triangle >= 0 ? now.triangle : was.triangle,
                       from};
     before[entry] = {pair0.geometry, pair0.contact};

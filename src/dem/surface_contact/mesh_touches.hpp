@@ -4,9 +4,9 @@
 
 #include "dem/surface_contact/surface_items.hpp"
 #include "dem/surfaces/mesh_rows.hpp"
+#include "mesh/cached_contact.hpp"
 #include "mesh/mesh_contacts.hpp"
-#include "mesh/sheet_sides.hpp"
-#include "mesh/standing.hpp"
+#include "mesh/open_surface_sides.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
@@ -18,29 +18,29 @@ struct FeaturePair {
 };
 
 SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
-// Whether a mesh is an open (two-sided) surface. kSheets: whether the model has any, so that other models pay
-// nothing for it.
-template <bool kSheets>
-SCREE_HD bool is_sheet(const MeshView& mesh) {
-  return kSheets && mesh.sheet;
+// Whether a mesh is an open (two-sided) surface. kOpenSurfaces: whether the model has any, so that other
+// models pay nothing for it.
+template <bool kOpenSurfaces>
+SCREE_HD bool is_open_surface(const MeshView& mesh) {
+  return kOpenSurfaces && mesh.sheet;
 }
 // An edge or a vertex of an open surface that the centre has penetrated acts as the tangent plane there.
-template <bool kSheets>
+template <bool kOpenSurfaces>
 SCREE_HD bool acts_as_face(const MeshView& mesh, const MeshContact& found) {
-  return is_face(mesh, found.feature) || (is_sheet<kSheets>(mesh) && found.distance < 0);
+  return is_face(mesh, found.feature) || (is_open_surface<kOpenSurfaces>(mesh) && found.distance < 0);
 }
-template <bool kSheets>
-SCREE_HD Index remembered_feature(const MeshView& mesh, const MeshContact& contact) {
-  return is_sheet<kSheets>(mesh) ? sided_feature(mesh, contact) : contact.feature;
+template <bool kOpenSurfaces>
+SCREE_HD Index stored_feature(const MeshView& mesh, const MeshContact& contact) {
+  return is_open_surface<kOpenSurfaces>(mesh) ? side_feature(mesh, contact) : contact.feature;
 }
 
 // c: the sphere's centre in the mesh's frame. A face uses the same function as an analytic plane, with the
 // contact one radius below the centre; an edge or a vertex acts as a sphere of zero radius.
-template <bool kSheets>
+template <bool kOpenSurfaces>
 SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
                                   Real radius) {
   const Vec3 normal = axes * found.normal;
-  if (acts_as_face<kSheets>(mesh, found)) {
+  if (acts_as_face<kOpenSurfaces>(mesh, found)) {
     ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
     g.direction = normal;
     return {g, axes * (c - radius * found.normal)};
@@ -50,33 +50,33 @@ SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found
 
 // Sides of the contacts of a group with an open surface: read from the history and, in a step that may be
 // accepted, stored. Laws with a history store the sides in their own records.
-struct SideMemory {
+struct SideHistory {
   const HistoryViews& history;
   int records;
 
-  SCREE_HD bool is_alone() const { return history.bodies == nullptr && history.features != nullptr; }
+  SCREE_HD bool sides_only() const { return history.bodies == nullptr && history.features != nullptr; }
   SCREE_HD bool has_history(Index entry) const {
     if (history.bodies != nullptr) return history.bodies[std::int64_t{entry} * records].w == history.step;
     return history.features != nullptr && history.features[entry] != kNoFeature;
   }
-  SCREE_HD RememberedSides of(const MeshGroup& group) const {
-    RememberedSides sides;
+  SCREE_HD PreviousSides of(const MeshGroup& group) const {
+    PreviousSides sides;
     for (Index e = group.entry; e < group.entry + group.entries; ++e)
       if (has_history(e)) sides.add(history.features[e]);
     return sides;
   }
   SCREE_HD void keep(Index entry, Index sided) const {
-    if (is_alone()) history.features_ahead[entry] = sided;
+    if (sides_only()) history.next_features[entry] = sided;
   }
 };
 
 // Previous contacts of the particle, each with its entry.
-struct RememberedTouches {
+struct PreviousTouches {
   Index entry[kMeshSlots];
   MeshContact contact[kMeshSlots];  // at the position of the particle at the start of the step
   int count = 0;
 
-  SCREE_HD void take_out(int k) {
+  SCREE_HD void remove_escaped(int k) {
     --count;
     for (; k < count; ++k) entry[k] = entry[k + 1], contact[k] = contact[k + 1];
   }
@@ -86,16 +86,16 @@ struct RememberedTouches {
 // then, of those on the same smooth patch in about the same direction, the one with the lowest feature
 // number; then, over a sharp edge, one on a neighbouring patch that acted close by. The result does not
 // depend on the order of entries.
-enum class Kinship { same, same_patch, neighbour };
-SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old,
-                      Kinship match, Real contact_radius) {
+enum class HistoryMatch { same, same_patch, neighbour };
+SCREE_HD int find_matching_contact(const MeshView& mesh, const MeshContact& now, const PreviousTouches& old,
+                                   HistoryMatch match, Real contact_radius) {
   int best = -1;
   for (int k = 0; k < old.count; ++k) {
     const MeshContact& c = old.contact[k];
     if (best >= 0 && !(c.feature < old.contact[best].feature)) continue;
     const Vec3 difference = now.normal - c.normal;
-    const bool related = match == Kinship::same ? c.feature == now.feature
-                         : match == Kinship::same_patch
+    const bool related = match == HistoryMatch::same ? c.feature == now.feature
+                         : match == HistoryMatch::same_patch
                              ? same_cluster(mesh, now, c)
                              : on_neighbouring_patches(mesh, now.feature, c.feature) &&
                                    dot(difference, difference) < contact_radius * contact_radius;
@@ -105,25 +105,25 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 }
 
 // Contacts of the g-th group, a particle and a mesh, at an instant or, with in.h above 0, over the explicit
-// step that ends there. kReaches: also pairs within in.reach beyond touch, for which the law decides whether
+// step that ends there. kHasRange: also pairs within in.reach beyond touch, for which the law decides whether
 // they are in contact. The contacts found are the same either way, unless the centre is deeper than its
 // radius inside a closed mesh.
-template <bool kReaches, bool kSheets>
+template <bool kHasRange, bool kOpenSurfaces>
 struct MeshTouchItem {
   SurfaceViews in;
-  MeshTouch* touches;   // per entry
-  Standing* standings;  // per group; valid for this list
+  MeshTouch* touches;              // per entry
+  CachedContact* cached_contacts;  // per group; valid for this list
 
   SCREE_HD void operator()(Index g) const {
-    if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g, Alone{});
+    if (use_cached(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) query(g, SingleLane{});
   }
 
   // Uses the cached contact where the particle has moved so little that no triangle needs to be tested:
   // writes the contact to `first`, the first entry of the group. Unclear: the cache is invalid.
-  SCREE_HD Nearest stay(Index g, MeshTouch& first) const {
+  SCREE_HD Nearest use_cached(Index g, MeshTouch& first) const {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
-    const Standing cached = standings[g];
+    const CachedContact cached = cached_contacts[g];
     if (!cached.holds(sphere.c)) return Nearest::unclear;
     MeshContact contact;
     const Nearest found =
@@ -132,8 +132,8 @@ struct MeshTouchItem {
   }
 
   // Narrow-phase query of a group over its triangles.
-  SCREE_HD_CALLER template <class Team>
-  SCREE_HD void look(Index g, const Team& team) const {
+  SCREE_HD_CALLER template <class LaneGroup>
+  SCREE_HD void query(Index g, const LaneGroup& team) const {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
     const MeshView& mesh = sphere.mesh;
@@ -144,19 +144,20 @@ struct MeshTouchItem {
       result.found =
           NearestContact(mesh, sphere.c, range)
               .find(triangles, group.triangles, touches[group.entry].triangle, team, result.contact);
-    if (team.leads()) {
+    if (team.is_leader()) {
       if (result.found != Nearest::unclear &&
           !write(group, sphere, result.found, result.contact, touches[group.entry]))
         result.found = Nearest::unclear;
       if (result.found == Nearest::unclear) result.found = query_in_full(group, sphere, result.contact);
     }
-    result = team.of_leader(result);
-    const StandingRow<Team> row{mesh, group.kind, triangles, group.triangles, sphere.c, range, team};
+    result = team.from_leader(result);
+    const CachedContactRow<LaneGroup> row{mesh,     group.kind, triangles, group.triangles,
+                                          sphere.c, range,      team};
     const bool on_face = result.found == Nearest::one && is_face(mesh, result.contact.feature);
-    const Standing cached = result.found == Nearest::none ? row.clear()
-                            : on_face                     ? row.over(result.contact.triangle)
-                                                          : kNoStanding;
-    if (team.leads()) standings[g] = cached;
+    const CachedContact cached = result.found == Nearest::none ? row.clear()
+                                 : on_face                     ? row.over(result.contact.triangle)
+                                                               : kNoCachedContact;
+    if (team.is_leader()) cached_contacts[g] = cached;
   }
 
  private:
@@ -177,28 +178,29 @@ struct MeshTouchItem {
       return normal0_of(mesh_feature_at(mesh, feature, c0, side));
     }
     SCREE_HD Vec3 normal0_of(const MeshContact& contact) const {
-      return feature_pair<kSheets>(mesh, contact, axes0, c0, radius).geometry.normal();
+      return feature_pair<kOpenSurfaces>(mesh, contact, axes0, c0, radius).geometry.normal();
     }
   };
   SCREE_HD Sphere sphere_of(const MeshGroup& group) const {
     const Index i = in.entries.particles[group.entry];
-    const PlacedSurface& surface = in.placed[in.surface_of(group.entry)];
+    const SurfacePose& surface = in.placed[in.surface_of(group.entry)];
     const SurfaceFrame& frame = in.frames[surface.frame];
     const Vec4 p = in.position[i];
-    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
+    const Vec3 from_point =
+        (nearest_image(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
     const Vec3 c = transposed_times(frame.axes, from_point);
-    const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
-    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
+    const Vec3 displacement = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.displacement : Vec3{};
+    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - displacement) : c;
     return {in.meshes.meshes[frame.mesh], frame.axes, in.h > 0 ? frame.before : frame.axes, c, c0, p.w};
   }
   SCREE_HD void put(MeshTouch& to, const Sphere& of, const MeshContact& found) const {
-    const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
+    const FeaturePair pair = feature_pair<kOpenSurfaces>(of.mesh, found, of.axes, of.c, of.radius);
     // Member by member: a whole load right after partial stores would stall.
-    to.touches = pair.geometry.overlap > (kReaches ? -in.reach : 0);
-    to.is_face = acts_as_face<kSheets>(of.mesh, found);
+    to.touches = pair.geometry.overlap > (kHasRange ? -in.interaction_range : 0);
+    to.is_face = acts_as_face<kOpenSurfaces>(of.mesh, found);
     to.geometry = pair.geometry, to.contact = pair.contact;
     to.normal0 = pair.geometry.normal();
-    to.feature = remembered_feature<kSheets>(of.mesh, found), to.triangle = found.triangle;
+    to.feature = stored_feature<kOpenSurfaces>(of.mesh, found), to.triangle = found.triangle;
     to.from = -1;
   }
   // Full search for several contacts; a single one is also returned.
@@ -209,16 +211,17 @@ struct MeshTouchItem {
                                           in.meshes.triangles + group.first_triangle, group.triangles, found,
                                           touches[group.entry].triangle),
                        static_cast<int>(group.entries));
-    if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, sphere.c, memory().of(group)).keep(found, count);
+    if (is_open_surface<kOpenSurfaces>(mesh))
+      count = SideTracker(mesh, sphere.c, memory().of(group)).keep(found, count);
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].set_none();
     for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
-    if (is_sheet<kSheets>(mesh) && in.h > 0) store_sides(group, count);
+    if (is_open_surface<kOpenSurfaces>(mesh) && in.h > 0) store_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
     if (count == 1) only_one = found[0];
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
   }
   // Contact with the plane of the cached triangle. Returns whether it is within range.
-  SCREE_HD bool is_over_within(const Sphere& sphere, const Standing& on, MeshContact& face) const {
+  SCREE_HD bool is_over_within(const Sphere& sphere, const CachedContact& on, MeshContact& face) const {
     const MeshPart& part = sphere.mesh.parts[on.part];
     const Real height = dot(sphere.c - part.point, part.normal);
     face = {on.part, on.triangle, std::abs(height), part.point,
@@ -238,18 +241,18 @@ struct MeshTouchItem {
       put(first, sphere, contact);
       if (in.history.bodies != nullptr) continue_sides_only(first, sphere, before, contact);
     }
-    if (is_sheet<kSheets>(mesh) && in.h > 0)
+    if (is_open_surface<kOpenSurfaces>(mesh) && in.h > 0)
       for (Index k = 0; k < group.entries; ++k)
         memory().keep(group.entry + k, is_one && k == 0 ? first.feature : kNoFeature);
     return true;
   }
-  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  SCREE_HD SideHistory memory() const { return {in.history, in.records}; }
   SCREE_HD void store_sides(const MeshGroup& group, int count) const {
     for (Index k = 0; k < group.entries; ++k)
       memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
   // Search radius for contacts of a sphere of this radius [m].
-  SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
+  SCREE_HD Real searched(Real radius) const { return kHasRange ? radius + in.interaction_range : radius; }
   SCREE_HD bool has_history(Index entry) const {
     return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
   }
@@ -268,15 +271,15 @@ struct MeshTouchItem {
   // open surface began.
   SCREE_HD static bool continues(const MeshView& mesh, const Before& before, MeshContact& contact) {
     if (before.entries == 0) return true;
-    if (!is_sheet<kSheets>(mesh)) return before.feature == contact.feature;
+    if (!is_open_surface<kOpenSurfaces>(mesh)) return before.feature == contact.feature;
     if (without_side(before.feature) != contact.feature) return false;
-    if (before.feature != sided_feature(mesh, contact)) turn_over(contact);
+    if (before.feature != side_feature(mesh, contact)) flip_side(contact);
     return true;
   }
   SCREE_HD static void continue_sides_only(MeshTouch& touch, const Sphere& sphere, const Before& before,
                                            const MeshContact& contact) {
     touch.from = before.entry;
-    const bool has_side = is_sheet<kSheets>(sphere.mesh) && before.entries > 0;
+    const bool has_side = is_open_surface<kOpenSurfaces>(sphere.mesh) && before.entries > 0;
     touch.normal0 = sphere.normal0_of(
         contact.feature, has_side ? side_direction(sphere.mesh, before.feature) : contact.normal);
   }
@@ -287,27 +290,27 @@ struct MeshTouchItem {
   // Finds the history that the contacts continue, and the normals of all contacts at the start of the step.
   SCREE_HD void go_on(const MeshGroup& group, const Sphere& sphere, const Found& found) const {
     const MeshView& mesh = sphere.mesh;
-    RememberedTouches old;
+    PreviousTouches old;
     for (Index e = group.entry; e < group.entry + group.entries; ++e) {
       if (!has_history(e)) continue;
       const Index stored = in.history.features[e],
-                  feature = is_sheet<kSheets>(mesh) ? without_side(stored) : stored;
-      const bool has_side = is_sheet<kSheets>(mesh) && !is_open(mesh, feature);
+                  feature = is_open_surface<kOpenSurfaces>(mesh) ? without_side(stored) : stored;
+      const bool has_side = is_open_surface<kOpenSurfaces>(mesh) && !is_open(mesh, feature);
       const Vec3 side = has_side ? side_direction(mesh, stored) : side_of(found, mesh, feature);
       old.entry[old.count] = e;
       old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side);
     }
-    for (const Kinship match : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
+    for (const HistoryMatch match : {HistoryMatch::same, HistoryMatch::same_patch, HistoryMatch::neighbour})
       for (int k = 0; k < found.count && old.count > 0; ++k) {
         MeshTouch& out = touches[group.entry + k];
         if (out.from >= 0) continue;
         const Real overlap = out.geometry.overlap;
         const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / sphere.radius);
-        const int before = find_kin(mesh, found.contacts[k], old, match, close);
+        const int before = find_matching_contact(mesh, found.contacts[k], old, match, close);
         if (before < 0) continue;
         out.from = old.entry[before];
         out.normal0 = sphere.normal0_of(old.contact[before]);
-        old.take_out(before);
+        old.remove_escaped(before);
       }
     for (int k = 0; k < found.count; ++k) {
       MeshTouch& out = touches[group.entry + k];

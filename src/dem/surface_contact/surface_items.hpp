@@ -12,7 +12,7 @@
 namespace scree {
 
 // State of the particles for an evaluation of contacts with surfaces.
-struct SurfaceLook {
+struct SurfaceQuery {
   const Vec4 *position, *velocity, *spin;  // spin: null where particles do not rotate
   HistoryViews history;
   Real h = 0;  // length of the explicit step that ends there [s]; 0: an instant
@@ -23,7 +23,7 @@ struct SurfaceViews {
   const Vec4 *position, *velocity;  // x, y, z, radius; x, y, z, mass
   const int* material;
   SurfaceEntries entries;
-  const PlacedSurface* placed;
+  const SurfacePose* placed;
   const SurfaceFrame* frames;
   SurfaceNumbers numbers;
   MeshRows meshes;
@@ -32,9 +32,9 @@ struct SurfaceViews {
   PeriodicBox box;
   HistoryViews history{};
   int records = 0;             // history records per contact
-  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws with `kMoves`
-  Real h = 0;                  // see SurfaceLook
-  Real reach = 0;              // Contact::reach [m]
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws with `kNeedsMotion`
+  Real h = 0;                  // see SurfaceQuery
+  Real interaction_range = 0;  // Contact::reach [m]
   // Mass of each placed surface's parent for damping laws; null: all parents are immovable [kg]
   const Real* masses = nullptr;
   // Radii [m] that laws use instead of the particles' own; null: the particles' own.
@@ -42,18 +42,18 @@ struct SurfaceViews {
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
-  SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
+  SCREE_HD Index goes_on_from(const SurfacePose& surface, Index entry) const {
     return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
   }
   // Stores the history of the contact for the case that the step is accepted.
   template <class Law, class History>
-  SCREE_HD void remember(const PlacedSurface& surface, Index entry, const History& of_contact) const {
+  SCREE_HD void store_history(const SurfacePose& surface, Index entry, const History& of_contact) const {
     if (history.ahead == nullptr) return;
     history.template write<Law>(history.ahead, entry, of_contact);
-    if (surface.kind == SurfaceKind::mesh) history.features_ahead[entry] = touches[entry].feature;
+    if (surface.kind == SurfaceKind::mesh) history.next_features[entry] = touches[entry].feature;
   }
   template <class Law>
-  SCREE_HD void remember_none(Index entry) const {
+  SCREE_HD void store_no_history(Index entry) const {
     if (Law::kHistory > 0 && history.ahead != nullptr) history.template write_none<Law>(history.ahead, entry);
   }
 };
@@ -67,8 +67,8 @@ struct SurfaceTouch {
 };
 
 // reach: interaction range beyond touch, in.reach or 0 [m].
-SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry, Vec4 p,
-                                    Real reach) {
+SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const SurfacePose& surface, Index entry, Vec4 p,
+                                    Real interaction_range) {
   if (surface.kind == SurfaceKind::mesh) {
     const MeshTouch& touch = in.touches[entry];
     if (!touch.touches) return {};
@@ -77,12 +77,12 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
   const bool is_sphere = surface.kind == SurfaceKind::sphere;
   // Planes have no images: the contact point must not depend on when the particle was last wrapped.
   const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
-  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
+  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -interaction_range};
 }
 // Walls, edges and vertices count as planes in Hertz's law. p, u: of the entry's particle.
 SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4 u) {
   const Index surface = in.surface_of(entry);
-  const PlacedSurface& placed = in.placed[surface];
+  const SurfacePose& placed = in.placed[surface];
   return {in.law_radius != nullptr ? in.law_radius[in.entries.particles[entry]] : p.w,
           placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
           in.masses != nullptr ? in.masses[surface] : kInfinity};
@@ -97,11 +97,11 @@ SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame
   if (touch.is_face) return contact_point - point_displacement + radius * (normal1 - normal0);
   const Vec3 centre = contact_point - point_displacement + touch.pair.geometry.distance * normal1;
   const Vec3 material = frame.before * transposed_times(frame.axes, contact_point);
-  return material + across(centre - material, normal0);
+  return material + tangential_part(centre - material, normal0);
 }
 // Corrects a mid-step velocity along the contact's normal at the end of the step, so that its normal
 // component there equals that along the mid-step normal, with the surface rotated by half.
-SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 velocity) {
+SCREE_HD Vec3 along_middle(const SurfacePose& surface, const SurfaceTouch& touch, Vec3 velocity) {
   const Vec3 normal = touch.pair.geometry.normal();
   return velocity - Real(0.5) * dot(cross(surface.turn, normal), velocity) * normal;
 }
@@ -109,17 +109,18 @@ SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& tou
 // halfway along the contact's path [m]. face_motion() uses the tangential part at the end of the step as
 // slip. Where a face has rotated, the normal part at mid-step is excluded from the slip; otherwise a contact
 // that opens or closes would slip.
-SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 normal0,
-                                   Vec3 travel, const TurningPartner& i, const TurningPartner& j, Real h) {
+SCREE_HD ContactMotion motion_over(const SurfacePose& surface, const SurfaceTouch& touch, Vec3 normal0,
+                                   Vec3 displacement, const RotatingPartner& i, const RotatingPartner& j,
+                                   Real h) {
   const ContactGeometry& geometry = touch.pair.geometry;
-  if (!touch.is_face) return edge_motion(geometry, normal0, travel, i, j, h);
+  if (!touch.is_face) return edge_motion(geometry, normal0, displacement, i, j, h);
   const Vec3 normal = geometry.normal();
-  if (surface.turns()) travel += (dot(travel, normal) / 2) * cross(surface.turn, normal);
-  return face_motion(geometry, normal0, travel, i, j, h);
+  if (surface.turns()) displacement += (dot(displacement, normal) / 2) * cross(surface.turn, normal);
+  return face_motion(geometry, normal0, displacement, i, j, h);
 }
 
-// Loads at one instant or, for laws with `kMoves`, over the explicit step that ends there; for the k-th of
-// the entries by_surface.
+// Loads at one instant or, for laws with `kNeedsMotion`, over the explicit step that ends there; for the k-th
+// of the entries by_surface.
 template <class Laws>
 struct SurfaceLoadItem {
   SurfaceViews in;
@@ -130,103 +131,106 @@ struct SurfaceLoadItem {
 
   SCREE_HD void operator()(Index k) const {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
-    const PlacedSurface& surface = in.placed[in.surface_of(entry)];
+    const SurfacePose& surface = in.placed[in.surface_of(entry)];
     const Vec4 p = in.position[i], u = in.velocity[i];
     SurfaceLoad& out = loads[entry];
-    const SurfaceTouch touch = surface_touch(in, surface, entry, p, kReaches<Law> ? in.reach : 0);
+    const SurfaceTouch touch =
+        surface_touch(in, surface, entry, p, kHasRange<Law> ? in.interaction_range : 0);
     out.touches = touch.touches;
-    if (!out.touches) return in.template remember_none<Law>(entry);
+    if (!out.touches) return in.template store_no_history<Law>(entry);
     const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
                           surface_size(in, entry, p, u)};
     const Law& law = laws.get(in.material[i], surface.material);
-    if constexpr (Law::kMoves)
+    if constexpr (Law::kNeedsMotion)
       find_moving(law, state, touch, surface, entry);
     else
       find_load(law, state, surface, entry);
-    if constexpr (kReaches<Law>)
+    if constexpr (kHasRange<Law>)
       if (!out.touches) return;
-    out.arm = Law::kMoves && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
-    out.slide_power = Law::kMoves ? slide_power(touch, surface, out.load.force) : 0;
+    out.arm = Law::kNeedsMotion && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
+    out.belt_power = Law::kNeedsMotion ? belt_power(touch, surface, out.load.force) : 0;
     out.particle_arm = contact_arm(state);
   }
 
  private:
-  SCREE_HD void find_load(const Law& law, const PairState& state, const PlacedSurface& surface,
+  SCREE_HD void find_load(const Law& law, const PairState& state, const SurfacePose& surface,
                           Index entry) const {
     SurfaceLoad& out = loads[entry];
     if constexpr (Law::kHistory == 0) {
-      if constexpr (kReaches<Law>) {
+      if constexpr (kHasRange<Law>) {
         out.touches = law.closed(state, {});
         if (!out.touches) return;
       }
       out.load = law.load(state);
     } else {
-      const auto load = LoadOf{}(law, state, old(surface, entry));
+      const auto load = EvaluateLoad{}(law, state, old(surface, entry));
       out.load = load;
-      in.template remember<Law>(surface, entry, load.history);
+      in.template store_history<Law>(surface, entry, load.history);
     }
-    out.energy = EnergyOf{}(law, state);
+    out.energy = EvaluateEnergy{}(law, state);
   }
-  SCREE_HD auto old(const PlacedSurface& surface, Index entry) const {
+  SCREE_HD auto old(const SurfacePose& surface, Index entry) const {
     return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
   }
 
   // Whether a pair within the interaction range is in contact.
   SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
-    if constexpr (kReaches<Law>)
+    if constexpr (kHasRange<Law>)
       return law.closed(state, before);
     else
       return true;
   }
   SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
-                            const PlacedSurface& surface, Index entry) const {
+                            const SurfacePose& surface, Index entry) const {
     const ContactHistory before = old(surface, entry);
     const bool closed = is_closed(law, state, before);
     if (!closed) {
-      in.template remember_none<Law>(entry);
+      in.template store_no_history<Law>(entry);
       loads[entry].touches = in.h > 0 && Law::breaks(before);  // the step that opens the contact may
                                                                // dissipate energy
       if (!loads[entry].touches) return;
     }
     MovingPair pair = moving_pair(state, touch, surface, entry);
     if (in.h > 0) {
-      if (!touch.is_sphere && in.frames[surface.frame].runs())
-        add_slide(pair.motion, in.frames[surface.frame].middle_slide());
+      if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
+        add_surface_velocity(pair.motion, in.frames[surface.frame].middle_surface_velocity());
       const ContactOutcome outcome = law.load(pair, before);
       take(outcome, entry);
-      loads[entry].energy = closed ? EnergyOf{}(law, pair, outcome.history) : ContactEnergy{};
-      if (closed) in.template remember<Law>(surface, entry, outcome.history);
+      loads[entry].energy = closed ? EvaluateEnergy{}(law, pair, outcome.history) : ContactEnergy{};
+      if (closed) in.template store_history<Law>(surface, entry, outcome.history);
     } else {
       InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
-      if (!touch.is_sphere && in.frames[surface.frame].runs())
-        at.slip_rate -= pair.motion.leverage * conveyor_velocity(touch, surface);
+      if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
+        at.slip_rate -= pair.motion.lever_arm_ratio * conveyor_velocity(touch, surface);
       take(law.load(at, before), entry);
-      loads[entry].energy = EnergyOf{}(law, at, before);
+      loads[entry].energy = EvaluateEnergy{}(law, at, before);
     }
   }
   // Kinematics of a contact. A sphere of a body is treated like another particle: its force acts at its
   // centre, with a couple. A face acts one radius below the particle's centre, so that both rotate together
   // without slip; an edge or a vertex acts at its position.
-  SCREE_HD MovingPair moving_pair(PairState state, const SurfaceTouch& touch, const PlacedSurface& surface,
+  SCREE_HD MovingPair moving_pair(PairState state, const SurfaceTouch& touch, const SurfacePose& surface,
                                   Index entry) const {
     const Index i = in.entries.particles[entry];
-    const TurningPartner one{xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
+    const RotatingPartner one{xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
     const bool is_instant = !(in.h > 0);
     const Vec3 surface_spin = is_instant ? surface.spin : reciprocal(in.h) * surface.turn;
     if (touch.is_sphere) {
-      const Vec3 travel = is_instant ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.travel;
-      state.velocity = is_instant ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * travel;
-      return {state, sphere_motion(state.geometry, travel, one, {surface_spin, surface.radius}, in.h)};
+      const Vec3 displacement = is_instant ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.displacement;
+      state.velocity =
+          is_instant ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * displacement;
+      return {state, sphere_motion(state.geometry, displacement, one, {surface_spin, surface.radius}, in.h)};
     }
     const SurfaceFrame& frame = in.frames[surface.frame];
     const Vec3 normal0 = surface.kind == SurfaceKind::mesh ? in.touches[entry].normal0
                          : is_instant                      ? surface.normal
                                                            : frame.before * frame.normal;
     if (!is_instant) {
-      const Vec3 point_displacement = in.h * xyz(in.velocity[i]) - surface.travel,
+      const Vec3 point_displacement = in.h * xyz(in.velocity[i]) - surface.displacement,
                  from = start_contact(touch, frame, one.arm, normal0, point_displacement);
-      state.velocity = xyz(in.velocity[i]) -
-                       reciprocal(in.h) * (surface.travel + frame.travel_under(touch.pair.contact, from));
+      state.velocity =
+          xyz(in.velocity[i]) -
+          reciprocal(in.h) * (surface.displacement + frame.material_displacement(touch.pair.contact, from));
     }
     const ContactMotion motion =
         motion_over(surface, touch, normal0, in.h * state.velocity, one, {surface_spin}, in.h);
@@ -235,12 +239,12 @@ struct SurfaceLoadItem {
     return {state, motion};
   }
   // Conveyor velocity of a surface at the contact [m/s].
-  SCREE_HD Vec3 conveyor_velocity(const SurfaceTouch& touch, const PlacedSurface& surface) const {
+  SCREE_HD Vec3 conveyor_velocity(const SurfaceTouch& touch, const SurfacePose& surface) const {
     const SurfaceFrame& frame = in.frames[surface.frame];
-    return across(frame.axes * frame.slide, touch.pair.geometry.normal());
+    return tangential_part(frame.axes * frame.surface_velocity, touch.pair.geometry.normal());
   }
-  SCREE_HD Real slide_power(const SurfaceTouch& touch, const PlacedSurface& surface, Vec3 force) const {
-    if (touch.is_sphere || !in.frames[surface.frame].runs()) return 0;
+  SCREE_HD Real belt_power(const SurfaceTouch& touch, const SurfacePose& surface, Vec3 force) const {
+    if (touch.is_sphere || !in.frames[surface.frame].is_conveyor()) return 0;
     return -dot(force, conveyor_velocity(touch, surface));
   }
   SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
@@ -253,12 +257,12 @@ struct SurfacePath {
   SurfaceTouch now, start;
   // Displacements [m]. travel: of the particle's centre relative to the surface's material halfway along the
   // contact's path; turned: of that material relative to the surface's point, by rotation.
-  Vec3 travel, turned;
+  Vec3 displacement, turned;
   Changeover change{};
 };
 
-SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
-                                  const PlacedSurface& before, Index entry, Vec4 p, Vec4 p0) {
+SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const SurfacePose& surface,
+                                  const SurfacePose& before, Index entry, Vec4 p, Vec4 p0) {
   SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}, {}};
   if (surface.kind == SurfaceKind::mesh) {
     out.start = out.now;
@@ -269,20 +273,20 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
   } else {
     out.start = surface_touch(in, before, entry, p0, 0);
   }
-  out.travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
+  out.displacement = (xyz(p) - xyz(p0)) - (surface.point - before.point);
   if (out.now.is_sphere) return out;
   const SurfaceFrame& frame = in.frames[surface.frame];
   const Vec3 normal0 = out.start.pair.geometry.normal();
-  out.turned =
-      frame.travel_under(out.now.pair.contact, start_contact(out.now, frame, p.w, normal0, out.travel));
-  out.travel -= out.turned;
+  out.turned = frame.material_displacement(out.now.pair.contact,
+                                           start_contact(out.now, frame, p.w, normal0, out.displacement));
+  out.displacement -= out.turned;
   return out;
 }
 
 // Difference between two displacements of the particle relative to the surface, for the forces at the start
 // and the end of an implicit step [m]: that of a SurfacePath, and that of the parent's energy ledger, which
 // moves a point at `arm` from the parent's centre by d + rotation x arm.
-struct CarrierExcess {
+struct ParentExcess {
   Vec3 start, end;
 
   // Work that the energy accounting of the contact must leave out [J]; forces: on the particle.
@@ -290,10 +294,10 @@ struct CarrierExcess {
     return Real(0.5) * (dot(start_force, start) + dot(end_force, end));
   }
 };
-SCREE_HD CarrierExcess carrier_excess(const SurfacePath& path, const PlacedSurface& surface,
-                                      const PlacedSurface& before) {
+SCREE_HD ParentExcess parent_excess(const SurfacePath& path, const SurfacePose& surface,
+                                    const SurfacePose& before) {
   const Vec3 of_material = path.turned + (surface.arm - before.arm);
-  const auto excess = [&](const PlacedSurface& at, const SurfaceTouch& touch) {
+  const auto excess = [&](const SurfacePose& at, const SurfaceTouch& touch) {
     return cross(surface.turn, at.arm + touch.pair.contact) - of_material;
   };
   return {excess(before, path.start), excess(surface, path.now)};
@@ -302,33 +306,33 @@ template <class Laws>
 struct SurfaceStepItem {
   SurfaceViews in;
   StepStart start;
-  const PlacedSurface* start_placed;
+  const SurfacePose* start_surface_poses;
   Laws laws;
   SurfaceStep* steps;  // per entry
 
   SCREE_HD void operator()(Index k) const {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
-    const PlacedSurface &surface = in.placed[in.surface_of(entry)],
-                        &before = start_placed[in.surface_of(entry)];
+    const SurfacePose &surface = in.placed[in.surface_of(entry)],
+                      &before = start_surface_poses[in.surface_of(entry)];
     const Vec4 p = in.position[i], u = in.velocity[i];
     const SurfacePath path = surface_path(in, surface, before, entry, p, start.position[i]);
     const SurfacePair &pair = path.now.pair, &pair0 = path.start.pair;
     SurfaceStep& out = steps[entry];
     out.touches = path.now.touches || path.start.touches;
     if (!out.touches) return;
-    ContactPath over =
-        OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
-                             xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
-                             surface_size(in, entry, p, u));
+    ContactPath over = OverImplicitStep{start}.path(
+        pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
+        xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.displacement,
+        surface_size(in, entry, p, u));
     over.step.change = path.change;
     const auto& law = laws.get(in.material[i], surface.material);
-    const StepContactOf of{start.resolve_events};
+    const EvaluateStepContact of{start.resolve_events};
     out.contact = of(law, over);
-    out.books = StepBooksOf{of}(law, over);
+    out.losses = EvaluateStepLosses{of}(law, over);
     if (surface.turns()) {
       const Real force0 = start_force(law.normal.of_pair(over.size), over.step);
-      out.books.integrator += carrier_excess(path, surface, before)
-                                  .work(force0 * over.normal0, out.contact.step.force * over.normal1);
+      out.losses.integrator += parent_excess(path, surface, before)
+                                   .work(force0 * over.normal0, out.contact.step.force * over.normal1);
     }
     out.arm = surface.arm + pair.contact;
     out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;
@@ -351,7 +355,7 @@ struct SurfaceShiftItem {
 
   SCREE_HD void operator()(Index i) const {
     for (Index entry = in.surface_offsets[i]; entry < in.surface_offsets[i + 1]; ++entry) {
-      if (in.numbers.at_rest(in.surfaces[entry]) || !in.steps[entry].touches) continue;
+      if (in.numbers.is_static(in.surfaces[entry]) || !in.steps[entry].touches) continue;
       const Index surface = in.numbers.placed(in.surfaces[entry]);
       const SurfaceStep& step = in.steps[entry];
       const StepContact& c = step.contact;

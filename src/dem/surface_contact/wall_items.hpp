@@ -30,7 +30,7 @@ struct WallLoad {
   Vec3 to_wall;  // from the item's centre to the point of contact [m]
 };
 
-struct WallLoadOf {
+struct EvaluateWallLoad {
   template <class Law>
   SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
     return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
@@ -54,7 +54,7 @@ struct WallContactItem {
   SCREE_HD WallTerms operator()(Index i) const {
     const auto self = walk.self(i);
     WallTerms sum{};
-    walk.surfaces(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
+    walk.surfaces(self, EvaluateWallLoad{}, [&](const WallLoad& load, Index wall) {
       if (wall == choice.wall) sum = terms(self.p, load);
     });
     return sum;

@@ -12,9 +12,9 @@ CornerSet::CornerSet(const Model& model, const SurfaceSet& surfaces) : surfaces_
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (std::size_t m = 0; m < model.bodies[b].meshes.size(); ++m) {
       const MeshShape& shape = model.bodies[b].meshes[m];
-      if (!meets_planes(model, b, shape)) continue;
+      if (!touches_planes(model, b, shape)) continue;
       const HullCorners* const hull = model.meshes[static_cast<std::size_t>(shape.mesh)].corners.get();
-      meshes_.push_back({SurfaceSet::placed_mesh(model, static_cast<int>(b), static_cast<int>(m)),
+      meshes_.push_back({SurfaceSet::posed_mesh(model, static_cast<int>(b), static_cast<int>(m)),
                          static_cast<Index>(next), hull});
       next += hull->corners.size();
       countable(next, "bodies: more corners of meshes");
@@ -27,9 +27,9 @@ const CornerSet::OfMesh& CornerSet::mesh_of(Index corner) const {
 
 namespace {
 
-bool is_near(const SurfacePlaces& poses, std::span<const WallPlane> planes, Vec3 p, Real margin) {
+bool is_near(const SurfacePoses& poses, std::span<const WallPlane> planes, Vec3 p, Real margin) {
   for (const WallPlane& wall : planes) {
-    const PlacedSurface* const placed =
+    const SurfacePose* const placed =
         wall.placed < 0 ? nullptr : &poses.placed[static_cast<std::size_t>(wall.placed)];
     if (placed != nullptr && placed->kind != SurfaceKind::plane) continue;
     const Vec3 point = placed != nullptr ? placed->point : wall.point;
@@ -40,12 +40,13 @@ bool is_near(const SurfacePlaces& poses, std::span<const WallPlane> planes, Vec3
 
 }  // namespace
 
-void CornerSet::add_near_planes(const SurfacePlaces& poses, std::span<const WallPlane> planes, Real margin,
+void CornerSet::add_near_planes(const SurfacePoses& poses, std::span<const WallPlane> planes, Real margin,
                                 std::vector<Index>& to) const {
   for (const OfMesh& mesh : meshes_) {
-    const PlacedSurface& placed = poses.placed[static_cast<std::size_t>(mesh.surface)];
+    const SurfacePose& placed = poses.placed[static_cast<std::size_t>(mesh.surface)];
     const Mat3& axes = poses.frames[static_cast<std::size_t>(placed.frame)].axes;
-    if (!is_near(poses, planes, placed.point + axes * mesh.hull->middle, mesh.hull->reach + margin)) continue;
+    if (!is_near(poses, planes, placed.point + axes * mesh.hull->middle, mesh.hull->bounding_radius + margin))
+      continue;
     for (std::size_t k = 0; k < mesh.hull->corners.size(); ++k)
       if (is_near(poses, planes, placed.point + axes * mesh.hull->corners[k], margin))
         to.push_back(mesh.first + static_cast<Index>(k));
@@ -73,12 +74,12 @@ Contact CornerSet::with_own_materials(Contact contact) const {
 
 // Along periodic axes positions are multiples of the domain's quantum, so that they do not depend on the
 // image of the mesh in the periodic box.
-PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 position, bool at_start,
-                           Vec3 snap_constant) {
+CornerPose corner_pose(const SurfacePose& mesh, const SurfaceFrame& frame, Vec3 position, bool at_start,
+                       Vec3 snap_constant) {
   const Vec3 before = frame.before * position, turned = at_start ? before : frame.axes * position;
   const Vec3 from_point = snap(turned, snap_constant);
   return {mesh.point + from_point, mesh.arm + turned, mesh.velocity_at(turned),
-          mesh.travel + (from_point - snap(before, snap_constant))};
+          mesh.displacement + (from_point - snap(before, snap_constant))};
 }
 
 }  // namespace scree

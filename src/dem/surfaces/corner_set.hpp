@@ -32,7 +32,7 @@ class CornerSet {
   }
   // Adds the vertices that are less than the margin [m] above one of the planes, or below it, by number. A
   // mesh that is far from all planes costs one test.
-  void add_near_planes(const SurfacePlaces& poses, std::span<const WallPlane> planes, Real margin,
+  void add_near_planes(const SurfacePoses& poses, std::span<const WallPlane> planes, Real margin,
                        std::vector<Index>& to) const;
   // Contact parameters with every material twice. Vertices have neither rolling nor twisting resistance: they
   // use the second set of materials, without these laws. Unchanged where the deck has none.
@@ -43,12 +43,12 @@ class CornerSet {
   std::vector<OfMesh> meshes_;
 };
 
-// A vertex at one instant, with the members that `PlacedSurface` has for spheres.
-struct PlacedCorner {
-  Vec3 point, arm, velocity, travel;
+// A vertex at one instant, with the members that `SurfacePose` has for spheres.
+struct CornerPose {
+  Vec3 point, arm, velocity, displacement;
 };
 // snap_constant: of the Subdomain. at_start: at the start of the step.
-PlacedCorner placed_corner(const PlacedSurface& mesh, const SurfaceFrame& frame, Vec3 position, bool at_start,
-                           Vec3 snap_constant);
+CornerPose corner_pose(const SurfacePose& mesh, const SurfaceFrame& frame, Vec3 position, bool at_start,
+                       Vec3 snap_constant);
 
 }  // namespace scree

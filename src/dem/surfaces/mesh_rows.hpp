@@ -13,8 +13,8 @@
 namespace scree {
 
 // A particle and a placed mesh shifted by `shift`, when a list is built.
-struct MeshSight {
-  const PlacedSurface& surface;
+struct MeshQuery {
+  const SurfacePose& surface;
   const SurfaceFrame& frame;
   const MeshView& mesh;
   Vec4 p;  // x, y, z, radius
@@ -28,20 +28,20 @@ struct MeshSight {
   }
   // Number of entries that the row needs for the mesh. remembered: contacts of the particle with it in the
   // history.
-  SCREE_HD Index entries(RowKind kind, const Index* triangles, Index count, Index remembered) const {
+  SCREE_HD Index entries(RowKind kind, const Index* triangles, Index count, Index stored) const {
     bool one_sided = mesh.sheet && kind == RowKind::smooth;
     if (one_sided)
       for_each_centre(
           [&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
     const Index slots = slots_needed(mesh, kind, one_sided, triangles, count);
-    return slots > remembered ? slots : remembered < kMeshSlots ? remembered : kMeshSlots;
+    return slots > stored ? slots : stored < kMeshSlots ? stored : kMeshSlots;
   }
 
  private:
   // Centres in the frame of the mesh.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_centre(const Visit& visit) const {
-    for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 position) {
+    for_each_near_image(surface, frame, xyz(p), past, [&](Vec3 position) {
       visit(transposed_times(frame.axes, (position - shift) - surface.point));
     });
   }
@@ -69,7 +69,7 @@ struct MeshTouch {
   ContactGeometry geometry;
   Vec3 contact;    // application point of forces, from the surface's point [m]
   Vec3 normal0;    // normal at the start of the step
-  Index feature;   // on open surfaces with the side (mesh/sheet_sides.hpp)
+  Index feature;   // on open surfaces with the side (mesh/open_surface_sides.hpp)
   Index triangle;  // over a step: of a contact that ended, the triangle at its start
   Index from;      // entry whose history the contact continues; -1: none
 

@@ -11,8 +11,8 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/data/body_exchange.hpp"
-#include "physics/contact_books.hpp"
 #include "physics/contact_law.hpp"
+#include "physics/contact_losses.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {
@@ -29,17 +29,17 @@ struct SurfaceLoad {
   bool touches;                    // else all members below are undefined
   ContactLoadOf<Real, Vec3> load;  // on the particle
   ContactEnergy energy;
-  Vec3 arm;                // from the body's centre to the contact point [m]
-  Vec3 particle_arm;       // contact_arm() on the particle's side [m]
-  RubbingLosses losses{};  // for laws with `kMoves`
-  Real slide_power = 0;    // power of the force on a conveyor surface [W]
+  Vec3 arm;                   // from the body's centre to the contact point [m]
+  Vec3 particle_arm;          // contact_arm() on the particle's side [m]
+  TangentialLosses losses{};  // for laws with `kNeedsMotion`
+  Real belt_power = 0;        // power of the force on a conveyor surface [W]
 };
 
 // One contact of a particle with a surface on a body over an implicit step.
 struct SurfaceStep {
   bool touches;
   StepContact contact;
-  ContactBooks books;
+  ContactLosses losses;
   Vec3 arm;               // at the end of the step [m]
   Vec3 contact_arm{};     // from the surface's point to the contact point, at the end of the step [m]
   bool is_sphere = true;  // whether the surface is a sphere
@@ -61,17 +61,17 @@ SCREE_HD Real component(Vec3 force, Vec3 torque, int k) {
 }
 
 SCREE_HD Real sum_term(const SurfaceLoad& c, int k) {
-  if (k == kBlockRows) return c.slide_power;
+  if (k == kBlockRows) return c.belt_power;
   const Vec3 force = -c.load.force;
   return component(force, cross(c.arm, force) + c.load.torque_j, k);
 }
 
 // Row and column of the k-th of kStepTerms in the blocks, which begin at 2 kWrenchTerms.
-struct BlockPlace {
+struct BlockIndex {
   bool is_stiffness;
   int row, column;
 };
-SCREE_HD BlockPlace block_place(int k) {
+SCREE_HD BlockIndex block_index(int k) {
   const bool is_stiffness = k < 2 * kWrenchTerms + kBlockTerms;
   int column = k - 2 * kWrenchTerms - (is_stiffness ? 0 : kBlockTerms), row = 0;
   for (; column >= kBlockRows - row; ++row) column -= kBlockRows - row;
@@ -86,7 +86,7 @@ SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
                // only
   if (k < kWrenchTerms) return -c.contact.end_force * component(n, moment, k);
   if (k < 2 * kWrenchTerms) return -c.contact.step.force * component(n, moment, k - kWrenchTerms);
-  const BlockPlace at = block_place(k);
+  const BlockIndex at = block_index(k);
   const Real slope = at.is_stiffness ? c.contact.step.stiffness : c.contact.step.damping;
   return slope * component(n, moment, at.row) * component(n, moment, at.column);
 }
@@ -98,7 +98,7 @@ struct SurfaceSums {
   Index contacts = 0;
   ExactSum sum[kTerms];
 
-  Index place() const { return surface; }
+  Index key() const { return surface; }
   template <class Contact>
   SCREE_HD void add_contact(const Contact& contact) {
     ++contacts;
@@ -118,12 +118,11 @@ using StepSums = SurfaceSums<kStepTerms>;
 
 // Sums ordered by place(), with equal ones merged.
 template <class Sums>
-std::vector<Sums> merged_by_place(std::vector<Sums> sums) {
-  std::stable_sort(sums.begin(), sums.end(),
-                   [](const Sums& a, const Sums& b) { return a.place() < b.place(); });
+std::vector<Sums> merged_by_key(std::vector<Sums> sums) {
+  std::stable_sort(sums.begin(), sums.end(), [](const Sums& a, const Sums& b) { return a.key() < b.key(); });
   std::vector<Sums> out;
   for (const Sums& part : sums) {
-    if (out.empty() || out.back().place() != part.place())
+    if (out.empty() || out.back().key() != part.key())
       out.push_back(part);
     else
       out.back().add(part);

@@ -4,7 +4,7 @@
 
 namespace scree {
 
-bool has_sheets(const Model& model) {
+bool has_open_surfaces(const Model& model) {
   return std::ranges::any_of(model.meshes, [](const ModelMesh& mesh) { return mesh.surface->sheet; });
 }
 
@@ -19,8 +19,8 @@ std::vector<WallPlane> wall_planes(const Model& model) {
 
 SurfaceSet::SurfaceSet(const Model& model)
     : ground_(static_cast<Index>(model.walls.size())),
-      carriers_(model.bodies.size()),
-      at_rest_(model.bodies.empty()) {
+      parents_(model.bodies.size()),
+      all_static_(model.bodies.empty()) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes)
       surfaces_.push_back(
@@ -32,16 +32,15 @@ SurfaceSet::SurfaceSet(const Model& model)
   on_bodies_ = placed();
   for (Index w = 0; w < ground_; ++w) {
     const Wall& wall = model.walls[static_cast<std::size_t>(w)];
-    if (!wall.is_placed()) continue;
-    if (wall.moves() || wall.runs()) at_rest_ = false;
-    surfaces_.push_back({wall.mesh < 0 ? SurfaceKind::plane : SurfaceKind::mesh,
-                         static_cast<int>(carriers_++), wall.material, wall.point, wall.normal, 0, wall.mesh,
-                         wall.moves()});
+    if (!wall.has_pose()) continue;
+    if (wall.moves() || wall.is_conveyor()) all_static_ = false;
+    surfaces_.push_back({wall.mesh < 0 ? SurfaceKind::plane : SurfaceKind::mesh, static_cast<int>(parents_++),
+                         wall.material, wall.point, wall.normal, 0, wall.mesh, wall.moves()});
     walls_.push_back(w);
   }
 }
 
-Index SurfaceSet::placed_mesh(const Model& model, int body, int mesh) {
+Index SurfaceSet::posed_mesh(const Model& model, int body, int mesh) {
   std::size_t placed = 0;
   for (const Body& of : model.bodies) placed += of.shapes.size();
   for (int b = 0; b < body; ++b) placed += model.bodies[static_cast<std::size_t>(b)].meshes.size();

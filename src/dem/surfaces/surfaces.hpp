@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/hd.hpp"
-#include "base/twist.hpp"
+#include "base/spatial_velocity.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/data/body_exchange.hpp"
@@ -21,7 +21,7 @@ enum class SurfaceKind : int { plane, sphere, mesh };  // discs are spheres with
 // Constant description of a surface other than a static plane.
 struct Surface {
   SurfaceKind kind;
-  int carrier;  // parent: index into Model::bodies; after these the walls of SurfaceSet, one after the other
+  int parent;  // parent: index into Model::bodies; after these the walls of SurfaceSet, one after the other
   int material;
   Vec3 point;    // of a plane, centre of a sphere, origin of a mesh; in the parent's frame [m]
   Vec3 normal;   // of a plane: unit vector into its free side
@@ -34,7 +34,7 @@ struct Surface {
 // while particles hardly move, and rows of triangles are cheap compared with a new list.
 inline constexpr Real kMeshSkins = 2;
 // Weight of their displacement in that of the list: a particle may move by half a skin, a mesh by the rest.
-inline constexpr Real kMeshWear = 1 / (2 * kMeshSkins - 1);
+inline constexpr Real kMeshDisplacementWeight = 1 / (2 * kMeshSkins - 1);
 
 // A wall for the kernels; complete for a static plane. placed: number of another wall among the placed
 // surfaces, else -1.
@@ -45,7 +45,7 @@ struct WallPlane {
 };
 std::vector<WallPlane> wall_planes(const Model& model);
 // Whether the model has open (two-sided) meshes.
-bool has_sheets(const Model& model);
+bool has_open_surfaces(const Model& model);
 
 // Numbering of a model's surfaces: the walls in the deck's order, then the shapes of the bodies, then their
 // meshes. All but static planes are placed surfaces, whose poses may change; these have a second number,
@@ -60,7 +60,7 @@ class SurfaceSet {
     return placed < on_bodies_ ? ground_ + placed : walls_[static_cast<std::size_t>(placed - on_bodies_)];
   }
   // Number among the placed surfaces of a body's mesh; meshes come after the shapes of all bodies.
-  static Index placed_mesh(const Model& model, int body, int mesh);
+  static Index posed_mesh(const Model& model, int body, int mesh);
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
   // Search distance beyond touch of a placed surface; skin: that of static planes [m].
   Real skin_of(Index placed, Real skin) const {
@@ -68,14 +68,14 @@ class SurfaceSet {
     return surface.kind == SurfaceKind::mesh && surface.moves ? kMeshSkins * skin : skin;
   }
   // Number of bodies and placed walls.
-  std::size_t carriers() const { return carriers_; }
+  std::size_t parents() const { return parents_; }
   // Whether no placed surface ever moves or is a conveyor.
-  bool at_rest() const { return at_rest_; }
+  bool is_static() const { return all_static_; }
 
  private:
   Index ground_, on_bodies_ = 0;
-  std::size_t carriers_;
-  bool at_rest_;
+  std::size_t parents_;
+  bool all_static_;
   std::vector<Surface> surfaces_;
   std::vector<Index> walls_;
 };
@@ -85,14 +85,14 @@ struct SurfaceNumbers {
   const WallPlane* planes;
   Index ground;  // number of walls
 
-  SCREE_HD bool at_rest(Index number) const { return number < ground && planes[number].placed < 0; }
+  SCREE_HD bool is_static(Index number) const { return number < ground && planes[number].placed < 0; }
   SCREE_HD Index placed(Index number) const {
     return number < ground ? planes[number].placed : number - ground;
   }
 };
 
 // Pose and motion of a placed surface at one instant, for the kernels.
-struct PlacedSurface {
+struct SurfacePose {
   SurfaceKind kind;
   int material;
   Real radius;          // of a sphere [m]
@@ -101,7 +101,7 @@ struct PlacedSurface {
   Vec3 velocity, spin;  // of the body [m/s], [rad/s]
   // Since the start of the step, where needed: displacement of the point [m], and rotation of the body about
   // its centre [rad]. The displacement is exact, so that it cancels for a surface that returns.
-  Vec3 travel, turn;
+  Vec3 displacement, turn;
   Index frame = 0;  // of a plane or a mesh: index of its SurfaceFrame
 
   // Velocity of a point of the body; from_point: relative to the surface's point.
@@ -122,22 +122,24 @@ struct SurfaceFrame {
   // From the surface's point to the mesh's middle, in quanta of the domain [m]. Images are chosen by the
   // middle, because the point may be anywhere.
   Vec3 to_middle{};
-  Vec3 slide{};  // conveyor velocity, in the parent's frame [m/s]
+  Vec3 surface_velocity{};  // conveyor velocity, in the parent's frame [m/s]
 
   // Displacement, relative to the surface's point, of the material halfway along the path of a contact since
   // the start of the step [m]; arguments: the contact's positions now and then, each from the point at that
   // time. Exactly zero without rotation. See dem/README.md.
-  SCREE_HD Vec3 travel_under(Vec3 now, Vec3 at_start) const {
+  SCREE_HD Vec3 material_displacement(Vec3 now, Vec3 at_start) const {
     const Vec3 local = Real(0.5) * (transposed_times(axes, now) + transposed_times(before, at_start));
     return axes * local - before * local;
   }
-  SCREE_HD bool runs() const { return !(slide == Vec3{}); }
+  SCREE_HD bool is_conveyor() const { return !(surface_velocity == Vec3{}); }
   // Conveyor velocity at mid-step [m/s].
-  SCREE_HD Vec3 middle_slide() const { return Real(0.5) * (axes * slide + before * slide); }
+  SCREE_HD Vec3 middle_surface_velocity() const {
+    return Real(0.5) * (axes * surface_velocity + before * surface_velocity);
+  }
 };
 
 // Image of a particle's position nearest to the mesh's middle, along the periods that it spans [m].
-SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p) {
+SCREE_HD Vec3 nearest_image(const SurfacePose& surface, const SurfaceFrame& frame, Vec3 p) {
   const Vec3 period = frame.spanned;
   if (period == Vec3{}) return p;
   ImageCount unused;
@@ -147,16 +149,16 @@ SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& fra
 // Calls visit(position) for all images that may become the nearest while the particle moves by less than the
 // margin [m].
 SCREE_HD_CALLER template <class Visit>
-SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p,
-                                    Real margin, const Visit& visit) {
-  const Vec3 period = frame.spanned, position = place_beside(surface, frame, p);
+SCREE_HD void for_each_near_image(const SurfacePose& surface, const SurfaceFrame& frame, Vec3 p, Real margin,
+                                  const Visit& visit) {
+  const Vec3 period = frame.spanned, position = nearest_image(surface, frame, p);
   visit(position);
   if (period == Vec3{}) return;
   const Vec3 from_middle = position - (surface.point + frame.to_middle);
   const auto beyond = [&](Real x, Real length) { return std::abs(x) > length / 2 + margin; };
   for_each_shift(period, [&](Vec3 shift, std::int8_t image) {
     const Vec3 x = from_middle + shift;
-    if (image == kNoShift || (shift.x != 0 && beyond(x.x, period.x)) ||
+    if (image == kZeroShift || (shift.x != 0 && beyond(x.x, period.x)) ||
         (shift.y != 0 && beyond(x.y, period.y)) || (shift.z != 0 && beyond(x.z, period.z)))
       return;
     visit(position + shift);
@@ -164,11 +166,11 @@ SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceF
 }
 
 // All placed surfaces at one instant; on the host.
-struct SurfacePlaces {
-  std::span<const PlacedSurface> placed;
+struct SurfacePoses {
+  std::span<const SurfacePose> placed;
   std::span<const SurfaceFrame> frames;
   std::span<const MeshView> meshes;
-  std::span<const PlacedSurface> start{};  // at the start of an implicit step
+  std::span<const SurfacePose> start{};  // at the start of an implicit step
 };
 
 // A sphere at p (x, y, z, radius) and a plane or sphere shifted by `shift`.
@@ -179,7 +181,7 @@ struct SurfacePair {
   Vec3 contact;
 };
 
-SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4 p) {
+SCREE_HD SurfacePair surface_pair(const SurfacePose& surface, Vec3 shift, Vec4 p) {
   if (surface.kind == SurfaceKind::plane) {
     const Vec3 position = xyz(p) - shift;
     const ContactGeometry g = plane_pair(position, p.w, surface.point, surface.normal);

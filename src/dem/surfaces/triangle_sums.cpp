@@ -33,7 +33,7 @@ std::vector<TriangleSums> triangle_sums(const MeshLoads& contacts, const Surface
       of.surface = numbers.placed(number), of.triangle = touch.triangle;
       add_contact(load, touch, of);
     }
-  return merged_by_place(std::move(sums));
+  return merged_by_key(std::move(sums));
 }
 
 }  // namespace scree

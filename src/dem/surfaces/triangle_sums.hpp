@@ -21,7 +21,7 @@ struct TriangleSums {
   ExactSum normal;                  // force towards the surface, along the contacts' normals [N]
   ExactSum tangential[3];           // tangential force on the surface, global axes [N]
 
-  std::pair<Index, Index> place() const { return {surface, triangle}; }
+  std::pair<Index, Index> key() const { return {surface, triangle}; }
   void add(const TriangleSums& part);
 };
 

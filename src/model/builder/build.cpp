@@ -61,12 +61,12 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
   model.gravity = root.vector("gravity");
   model.consistent_velocities = root.choice<StartVelocities>("velocities") == StartVelocities::consistent;
   build_materials(root, model, names);
-  share.together([&] { build_meshes(root, model, names, log); });
+  share.collectively([&] { build_meshes(root, model, names, log); });
   build_space(root, names, model);
   build_time(root, model);
   check_time_tables(root, model.time.end, log);
   check_bodies_inside(root, model.space);
-  ModelSize size = bodies_and_links(root);
+  ModelSize size = bodies_and_joints(root);
   naming_memory(size, share.size(), [&] {
     check_memory(size, bytes_to_build_bodies(size, share.rank()), "building the bodies", share);
     build_bodies(root, model, names);
@@ -92,7 +92,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
     for (const std::string& finding : angles_in_degrees(root)) log.warning(finding);
   });
-  log.tell_left_out();
+  log.report_suppressed();
   return model;
 }
 
@@ -107,7 +107,7 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
     table.fail("max", "must be larger than space.min in every component");
   }
   build_boundaries(table, space);
-  space.leaving = table.choice<Leaving>("leaving");
+  space.leaving = table.choice<OutsidePolicy>("leaving");
   for (const DeckTable& entry : deck.tables("walls")) {
     const auto side = std::find(kSideNames.begin(), kSideNames.end(), entry.text("name"));
     if (side != kSideNames.end() &&

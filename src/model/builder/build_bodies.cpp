@@ -17,7 +17,7 @@
 #include "model/checks/plausibility.hpp"
 #include "model/data/body_exchange.hpp"
 #include "model/derived/frames.hpp"
-#include "model/derived/shape_places.hpp"
+#include "model/derived/shape_positions.hpp"
 #include "model/derived/touching.hpp"
 #include "physics/solid_body.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -119,8 +119,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
                "its mass or its inertia is beyond what a number holds");
   const Mat3 axes = rotation_matrix(read_orientation(table));
   if (table.choice<SolidKind>("kind") == SolidKind::mesh && mesh_of(table, names).line)
-    check_turned_about_z(table, axes);
-  return {own.mass, table.vector("offset") + axes * own.center, turned_tensor(axes, own.inertia)};
+    check_rotated_about_z(table, axes);
+  return {own.mass, table.vector("offset") + axes * own.center, rotated_tensor(axes, own.inertia)};
 }
 
 // Throws InputError unless the tensor is positive definite and no principal moment exceeds the sum of the
@@ -139,7 +139,7 @@ Sym3 read_inertia(const DeckTable& table) {
   const std::vector<Real>& j = table.reals("inertia_tensor");
   const Sym3 given{j[0], j[3], j[4], j[1], j[5], j[2]};
   const Quaternion axes = read_orientation(table, "inertia_");
-  return axes.w == 1 ? given : turned_tensor(rotation_matrix(axes), given);
+  return axes.w == 1 ? given : rotated_tensor(rotation_matrix(axes), given);
 }
 
 // Reads mass, centre of mass and inertia.
@@ -206,7 +206,7 @@ void add_shapes(const DeckTable& table, const ModelNames& names, int dimension, 
     const bool touches = collides(table, shape);
     const int material = surface_material(names, shape, touches);
     std::vector<Shape>& shapes = touches ? body.shapes : body.drawn_shapes;
-    ShapePlaces(shape, dimension).for_each([&](Vec3 place) {
+    ShapePositions(shape, dimension).for_each([&](Vec3 place) {
       if (!circles.insert({place.x, place.y, place.z, radius}).second)
         shape.fail("radius",
                    "the body has a shape of this offset and radius already; each must be another one");

@@ -96,10 +96,10 @@ void check_start_turn(const DeckTable& table, const Model& model, const Bushing&
   for (int side = 0; side < 2; ++side)
     frame[side] = quaternion_of(transposed(global_frame(model, bushing.body[side], bushing.marker[side])));
   const Real turn = norm(rotation_vector(conjugate(frame[0]) * frame[1]));
-  if (bushing.resists_turning() && turn > kMostBushingTurn)
+  if (bushing.resists_rotation() && turn > kMaxBushingRotation)
     table.fail("markers", fmt::format("their frames are rotated by {:.6g} rad relative to each other at t = "
                                       "0; a bushing allows up to {:g} rad",
-                                      turn, kMostBushingTurn));
+                                      turn, kMaxBushingRotation));
 }
 
 Bushing build_bushing(const DeckTable& table, const Model& model, const Connection& connection) {
@@ -121,7 +121,7 @@ Bushing build_bushing(const DeckTable& table, const Model& model, const Connecti
 
 }  // namespace
 
-bool Bushing::resists_turning() const {
+bool Bushing::resists_rotation() const {
   for (std::size_t a = 3; a < 6; ++a) {
     if (preload[a] != 0) return true;
     for (std::size_t b = 0; b < 6; ++b)

@@ -23,7 +23,7 @@ namespace {
 bool is_positive(const DeckTable& table, const char* key) { return table.has(key) && table.real(key) > 0; }
 
 // Sets the damping ratio for the restitution, which depends on the law's K, n and tension.
-void take_restitution(const DeckTable& table, KelvinVoigt& law) {
+void take_restitution(const DeckTable& table, NormalLawParameters& law) {
   if (!table.has("restitution")) return;
   if (table.real("damping") > 0) table.fail("restitution", "stands beside a damping; give one of the two");
   if (!law.acts()) table.fail("restitution", "must be left out where the stiffness is 0");
@@ -54,11 +54,12 @@ Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int 
 }
 
 // F = K d^n + C d_dot, with K given or derived from a largest overlap.
-KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int (&material)[2],
-                          bool has_moduli) {
+NormalLawParameters stiffness_law(const DeckTable& table, const Model& model, const int (&material)[2],
+                                  bool has_moduli) {
   const bool from_overlap = table.has("largest_overlap");
-  KelvinVoigt law{from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
-                  table.real("damping"), table.real("exponent"), !table.boolean("limit_damping")};
+  NormalLawParameters law{
+      from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
+      table.real("damping"), table.real("exponent"), !table.boolean("limit_damping")};
   const char* key = from_overlap ? "largest_overlap" : "stiffness";
   if (law.normal_stiffness != 0) check_normal(table, key, law.normal_stiffness);
   if (law.normal_stiffness == 0 && law.normal_damping > 0)
@@ -86,8 +87,8 @@ Real plane_strain_modulus(const DeckTable& material) {
 }
 
 // Hertz's law; moduli: of the two materials.
-KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&moduli)[2],
-                      const int (&material)[2]) {
+NormalLawParameters hertz_law(const DeckTable& table, const Model& model, const Real (&moduli)[2],
+                              const int (&material)[2]) {
   for (int side = 0; side < 2; ++side)
     if (moduli[side] == 0)
       table.fail("stiffness",
@@ -98,7 +99,7 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
     table.fail("damping", "must be left out for Hertz's law, whose damping follows from restitution");
   if (table.real("exponent") != 1)
     table.fail("exponent", "must be left out for Hertz's law, which has its own");
-  KelvinVoigt law;
+  NormalLawParameters law;
   law.tension = !table.boolean("limit_damping");
   law.effective_modulus = 1 / (1 / moduli[0] + 1 / moduli[1]);
   take_restitution(table, law);
@@ -107,7 +108,7 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
 
 // Discs in line contact: F = pi/4 E* L d, L: thickness (V. L. Popov, Contact Mechanics and Friction, 2010,
 // section 5.2, without the logarithm of the exact law), in place of Hertz's law of spheres.
-KelvinVoigt line_contact(const DeckTable& table, const Model& model, KelvinVoigt law) {
+NormalLawParameters line_contact(const DeckTable& table, const Model& model, NormalLawParameters law) {
   const DiscThickness& discs = model.disc_thickness;
   if (discs.smallest != discs.largest || discs.largest == 0)
     table.fail("stiffness",
@@ -118,8 +119,8 @@ KelvinVoigt line_contact(const DeckTable& table, const Model& model, KelvinVoigt
   return law;
 }
 
-KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model& model,
-                      const int (&material)[2]) {
+NormalLawParameters build_law(const DeckTable& deck, const DeckTable& table, const Model& model,
+                              const int (&material)[2]) {
   const std::vector<DeckTable>& materials = deck.tables("materials");
   Real moduli[2] = {0, 0};
   for (std::size_t side = 0; side < 2 && !materials.empty(); ++side)
@@ -128,7 +129,7 @@ KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model
     table.fail("impact_speed", "needs largest_overlap");
   if (table.has("stiffness") || table.has("largest_overlap"))
     return stiffness_law(table, model, material, moduli[0] > 0 && moduli[1] > 0);
-  const KelvinVoigt hertz = hertz_law(table, model, moduli, material);
+  const NormalLawParameters hertz = hertz_law(table, model, moduli, material);
   return model.space.dimension == 2 ? line_contact(table, model, hertz) : hertz;
 }
 
@@ -138,7 +139,7 @@ Real shear_modulus(const DeckTable& a, const DeckTable& b) {
                                  b.real("poisson_ratio"));
 }
 
-Friction build_friction(const DeckTable& deck, const DeckTable& table, const KelvinVoigt& law,
+Friction build_friction(const DeckTable& deck, const DeckTable& table, const NormalLawParameters& law,
                         const int (&material)[2]) {
   if (!table.has("friction")) {
     if (table.has("tangential_stiffness")) table.fail("tangential_stiffness", "needs friction");
@@ -168,7 +169,7 @@ constexpr std::array kRollingKeys{"rolling_friction", "rolling_damping", "twisti
 
 // Rolling resistance of the pair. Default stiffness: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the
 // plane (ElasticPlasticRolling).
-RollingResistance build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
+RollingParameters build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
   const bool springs = is_positive(table, "rolling_friction"),
              acts = springs || is_positive(table, "rolling_damping");
   for (const char* key : kRollingKeys)
@@ -179,7 +180,7 @@ RollingResistance build_rolling(const DeckTable& table, const Friction& friction
     table.fail("rolling_damping_ratio", "needs rolling_friction");
   if (dimension == 2 && is_positive(table, "twisting_friction"))
     table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
-  RollingResistance rolling;
+  RollingParameters rolling;
   if (springs) {
     rolling.friction = table.real("rolling_friction");
     if (table.has("rolling_stiffness"))
@@ -212,22 +213,24 @@ void check_rotation(const DeckTable& deck, const Model& model) {
   }
 }
 
-bool has_neck(const KelvinVoigt& law) { return law.neck && law.adhesion_work > 0; }
-bool pulls(const KelvinVoigt& law) { return law.attracts() && (!has_neck(law) || law.attraction > 0); }
+bool is_jkr(const NormalLawParameters& law) { return law.jkr && law.adhesion_work > 0; }
+bool pulls(const NormalLawParameters& law) {
+  return law.is_cohesive() && (!is_jkr(law) || law.attraction > 0);
+}
 
 // The pairs that have a law so far, and features that some of them have.
 struct GivenPairs {
   std::vector<bool> slots;  // indexed as Contact::laws
-  bool hertz = false, stiff = false, necks = false, pull = false;
+  bool hertz = false, stiff = false, jkr = false, adhesion = false;
 
-  void add(const KelvinVoigt& law) {
+  void add(const NormalLawParameters& law) {
     hertz = hertz || law.effective_modulus > 0, stiff = stiff || (law.acts() && law.effective_modulus == 0);
-    necks = necks || has_neck(law), pull = pull || pulls(law);
+    jkr = jkr || is_jkr(law), adhesion = adhesion || pulls(law);
   }
 };
 
 // Throws InputError where pairs have different kinds of laws: a run has one.
-void check_mixing(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
+void check_mixing(const DeckTable& table, const GivenPairs& before, const NormalLawParameters& law) {
   const bool hertz = law.effective_modulus > 0;
   if (!law.acts() || !(hertz ? before.stiff : before.hertz)) return;
   table.fail("stiffness",
@@ -237,7 +240,7 @@ void check_mixing(const DeckTable& table, const GivenPairs& before, const Kelvin
 }
 
 // Adds adhesion and attraction to a pair's law.
-void take_attraction(const DeckTable& table, KelvinVoigt& law) {
+void take_attraction(const DeckTable& table, NormalLawParameters& law) {
   if (table.has("surface_energy") && table.has("work_of_adhesion"))
     table.fail("surface_energy", "stands beside work_of_adhesion; give one of the two");
   const char* key = table.has("surface_energy") ? "surface_energy" : "work_of_adhesion";
@@ -247,7 +250,7 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
                  "needs Hertz's law: young_modulus and poisson_ratio of both materials, spheres, and no "
                  "stiffness; other laws may have an attraction");
     law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
-    law.neck = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
+    law.jkr = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
   } else if (table.has("adhesion") && !table.has(key)) {
     table.fail("adhesion", "needs work_of_adhesion or surface_energy");
   }
@@ -262,14 +265,15 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
     law.range = law.attraction > 0 ? table.real("attraction_range") : 0;
   }
   // The damping force of adhesive laws is not limited.
-  if (law.attracts() && table.has("restitution"))
+  if (law.is_cohesive() && table.has("restitution"))
     law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
 }
 
 // Throws InputError where pairs have different kinds of adhesion: a run has JKR contacts, or added adhesive
 // forces.
-void check_attraction_beside(const DeckTable& table, const GivenPairs& before, const KelvinVoigt& law) {
-  if (!law.attracts() || !(has_neck(law) || before.necks) || !(pulls(law) || before.pull)) return;
+void check_attraction_beside(const DeckTable& table, const GivenPairs& before,
+                             const NormalLawParameters& law) {
+  if (!law.is_cohesive() || !(is_jkr(law) || before.jkr) || !(pulls(law) || before.adhesion)) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
 }
@@ -285,14 +289,14 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   } else if (contact.materials() > 1) {
     table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
   }
-  KelvinVoigt law = build_law(deck, table, model, material);
+  NormalLawParameters law = build_law(deck, table, model, material);
   check_mixing(table, given, law);
   take_attraction(table, law);
   check_attraction_beside(table, given, law);
   const Friction friction = build_friction(deck, table, law, material);
-  const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
+  const RollingParameters rolling = build_rolling(table, friction, model.space.dimension);
   // JKR laws exist only with friction: the contact rotates with its partners.
-  if (table.has("friction") || (law.neck && law.attracts())) contact.friction.resize(contact.laws.size());
+  if (table.has("friction") || (law.jkr && law.is_cohesive())) contact.friction.resize(contact.laws.size());
   if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
   take_wear(table, friction.friction, material, contact);
   for (int side = 0; side < 2; ++side) {
@@ -319,7 +323,7 @@ void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names
   const bool mixes = table.choice<Mixing>("mixing") != Mixing::none;
   for (int a = 0; a < count; ++a) {
     for (int b = a; b < count; ++b) {
-      if (is_given(a, b) || !can_meet(model, uses, a, b)) continue;
+      if (is_given(a, b) || !can_touch(model, uses, a, b)) continue;
       if (!must_have_law(model, uses, a, b) && !(mixes && is_given(a, a) && is_given(b, b))) continue;
       const std::string &name_a = model.contact.material_names[static_cast<std::size_t>(a)],
                         &name_b = model.contact.material_names[static_cast<std::size_t>(b)];
@@ -341,7 +345,7 @@ void check_periods(const DeckTable& deck, const Model& model, Real largest_radiu
   const Space& space = model.space;
   const Vec3 extent = space.max - space.min;
   const Real lengths[3] = {extent.x, extent.y, extent.z};
-  const Real reach = 2 * (2 * largest_radius + model.contact.reach + model.contact.skin);
+  const Real reach = 2 * (2 * largest_radius + model.contact.interaction_range + model.contact.skin);
   for (int axis = 0; axis < 3; ++axis) {
     if (space.boundary[2 * axis] != Boundary::periodic || lengths[axis] >= reach) continue;
     deck.table("space").fail(
@@ -382,8 +386,8 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   // Any positive length is valid without particles and shapes.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;
-  for (const KelvinVoigt& law : contact.laws)
-    contact.reach = std::max(contact.reach, searched_reach(law, largest));
+  for (const NormalLawParameters& law : contact.laws)
+    contact.interaction_range = std::max(contact.interaction_range, contact_search_range(law, largest));
   check_periods(deck, model, largest);
   check_rotation(deck, model);
 }

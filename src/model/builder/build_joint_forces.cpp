@@ -151,18 +151,19 @@ JointFriction build_friction(const DeckTable& table) {
 
 // Checks the radius: an angle needs one, a displacement has none.
 void check_radius(const DeckTable& table, const Joint& joint) {
-  const bool turns = is_angle(read_coordinate(table, joint)), rubs = table.real("friction_coefficient") > 0;
-  if (joint.telescopes && rubs)
+  const bool turns = is_angle(read_coordinate(table, joint)),
+             has_friction = table.real("friction_coefficient") > 0;
+  if (joint.telescopes && has_friction)
     table.fail(
         "friction_coefficient",
         fmt::format("not used; cylinder \"{}\" carries no force across its line: give effort", joint.name));
-  if (turns && rubs && !table.has("radius"))
+  if (turns && has_friction && !table.has("radius"))
     table.fail(
         "radius",
         fmt::format("missing; the coordinate of joint \"{}\" is an angle, and friction_coefficient acts "
                     "at the radius of its pin",
                     joint.name));
-  if (table.has("radius") && !(turns && rubs))
+  if (table.has("radius") && !(turns && has_friction))
     table.fail("radius", turns ? "not used without friction_coefficient"
                                : fmt::format("not used; joint \"{}\" slides", joint.name));
 }

@@ -62,7 +62,7 @@ void place_frames(const DeckTable& table, const Joint& joint, Mat3 (&frame)[2]) 
       if (dot(one, two) < 0 && norm(cross(one, two)) < kSquare)
         table.fail("second_axis", "must not point against axis");
       frame[0] = frame_about(one);
-      frame[1] = turned_frame(frame[0], one, two);
+      frame[1] = rotated_frame(frame[0], one, two);
       return;
     }
     default:
@@ -88,7 +88,7 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
   const auto square = [&](Vec3 a, Vec3 b, const char* must) {
     check_aligned(table, must, std::abs(angle_between(a, b) - std::numbers::pi_v<Real> / 2));
     const Vec3 across = b - dot(a, b) * a;
-    return turned_frame(two, b, (1 / norm(across)) * across);
+    return rotated_frame(two, b, (1 / norm(across)) * across);
   };
   switch (kind) {
     case JointKind::fixed:
@@ -104,7 +104,7 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
     case JointKind::parallel:
       check_aligned(table, "the z axes of the two markers must point in the same direction",
                     angle_between(one.z, two.z));
-      return turned_frame(two, two.z, one.z);
+      return rotated_frame(two, two.z, one.z);
     case JointKind::universal:
       return square(one.x, two.y,
                     "the first marker's x axis must be perpendicular to the second one's y axis");
@@ -113,7 +113,7 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
     case JointKind::constant_velocity:
       if (std::numbers::pi_v<Real> - angle_between(one.z, two.z) < kAligned)
         table.fail("markers", "the z axes of the two markers must not point against each other");
-      return turned_frame(one, one.z, two.z);
+      return rotated_frame(one, one.z, two.z);
     case JointKind::spherical:
     case JointKind::distance:
     case JointKind::point_on_line:

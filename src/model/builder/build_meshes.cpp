@@ -35,8 +35,8 @@ std::string source_key(const DeckTable& table) { return table.has("file") ? "fil
 
 // A closed line has free edges at its ends along z.
 void check(const DeckTable& table, const TriangleMesh& mesh) {
-  const bool open = is_sheet(table) || table.choice<MeshKind>("kind") == MeshKind::line;
-  const std::vector<std::string> troubles = mesh_troubles(mesh, open);
+  const bool open = is_open_surface(table) || table.choice<MeshKind>("kind") == MeshKind::line;
+  const std::vector<std::string> troubles = mesh_defects(mesh, open);
   if (!troubles.empty()) fail(table, troubles);
 }
 
@@ -81,7 +81,7 @@ std::string fitting_distance(const DeckTable& table, const TriangleMesh& mesh) {
 // error.
 TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
   CoarseMesh coarse = coarser(table, mesh, table.real("coarsen"));
-  const std::vector<std::string> troubles = mesh_troubles(coarse.mesh, is_sheet(table));
+  const std::vector<std::string> troubles = mesh_defects(coarse.mesh, is_open_surface(table));
   if (!troubles.empty())
     table.fail("coarsen",
                fmt::format("is too large, the coarser mesh is no surface: {}", fmt::join(troubles, "; ")));
@@ -98,17 +98,17 @@ TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, Mode
 
 // Advice for a file that is not a solid, or "".
 std::string sheet_remedy(const NumberedMesh& mesh) {
-  if (!mesh_troubles(repaired(mesh, true).mesh.mesh, true).empty()) return "";
+  if (!mesh_defects(repaired(mesh, true).mesh.mesh, true).empty()) return "";
   return "; sheet = true takes it as a surface that is touched from both sides and encloses nothing";
 }
 
 // Checks the mesh of a file and repairs it; the log names the repairs. note: receives the place where its
 // shells intersect.
 TriangleMesh checked_file(const DeckTable& table, const NumberedMesh& welded, ModelMesh& note, Log& log) {
-  const bool sheet = is_sheet(table);
+  const bool sheet = is_open_surface(table);
   MeshRepair repair = repaired(welded, sheet);
   NumberedMesh& mesh = repair.mesh;
-  const std::vector<std::string> troubles = mesh_troubles(mesh.mesh, sheet, mesh.numbers);
+  const std::vector<std::string> troubles = mesh_defects(mesh.mesh, sheet, mesh.numbers);
   if (!troubles.empty()) fail(table, troubles, sheet ? "" : sheet_remedy(welded));
   if (const std::string text = repair_text(repair, sheet); !text.empty())
     log.warning(fmt::format("mesh \"{}\" ({}): {}", table.text("name"),
@@ -151,7 +151,8 @@ DeckTable with_fitting_segments(DeckTable table, Real grain, ModelMesh& note) {
   if (fitting.key.empty()) return table;
   if (grain < kInfinity) note.fitting = fmt::format("{} = {}", fitting.key, fitting.value);
   note.is_fitted = !table.has(fitting.key);
-  if (note.is_fitted) table.set(fitting.key, {fitting.value, table.place(), std::to_string(fitting.value)});
+  if (note.is_fitted)
+    table.set(fitting.key, {fitting.value, table.location(), std::to_string(fitting.value)});
   return table;
 }
 
@@ -173,7 +174,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& l
   const bool planar = space.integer("dimension") == 2;
   // Particles stay away from the ends of a line along z.
   const Real half_depth = norm(space.vector("max") - space.vector("min"));
-  const Real grain = any_round(deck) ? smallest_grain(deck) : kInfinity;
+  const Real grain = any_round(deck) ? smallest_particle_radius(deck) : kInfinity;
   for (const DeckTable& given : deck.tables("meshes")) {
     ModelMesh made{given.text("name"), nullptr};
     const DeckTable table = with_fitting_segments(given, grain, made);
@@ -187,12 +188,12 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names, Log& l
     const TriangleMesh mesh = planar ? checked(table, drawn.triangles, made, log)
                                      : checked_and_resized(table, drawn.triangles, made, log);
     made.surface = std::make_shared<const SurfaceMesh>(
-        build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
+        build_surface_mesh(mesh, table.real("feature_angle"), is_open_surface(table)));
     check_features(table, *made.surface);
     made.deviation = drawn.deviation.value_or(made.surface->curvature.sag);
     made.deviation_is_exact = drawn.deviation.has_value();
     model.meshes.push_back(made);
-    names.triangles.push_back({planar ? line_solid : mesh, is_sheet(table), planar, made.crossing});
+    names.triangles.push_back({planar ? line_solid : mesh, is_open_surface(table), planar, made.crossing});
   }
 }
 

@@ -330,7 +330,7 @@ std::vector<StartItem> placed_items(const Model& model, const Share& share) {
   std::vector<StartItem> items;
   for (std::size_t i = 0; i < model.particles.size(); ++i)
     items.push_back({model.particles.position[i], model.particles.radius[i]});
-  items = share.everywhere(std::move(items));
+  items = share.all_gather(std::move(items));
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes)
       items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius});
@@ -371,7 +371,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   // Counts of 10^9 per group cannot overflow for any number of groups that a deck can have.
   std::vector<Group> groups;
   std::int64_t count = 0;
-  share.together([&] {
+  share.collectively([&] {
     for (const DeckTable& table : deck.tables("particles"))
       count += groups.emplace_back(table, names, model).count();
     check_group_names(deck.tables("particles"));
@@ -386,7 +386,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   for (Group& group : groups) {
     const std::vector<StartItem> placed =
         group.is_random() ? placed_items(model, share) : std::vector<StartItem>{};
-    share.together(
+    share.collectively(
         [&] { group.append_to(model.particles, part_of_group(own, first, group.count()), placed); });
     std::vector<ParticleGroup>& named = model.particles.groups;
     named.push_back({group.name().value_or(std::to_string(named.size())), first});

@@ -77,7 +77,7 @@ IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
   if (model.rolls())
     return {ParticleIntegrator::velocity_verlet,
             "contacts have rolling or twisting resistance, which only explicit steps support"};
-  if (model.attracts())
+  if (model.is_cohesive())
     return {ParticleIntegrator::velocity_verlet, "contacts have adhesion, which only explicit steps support"};
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =

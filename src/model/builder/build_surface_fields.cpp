@@ -17,7 +17,7 @@ void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], C
   contact.wear.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side)
     contact.wear[static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side])] =
-        worn_per_work(pair.real("wear_coefficient"), friction);
+        wear_per_work(pair.real("wear_coefficient"), friction);
 }
 
 void build_surface_fields(const DeckTable& output, Model& model) {

@@ -44,7 +44,7 @@ Real largest_circle(const DeckTable& mesh) {
 
 }  // namespace
 
-Real smallest_grain(const DeckTable& deck) {
+Real smallest_particle_radius(const DeckTable& deck) {
   const int dimension = static_cast<int>(deck.table("space").integer("dimension"));
   Real smallest = kInfinity;
   for (const DeckTable& group : deck.tables("particles")) {
@@ -75,13 +75,13 @@ Deck with_fitting_segments(Deck deck) {
     return usual.key.empty() || mesh.has(usual.key);
   };
   if (std::ranges::all_of(meshes, is_cut)) return deck;
-  const Real grain = smallest_grain(deck.root);
+  const Real grain = smallest_particle_radius(deck.root);
   for (DeckTable& mesh : meshes) {
     if (is_cut(mesh)) continue;
     const FittingSegments fitting = fitting_segments_of(mesh, grain);
-    mesh.set(fitting.key, {fitting.value, mesh.place(), std::to_string(fitting.value)});
+    mesh.set(fitting.key, {fitting.value, mesh.location(), std::to_string(fitting.value)});
   }
-  deck.root.set("meshes", {std::move(meshes), deck.root.place(), "[]"});
+  deck.root.set("meshes", {std::move(meshes), deck.root.location(), "[]"});
   return deck;
 }
 

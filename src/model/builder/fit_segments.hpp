@@ -7,7 +7,7 @@ namespace scree {
 
 // The smallest radius that a particle of the deck can have [m]; infinite without particles. Reads particle
 // files; throws InputError and IoError on them.
-Real smallest_grain(const DeckTable& deck);
+Real smallest_particle_radius(const DeckTable& deck);
 
 // The key for the number of facets of a mesh and the value that fits particles of radius `grain` [m]. No key
 // for meshes without facets of their own, such as boxes and files.

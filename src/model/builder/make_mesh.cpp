@@ -32,7 +32,7 @@ void check_smaller(const DeckTable& table, const std::string& key, const std::st
 
 template <class Shape>
 MadeMesh sound(const DeckTable& table, const Shape& shape, TriangleMesh (*make)(const Shape&)) {
-  if (const std::string trouble = shape_trouble(shape); !trouble.empty()) table.fail("kind", trouble);
+  if (const std::string trouble = shape_defect(shape); !trouble.empty()) table.fail("kind", trouble);
   return {make(shape), facet_deviation(shape)};
 }
 
@@ -190,7 +190,7 @@ Vec3 size_factors(const DeckTable& table, TriangleMesh& mesh) {
 TriangleMesh placed(const DeckTable& table, TriangleMesh mesh) {
   const Quaternion turn = read_orientation(table);
   const Mat3 axes = rotation_matrix(turn);
-  if (table.choice<MeshKind>("kind") == MeshKind::line) check_turned_about_z(table, axes);
+  if (table.choice<MeshKind>("kind") == MeshKind::line) check_rotated_about_z(table, axes);
   const Vec3 offset = table.vector("offset");
   const Vec3 factors = size_factors(table, mesh);
   for (Vec3& vertex : mesh.vertices) {
@@ -202,7 +202,7 @@ TriangleMesh placed(const DeckTable& table, TriangleMesh mesh) {
 
 }  // namespace
 
-void check_turned_about_z(const DeckTable& table, const Mat3& axes) {
+void check_rotated_about_z(const DeckTable& table, const Mat3& axes) {
   constexpr Real kRoundOff = 1e-12;
   const Vec3 z = axes * Vec3{0, 0, 1};
   if (norm(z - Vec3{0, 0, 1}) <= kRoundOff) return;
@@ -214,7 +214,7 @@ void check_turned_about_z(const DeckTable& table, const Mat3& axes) {
       "them by a");
 }
 
-bool is_sheet(const DeckTable& table) {
+bool is_open_surface(const DeckTable& table) {
   switch (table.choice<MeshKind>("kind")) {
     case MeshKind::file:
       return table.boolean("sheet");

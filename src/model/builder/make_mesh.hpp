@@ -23,8 +23,8 @@ MadeMesh make_mesh(const DeckTable& table, Real half_depth);
 // InputError, also where a closed line intersects itself.
 TriangleMesh make_line_solid(const DeckTable& table);
 // Throws InputError where the orientation of `table`, a line or a solid of one, leaves the x-y plane.
-void check_turned_about_z(const DeckTable& table, const Mat3& axes);
+void check_rotated_about_z(const DeckTable& table, const Mat3& axes);
 // Whether the mesh is an open (two-sided) surface.
-bool is_sheet(const DeckTable& table);
+bool is_open_surface(const DeckTable& table);
 
 }  // namespace scree

@@ -34,7 +34,8 @@ class Combination {
         name_b_(name_b),
         a_(find(contact, like, name_a)),
         b_(find(contact, like, name_b)),
-        out_(a_.keys(), fmt::format("contact.mixing: pair {}", pair_text(name_a, name_b)), contact.place()) {
+        out_(a_.keys(), fmt::format("contact.mixing: pair {}", pair_text(name_a, name_b)),
+             contact.location()) {
     set("materials", std::vector{name_a, name_b});
   }
 
@@ -54,7 +55,7 @@ class Combination {
   [[noreturn]] void fail(const DeckTable& at, const std::string& key, const std::string& problem) const;
   template <class T>
   void set(const char* key, T value) {
-    DeckValue made{std::move(value), out_.place(), ""};
+    DeckValue made{std::move(value), out_.location(), ""};
     if constexpr (!std::is_same_v<T, std::vector<std::string>>) made.shown = text_of(made);
     out_.set(key, std::move(made));
   }

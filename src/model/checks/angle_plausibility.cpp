@@ -17,16 +17,16 @@ constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
 
 class Search {
  public:
-  explicit Search(const DeckTable& deck) : deck_(deck) { look(deck); }
+  explicit Search(const DeckTable& deck) : deck_(deck) { search(deck); }
   std::vector<std::string> findings() && { return std::move(findings_); }
 
  private:
-  void look(const DeckTable& table) {
+  void search(const DeckTable& table) {
     for (const Key& key : table.keys().keys) {
       const auto entry = table.values().find(key.name);
       if (entry == table.values().end()) continue;
       if (const auto* tables = std::get_if<std::vector<DeckTable>>(&entry->second.data))
-        for (const DeckTable& inner : *tables) look(inner);
+        for (const DeckTable& inner : *tables) search(inner);
       if (const Real* value = std::get_if<Real>(&entry->second.data))
         judge(table, key, *value, entry->second);
     }
@@ -38,7 +38,7 @@ class Search {
     if (!meant) return;
     findings_.push_back(fmt::format(
         "{}: {}.{} = {}: {:g} rad are {:.3g} revolutions; angles are in radians: {:g} degrees are {:.6g}",
-        given.place, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
+        given.location, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
         value * kTurn / 360));
   }
   // Whether the values of the table refer to an angle of its joint.

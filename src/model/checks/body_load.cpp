@@ -16,7 +16,7 @@ namespace {
 // infinite.
 void add_contact(const Model& model, int particles, int surface, Real radius, Real surface_radius, Real mass,
                  PressedBody& body) {
-  const KelvinVoigt& law = model.contact.law(particles, surface);
+  const NormalLawParameters& law = model.contact.law(particles, surface);
   const PairSize size{radius, surface_radius, mass, kInfinity};
   body.stiffness = std::max(body.stiffness, typical_stiffness(law, size));
   body.damping = std::max(body.damping, law.of_size(size).normal_damping);

@@ -29,9 +29,9 @@ void bound(ExplicitStep& step, Real by, const std::string& reason) {
   if (by < step.step) step = {by, reason};
 }
 
-bool has_neck(const Model& model, const PairLimit& limit) {
-  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
-  return law.neck && law.attracts();
+bool is_jkr(const Model& model, const PairLimit& limit) {
+  const NormalLawParameters& law = model.contact.law(limit.material[0], limit.material[1]);
+  return law.jkr && law.is_cohesive();
 }
 
 // Allowed phase per step of a body's oscillation on the vertices of its mesh [rad]: a body that joints hold
@@ -59,17 +59,17 @@ void bound_by_bodies(const Model& model, ExplicitStep& step) {
 void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& limit, ExplicitStep& step) {
   const std::string name = pair_name(model, limit);
   const Real substeps = model.integrator.substeps;
-  bound(step, substeps * kStableShare * limit.explicit_step,
-        fmt::format("{:.2g} of the stability limit in dense contacts of {}", kStableShare, name));
-  if (has_neck(model, limit))
-    bound(step, substeps * kNeckShare * limit.contact_time,
+  bound(step, substeps * kStableStepFraction * limit.explicit_step,
+        fmt::format("{:.2g} of the stability limit in dense contacts of {}", kStableStepFraction, name));
+  if (is_jkr(model, limit))
+    bound(step, substeps * kPullOffShare * limit.contact_time,
           fmt::format("{:g} of the shortest contact of {}, which breaks within a small part of it",
-                      kNeckShare, name));
+                      kPullOffShare, name));
   // Trials are expensive: where the step is short enough, the longest good step need not be found.
-  if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kGoodRebound) return;
-  bound(
-      step, substeps * trials.good_step(limit),
-      fmt::format("the longest with which trial rebounds of {} are within {:g} %", name, 100 * kGoodRebound));
+  if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kReboundTolerance) return;
+  bound(step, substeps * trials.good_step(limit),
+        fmt::format("the longest with which trial rebounds of {} are within {:g} %", name,
+                    100 * kReboundTolerance));
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ ExplicitStep longest_explicit_step(const Model& model) {
   constexpr int kMostTries = 10;
   constexpr Real kShorter = 0.8;
   const auto errs = [&](const PairLimit& limit) {
-    return trials.error(limit, step.step / substeps) >= kGoodRebound;
+    return trials.error(limit, step.step / substeps) >= kReboundTolerance;
   };
   for (int k = 0; k < kMostTries && std::ranges::any_of(pairs, errs); ++k)
     step.step = two_digits_below(kShorter * step.step);
@@ -115,7 +115,7 @@ bool suits_explicit(const Model& model, Real step) {
   return true;
 }
 
-std::string left_out_step(const Model& model) {
+std::string default_step_text(const Model& model) {
   const ExplicitStep longest = longest_explicit_step(model);
   return longest.step < kInfinity ? fmt::format("; left out, it is {:g} s: {}", longest.step, longest.reason)
                                   : "";

@@ -13,9 +13,11 @@ struct ExplicitStep {
 };
 
 // The longest step for which velocity-verlet, with integrator.substeps substeps per step,
-// - keeps the trial rebounds of all pairs of materials within kGoodRebound (model/impact_trials.hpp),
-// - uses at most kStableShare of the stability limit in dense contact, with springs and dashpots along the
-//   normal, tangential and against rolling, and at most kNeckShare of that of a JKR contact,
+// - keeps the trial rebounds of all pairs of materials within kReboundTolerance
+// (model/checks/impact_trials.hpp),
+// - uses at most kStableStepFraction of the stability limit in dense contact, with springs and dashpots along
+// the
+//   normal, tangential and against rolling, and at most kPullOffShare of that of a JKR contact,
 // - resolves the oscillation of bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and
 // with
 //   the largest number of particles that can touch them (shortest_loaded_step),
@@ -28,7 +30,7 @@ ExplicitStep longest_explicit_step(const Model& model);
 bool suits_explicit(const Model& model, Real step);
 
 // "; left out, it is 1.2e-05 s: ...": advice for a refusal or warning.
-std::string left_out_step(const Model& model);
+std::string default_step_text(const Model& model);
 
 // Rounded down to two digits; x > 0.
 Real two_digits_below(Real x);

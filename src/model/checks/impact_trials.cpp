@@ -8,9 +8,9 @@
 
 #include "model/checks/impact_speed.hpp"
 #include "model/derived/choose_law.hpp"
+#include "physics/friction_trial.hpp"
 #include "physics/particle_mass.hpp"
 #include "physics/plausible.hpp"
-#include "physics/rubbing_trial.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -65,7 +65,7 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
 
 // fastest: largest speed at which the two may meet. Where the force is linear any speed is equivalent; one
 // with small rotations is used.
-Real trial_speed(Real fastest, const KelvinVoigt& law, const Partners& two) {
+Real trial_speed(Real fastest, const NormalLawParameters& law, const Partners& two) {
   constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlap over radius
   const auto speed = [&](Real share) { return overlapping_speed(law, two.mass(), share * two.radius()); };
   if (law.exponent == 1) return speed(kLinear);
@@ -89,7 +89,7 @@ Real inertia_of(const Partner& one) {
 
 void judge(StepTrial& trial, const auto& trials) {
   trial.result = trials.with(trial.step);
-  trial.good_step = trials.step_within(kGoodRebound);
+  trial.good_step = trials.step_within(kReboundTolerance);
   trial.any_step_good = trial.good_step == trials.longest_step();
   if (trial.adaptive_step > 0) trial.adaptive_error = trials.with(trial.adaptive_step).error();
 }
@@ -124,7 +124,8 @@ std::size_t pair_of(const Field& field, const PairLimit& limit) {
 template <class Use>
 auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
   const Partners two = lightest_partners(field.model, field.uses, limit);
-  const KelvinVoigt law = field.model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
+  const NormalLawParameters law =
+      field.model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
   Setup setup{two, trial_speed(field.speeds.of(limit), law, two), 0};
   setup.touch = impact_time(law, two.mass(), setup.speed);
   return field.laws.with(pair_of(field, limit), [&]<class Law>(const Law& one) {
@@ -151,8 +152,8 @@ using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
   const std::size_t pair = pair_of(field, limit);
-  const auto& [k, c, n, tension, e, zeta, work, neck, attraction, range] = contact.laws[pair];
-  TrialKey key{k, c, n, Real(tension), e, zeta, work, Real(neck), attraction, range, field.speeds.of(limit)};
+  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range] = contact.laws[pair];
+  TrialKey key{k, c, n, Real(tension), e, zeta, work, Real(jkr), attraction, range, field.speeds.of(limit)};
   if (!contact.friction.empty()) {
     const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
     key.insert(key.end(), {mu, k_t, g, zeta_t});
@@ -185,12 +186,12 @@ template <class Law>
 void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTrial& trial) {
   const TrialImpact& impact = setup.impact;
   const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
-  if constexpr (kFrictionAlone<Law>)
-    if (trial.rubs) {
-      const auto make = [&](Real gap) { return RubbingTrial<Law>(law, method, impact, gap); };
+  if constexpr (kFrictionOnly<Law>)
+    if (trial.is_frictional) {
+      const auto make = [&](Real gap) { return FrictionTrial<Law>(law, method, impact, gap); };
       return judge(trial, Trials(law, impact, setup.touch, make));
     }
-  if constexpr (!Law::kNeck) {
+  if constexpr (!Law::kHysteretic) {
     const auto pair = law.normal.of_pair(impact.size);
     const auto make = [&](Real gap) { return ImplicitTrial(pair, method, impact, gap); };
     judge(trial, Trials(ContactLaw<typename Law::Normal>{law.normal}, impact, setup.touch, make));
@@ -206,7 +207,7 @@ StepTrial try_pair(const Field& field, const PairLimit& limit) {
   trial.is_adaptive = model.time.control == StepControl::adaptive;
   trial.step = model.time.step / (implicit ? 1 : model.integrator.substeps);
   with_setup(field, limit, [&](const auto& law, const Setup& setup) {
-    trial.speed = setup.speed, trial.incidence = setup.incidence, trial.rubs = setup.incidence > 0;
+    trial.speed = setup.speed, trial.incidence = setup.incidence, trial.is_frictional = setup.incidence > 0;
     if (!implicit) return;
     (trial.is_adaptive ? trial.step : trial.adaptive_step) =
         typical_adaptive_step(model, setup.two, fastest > 0 ? fastest : setup.speed, setup.touch);
@@ -248,7 +249,7 @@ ExplicitTrials::~ExplicitTrials() = default;
 Real ExplicitTrials::good_step(const PairLimit& limit) {
   return impl_->good_steps.of(key_of(impl_->field, limit), [&] {
     return with_explicit_trials(impl_->field, limit,
-                                [](const auto& trials) { return trials.step_within(kGoodRebound); });
+                                [](const auto& trials) { return trials.step_within(kReboundTolerance); });
   });
 }
 

@@ -16,10 +16,10 @@ struct StepTrial {
   Real speed;  // impact speed [m/s]; without effect where the force is linear in the overlap
   Real step;   // the particles' step, or the step that adaptive control arrives at [s]
   bool is_adaptive;
-  bool rubs;       // with friction: an impact without spin at `incidence`; otherwise head-on
-  Real incidence;  // angle from the normal [rad]
+  bool is_frictional;  // with friction: an impact without spin at `incidence`; otherwise head-on
+  Real incidence;      // angle from the normal [rad]
   TrialResult result;
-  Real good_step;      // largest step with errors below kGoodRebound [s]
+  Real good_step;      // largest step with errors below kReboundTolerance [s]
   bool any_step_good;  // good_step is the longest step that was tried
   Real adaptive_step;  // step that adaptive implicit control would choose; 0: control is adaptive already, or
                        // explicit [s]
@@ -27,7 +27,7 @@ struct StepTrial {
 };
 
 // Errors of rebound speeds: the limit for chosen steps, and the limit for a warning.
-inline constexpr Real kGoodRebound = 0.02, kBadRebound = 0.05;
+inline constexpr Real kReboundTolerance = 0.02, kBadRebound = 0.05;
 
 // One trial per pair of materials that can meet and interact, with its lightest partners: two particles if
 // possible, otherwise a particle and a body or a wall, otherwise bodies. Empty for contacts that are not
@@ -45,7 +45,8 @@ class ExplicitTrials {
   explicit ExplicitTrials(const Model& model);
   ~ExplicitTrials();
 
-  // The longest step of the particles for which the error of the pair's trial is within kGoodRebound [s].
+  // The longest step of the particles for which the error of the pair's trial is within kReboundTolerance
+  // [s].
   Real good_step(const PairLimit& limit);
   // The error of the pair's rebound in steps of `step` [s].
   Real error(const PairLimit& limit, Real step);

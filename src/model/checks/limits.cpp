@@ -23,26 +23,26 @@ Real smallest_reduced_mass(const PairSize& size) {
 
 // Largest stiffnesses that a pair of materials causes for particles, as in PairLimit.
 struct PairSprings {
-  const KelvinVoigt& law;
+  const NormalLawParameters& law;
   Friction friction;
-  RollingResistance rolling;
+  RollingParameters rolling;
   Real stiffness, slip_stiffness, rolling_stiffness;  // [N/m]
   Real smallest_radius;                               // [m]
 };
 
 // Springs and dashpots are taken at their highest modes; the worst case is that both belong to one mode.
-Real rubbing_step(const PairSprings& pair, const MaterialUse& use, int dimension, bool dense) {
-  const Real mass = use.smallest_particle_mass, inertia_share = use.smallest_inertia_factor;
-  const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_share));
+Real frictional_step(const PairSprings& pair, const MaterialUse& use, int dimension, bool dense) {
+  const Real mass = use.smallest_particle_mass, inertia_ratio = use.smallest_inertia_factor;
+  const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_ratio));
   const Real slip_damping = dashpot_of(pair.friction.damping_ratio, slip_mass, pair.slip_stiffness);
   const Real square = pair.smallest_radius * pair.smallest_radius;
-  const Real rolling_inertia = (1 + inertia_share) * mass / (dense ? 2 : 1);  // over R^2 [kg]
+  const Real rolling_inertia = (1 + inertia_ratio) * mass / (dense ? 2 : 1);  // over R^2 [kg]
   const Real rolling_damping =
       dashpot_of(pair.rolling.damping_ratio, rolling_inertia, pair.rolling_stiffness) +
       pair.rolling.damping / square;
   const auto highest = [&](Real along, Real across, Real rolling) {
-    return dense ? dense_rubbing_frequency(along, across, mass, inertia_share, dimension, rolling)
-                 : wall_rubbing_frequency(along, across, mass, inertia_share, rolling);
+    return dense ? dense_friction_frequency(along, across, mass, inertia_ratio, dimension, rolling)
+                 : wall_friction_frequency(along, across, mass, inertia_ratio, rolling);
   };
   const Real root_of_decay = highest(pair.law.normal_damping, slip_damping, rolling_damping);
   return leapfrog_step_limit(highest(pair.stiffness, pair.slip_stiffness, pair.rolling_stiffness),
@@ -54,7 +54,7 @@ Real rubbing_step(const PairSprings& pair, const MaterialUse& use, int dimension
 Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const PairSprings& pair) {
   if (use.particles == 0) return 0;
   const Real mass = use.smallest_particle_mass;
-  if (model.rotates()) return rubbing_step(pair, use, model.space.dimension, dense);
+  if (model.rotates()) return frictional_step(pair, use, model.space.dimension, dense);
   const Real frequency = dense ? dense_frequency(pair.stiffness, mass, model.space.dimension)
                                : contact_frequency(pair.stiffness, mass);
   return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
@@ -116,10 +116,10 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       ++use.shapes;
       take_smaller(use.smallest_radius, shape.radius);
       if (prescribed[b]) continue;
-      const Real rubbed = norm(shape.offset) + shape.radius;
+      const Real lever_arm = norm(shape.offset) + shape.radius;
       take_smaller(use.smallest_body_mass,
                    1 / (1 / body.mass + dot(shape.offset, shape.offset) / body.inertia));
-      take_smaller(use.smallest_rubbed_mass, 1 / (1 / body.mass + rubbed * rubbed / body.inertia));
+      take_smaller(use.smallest_frictional_mass, 1 / (1 / body.mass + lever_arm * lever_arm / body.inertia));
     }
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -127,14 +127,14 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       const Body& body = model.bodies[b];
       MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
       const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
-      const Real reach = farthest(mesh, shape.offset, model.space.dimension);
+      const Real arm = farthest(mesh, shape.offset, model.space.dimension);
       ++use.meshes;
       use.sheets += mesh.surface->sheet;
-      if (may_meet_planes(model, b, shape))
+      if (may_touch_planes(model, b, shape))
         ++use.corners, take_smaller(use.smallest_corner_radius, mesh.corners->radius);
       if (prescribed[b]) continue;
-      for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
-        take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
+      for (Real* mass : {&use.smallest_body_mass, &use.smallest_frictional_mass})
+        take_smaller(*mass, 1 / (1 / body.mass + arm * arm / body.inertia));
     }
   for (const Wall& wall : model.walls) {
     MaterialUse& use = uses[static_cast<std::size_t>(wall.material)];
@@ -144,7 +144,7 @@ std::vector<MaterialUse> material_uses(const Model& model) {
   return uses;
 }
 
-bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+bool can_touch(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
   return must_have_law(model, uses, a, b) || (first.walls > 0 && second.corners > 0) ||
          (second.walls > 0 && first.corners > 0);
@@ -157,18 +157,18 @@ bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int
   if (first.particles > 0 && second.shapes + second.meshes > 0) return true;
   if (second.particles > 0 && first.shapes + first.meshes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
-  return bodies_can_meet(model, uses, a, b) || shapes_meet_walls(model, first, b) ||
+  return bodies_can_touch(model, uses, a, b) || shapes_meet_walls(model, first, b) ||
          shapes_meet_walls(model, second, a);
 }
 
-bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+bool bodies_can_touch(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
   if (first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch()) return true;
   return (first.shapes > 0 && second.meshes > 0 && shapes_meet_meshes(model, a, b)) ||
          (second.shapes > 0 && first.meshes > 0 && shapes_meet_meshes(model, b, a));
 }
 
-bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b) {
+bool touch_open_surfaces_only(const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
   const auto has_others = [](const MaterialUse& use) { return use.walls > 0 || use.meshes > use.sheets; };
   if (a == b ? first.spheres() > 1 : first.spheres() > 0 && second.spheres() > 0) return false;
@@ -192,17 +192,17 @@ std::vector<PairLimit> pair_limits(const Model& model) {
   std::vector<PairLimit> limits;
   for (int a = 0; a < model.contact.materials(); ++a) {
     for (int b = a; b < model.contact.materials(); ++b) {
-      const KelvinVoigt& law = model.contact.law(a, b);
-      if (!can_meet(model, uses, a, b) || !law.acts()) continue;
+      const NormalLawParameters& law = model.contact.law(a, b);
+      if (!can_touch(model, uses, a, b) || !law.acts()) continue;
       const MaterialUse &first = uses[static_cast<std::size_t>(a)],
                         &second = uses[static_cast<std::size_t>(b)];
       const PairSize size = smallest_partners(first, second);
       if (smallest_reduced_mass(size) == kInfinity) continue;  // both have infinite mass
-      const KelvinVoigt sized = law.of_size(size);
+      const NormalLawParameters sized = law.of_size(size);
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;
       const Friction friction = model.rotates() ? model.contact.friction_of(a, b) : Friction{};
-      const RollingResistance rolling = model.contact.rolling_of(a, b);
+      const RollingParameters rolling = model.contact.rolling_of(a, b);
       const PairSprings springs{sized,
                                 friction,
                                 rolling,

@@ -25,7 +25,7 @@ struct MaterialUse {
   Real smallest_inertia_factor = 0;  // of particles, I / (m R^2)
   // Smallest effective mass at a shape, 1 / (1/m + arm^2 / inertia) [kg]. The arm is the offset of the shape
   // for a normal force at its centre, and extends to its far side for friction at its surface.
-  Real smallest_body_mass = 0, smallest_rubbed_mass = 0;
+  Real smallest_body_mass = 0, smallest_frictional_mass = 0;
 
   bool is_of_surfaces() const { return shapes + meshes + walls > 0; }
   std::int64_t spheres() const { return particles + shapes; }
@@ -34,21 +34,21 @@ struct MaterialUse {
 std::vector<MaterialUse> material_uses(const Model& model);
 // Whether objects of materials a and b can touch. Shapes of bodies that are all connected with each other
 // cannot.
-bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+bool can_touch(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether the deck must have a law for the two materials: they can meet, and not only as meshes of bodies on
 // planes, which touch only where the deck has a law.
 bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether bodies with material a and bodies with material b can touch.
-bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+bool bodies_can_touch(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether the only contacts of these two materials are those of spheres with open surfaces.
-bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b);
+bool touch_open_surfaces_only(const std::vector<MaterialUse>& uses, int a, int b);
 // The smallest and lightest objects of each material; infinite where it has only walls. Where neither has
 // spheres, the radius is that of meshes on planes.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
 struct PairLimit {
   int material[2] = {0, 0};
-  KelvinVoigt law;          // law of its smallest partners
+  NormalLawParameters law;  // law of its smallest partners
   Real stiffness = 0;       // of these partners [N/m], typical_stiffness()
   Real slip_stiffness = 0;  // of the tangential spring [N/m], typical_slip_stiffness()
   Real rolling_stiffness =

@@ -8,7 +8,7 @@
 
 #include "base/host_memory.hpp"
 #include "model/data/model.hpp"
-#include "model/derived/shape_places.hpp"
+#include "model/derived/shape_positions.hpp"
 
 namespace scree {
 
@@ -53,7 +53,7 @@ Real bytes_per_triangle(const Model& model) {
 Real bytes_of_meshes(const Model& model, bool is_root) {
   const Real triangles = triangles_of(model), shown = is_root ? shown_meshes(model).triangles : 0;
   return std::max(kBytesPerTriangle * triangles,
-                  kBytesPerKeptTriangle * triangles + kBytesPerShownTriangle * shown) +
+                  kBytesPerStoredTriangle * triangles + kBytesPerShownTriangle * shown) +
          (bytes_per_triangle(model) - kBytesPerTriangle) * triangles;
 }
 
@@ -89,7 +89,7 @@ std::string counted(std::int64_t count, const std::string& one, const std::strin
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-ModelSize bodies_and_links(const DeckTable& deck) {
+ModelSize bodies_and_joints(const DeckTable& deck) {
   ModelSize size;
   const int dimension = static_cast<int>(deck.table("space").integer("dimension"));
   std::map<std::string, std::int64_t> rows;
@@ -99,7 +99,7 @@ ModelSize bodies_and_links(const DeckTable& deck) {
     size.bodies += count;
     for (const DeckTable& shape : table.tables("shapes"))
       (table.boolean("collides") && shape.boolean("collides") ? size.shapes : size.drawn_shapes) +=
-          count * ShapePlaces(shape, dimension).count();
+          count * ShapePositions(shape, dimension).count();
   }
   std::map<std::string, std::int64_t> joints;
   for (const char* key : {"joints", "cylinders", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
@@ -144,7 +144,7 @@ Real bytes_to_build_particles(std::int64_t own, std::int64_t placed) {
 void check_memory(const ModelSize& size, Real bytes, const std::string& task, const Share& share) {
   const FreeMemory free = free_memory();
   const Real together = share.sum_on_host(bytes);
-  share.together([&] {
+  share.collectively([&] {
     const bool alone = bytes > free.process.bytes || together == bytes;
     const MemoryBound& bound = bytes > free.process.bytes ? free.process : free.host;
     const Real needed = alone ? bytes : together;

@@ -22,7 +22,7 @@ constexpr Real kBytesPerExplicitParticle = 960, kBytesPerImplicitParticle = 1140
 // dense packing has three contacts with other particles.
 constexpr Real kBytesPerLine = 240, kLinesPerParticle = 3;
 // Memory of one particle with rotation and contact lines, without the contact history that is stored beside a
-// list (bytes_remembered) [B].
+// list (history_bytes) [B].
 Real bytes_per_particle(const Model& model);
 // Memory of one coordinate or constraint of the multibody side, on rank 0: a few vectors and the sparse
 // factors [B].
@@ -35,7 +35,7 @@ Real bytes_of_shapes(const ModelSize& size);
 // Memory of a mesh's triangle on every rank, while it is prepared and afterwards [B]; measured on spheres and
 // refined drums. While snapshots are written, rank 0 has each triangle once for every wall or body with the
 // mesh.
-constexpr Real kBytesPerTriangle = 560, kBytesPerKeptTriangle = 430, kBytesPerShownTriangle = 120;
+constexpr Real kBytesPerTriangle = 560, kBytesPerStoredTriangle = 430, kBytesPerShownTriangle = 120;
 // Memory of the dissipation sums of a triangle, where the output asks for them [B]: the sums of the run, of
 // its last good state, in the order of snapshots and checkpoints, and as numbers.
 constexpr Real kBytesPerWorks = 420;
@@ -58,7 +58,7 @@ struct ModelSize {
 };
 
 // From the deck, before anything is built; without particles, whose files may have to be read.
-ModelSize bodies_and_links(const DeckTable& deck);
+ModelSize bodies_and_joints(const DeckTable& deck);
 ModelSize size_of(const Model& model);
 
 // "1 body", "3 bodies".

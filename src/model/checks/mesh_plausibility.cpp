@@ -120,7 +120,8 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
         "which impacts overlap it, and forces err by as much: a smaller coarsen",
         mesh.name, mesh.moved, 100 * mesh.moved / overlap, overlap);
   // Not finer than the default.
-  const Real fitting = mesh.deviation_is_exact ? kFacetShare * model.particles.totals.smallest_radius : 0;
+  const Real fitting =
+      mesh.deviation_is_exact ? kRelativeFacetError * model.particles.totals.smallest_radius : 0;
   if (overlap == 0 || !(sag > std::max(kMostSag * overlap, fitting))) return "";
   return fmt::format(
       "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.0f} % of "
@@ -132,7 +133,7 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
 // Advice for making a mesh of this table coarser.
 std::string coarser(const DeckTable& table, const ModelMesh& mesh, Real smallest_radius) {
   if (table.has("refine")) return "a larger refine";
-  if (table.has("file")) return fmt::format("coarsen = {:.2g}", kFacetShare * smallest_radius);
+  if (table.has("file")) return fmt::format("coarsen = {:.2g}", kRelativeFacetError * smallest_radius);
   return mesh.fitting.empty() ? "a smaller contact.skin" : mesh.fitting;
 }
 
@@ -192,10 +193,10 @@ FoldImpact fold_impact(const Model& model, const PairLimit& limit, Real share, R
   const ParticleTotals& particles = model.particles.totals;
   const Real radius = largest ? particles.largest_radius : particles.smallest_radius,
              mass = largest ? particles.largest_mass : particles.smallest_mass, n = limit.law.exponent;
-  KelvinVoigt law = limit.law;  // of the smallest partners
+  NormalLawParameters law = limit.law;  // of the smallest partners
   if (model.contact.law(limit.material[0], limit.material[1]).effective_modulus > 0)
     law.normal_stiffness *= std::sqrt(radius / particles.smallest_radius);
-  const Real impact = impact_overlap(law, mass, speed), rest = resting_overlap(law, weight_at_bottom(model));
+  const Real impact = impact_overlap(law, mass, speed), rest = static_overlap(law, weight_at_bottom(model));
   const Real most = share * radius;
   return {std::max(std::pow(impact / most, n + 1), std::pow(rest / most, n)), std::max(impact, rest), radius,
           limit};
@@ -229,7 +230,7 @@ std::string sharp_folds(const Model& model, std::size_t number, const std::set<i
   const Real enough = Real(1.01) * worst.factor;  // stays sufficient with the printed digits
   const auto [one, other] = worst.limit.material;
   const std::vector<std::string>& names = model.contact.material_names;
-  const KelvinVoigt& law = worst.limit.law;
+  const NormalLawParameters& law = worst.limit.law;
   const bool has_moduli = model.contact.law(one, other).effective_modulus > 0;
   return fmt::format(
       "mesh \"{}\": it has a concave edge of {:.3g} degrees at ({:.4g}, {:.4g}, {:.4g}) in its own frame, "
@@ -255,7 +256,7 @@ std::string crossing_shells(const ModelMesh& mesh) {
 // Warning about a wall whose mesh has no face parallel to its surface velocity; otherwise empty.
 std::string runs_across(const Model& model, const Wall& wall) {
   constexpr Real kRoundOff = 1e-9;
-  if (wall.mesh < 0 || !wall.runs()) return "";
+  if (wall.mesh < 0 || !wall.is_conveyor()) return "";
   const std::vector<MeshPart>& parts = model.meshes[static_cast<std::size_t>(wall.mesh)].surface->parts;
   const auto is_across = [&](const MeshPart& part) {
     return norm(cross(wall.surface_velocity, part.normal)) <= kRoundOff * norm(wall.surface_velocity);
@@ -273,7 +274,7 @@ std::string runs_across(const Model& model, const Wall& wall) {
 // that distance of a triangle where it is inside the triangle's outline widened by the distance, whose area
 // is that of the triangle, plus its perimeter times the distance, plus a disc.
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
-  const Real reach = radius + model.contact.reach + model.contact.skin;
+  const Real reach = radius + model.contact.interaction_range + model.contact.skin;
   const Real within = std::sqrt(reach * reach - radius * radius);
   const auto count = static_cast<Real>(mesh.triangles.size());
   if (model.space.dimension == 2) {

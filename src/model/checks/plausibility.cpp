@@ -55,7 +55,7 @@ std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
   for (int a = 0; a < model.contact.materials(); ++a)
     for (int b = a; b < model.contact.materials(); ++b) {
       if (!model.contact.law(a, b).acts()) continue;
-      if (can_meet(model, uses, a, b))
+      if (can_touch(model, uses, a, b))
         meets = true;
       else
         only = fmt::format("contact.pairs has a law for \"{}\" on \"{}\", which nothing here can use",
@@ -174,7 +174,7 @@ std::string overlap_at_rest(const Model& model, const std::vector<MaterialUse>& 
   };
   if (particles(0) + particles(1) == 0) return "";
   const Real stack = particles_on_top(model), weight = weight_at_bottom(model),
-             overlap = resting_overlap(limit.law, weight);
+             overlap = static_overlap(limit.law, weight);
   if (overlap <= totals.smallest_radius) return "";
   return fmt::format(
       "contact {}: too soft for the weight on it: {:.3g} particles on top of each other weigh {:.3g} N, an "
@@ -194,7 +194,7 @@ std::string overlap_at_impact(const Model& model, const std::vector<MaterialUse>
   }
   const Real speed = speeds.of(limit);
   const Real overlap = impact_overlap(limit.law, lightest_mass(limit), speed);
-  const bool sheets = meet_on_sheets_alone(uses, limit.material[0], limit.material[1]);
+  const bool sheets = touch_open_surfaces_only(uses, limit.material[0], limit.material[1]);
   if (overlap <= (sheets ? 2 : 1) * radius) return "";
   return fmt::format(
       "contact {}: the stiffness is too low for impacts at {:.3g} m/s (speeds at t = 0, and a fall through "
@@ -218,7 +218,7 @@ std::string many_sizes(const Model& model) {
 }
 
 std::string wide_attraction(const Model& model) {
-  const Real smallest = radius_range(model).smallest, reach = model.contact.reach;
+  const Real smallest = radius_range(model).smallest, reach = model.contact.interaction_range;
   if (smallest == 0 || reach <= smallest) return "";
   return fmt::format(
       "adhesion acts up to {:.3g} m beyond contact, more than the smallest radius, {:.3g} m: adhesion laws "
@@ -287,7 +287,7 @@ std::string odd_mass(const DeckTable& deck, const Model& model) {
 }
 
 std::string belt_without_friction(const Model& model) {
-  const auto belt = std::ranges::find_if(model.walls, &Wall::runs);
+  const auto belt = std::ranges::find_if(model.walls, &Wall::is_conveyor);
   if (belt == model.walls.end() || !model.contact.friction.empty()) return "";
   return fmt::format("wall \"{}\": its surface_velocity has no effect: no pair in contact.pairs has friction",
                      belt->name);

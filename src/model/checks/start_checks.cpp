@@ -16,7 +16,7 @@
 #include "model/derived/frames.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/point_bins.hpp"
-#include "model/derived/shape_places.hpp"
+#include "model/derived/shape_positions.hpp"
 #include "model/derived/space_box.hpp"
 #include "model/derived/start_meshes.hpp"
 #include "model/derived/touching.hpp"
@@ -183,7 +183,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   for (const Vec3 shift : image_shifts(periods_of(model.space))) {
     for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
-      if (!box.reaches(p, reach)) continue;
+      if (!box.is_within(p, reach)) continue;
       bins.for_near(p, [&](const StartItem& other) {
         const Vec3 apart = p - other.position;
         const Real touching = item.radius + other.radius;
@@ -231,7 +231,7 @@ void find_corner_overlaps(const Model& model, Overlaps& overlaps) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
       const std::int64_t of_mesh = number++;
-      if (!meets_planes(model, b, shape)) continue;
+      if (!touches_planes(model, b, shape)) continue;
       const HullCorners& hull = *model.meshes[static_cast<std::size_t>(shape.mesh)].corners;
       for (std::size_t w = 0; w < model.walls.size(); ++w) {
         const Wall& wall = model.walls[w];
@@ -253,7 +253,7 @@ std::vector<StartItem> items_of(const Model& model, const Share& share,
   std::vector<StartItem> items = collect_items(model, share);
   std::erase_if(
       items, [&](const StartItem& item) { return std::ranges::find(numbers, item.number) == numbers.end(); });
-  return share.everywhere(std::move(items));
+  return share.all_gather(std::move(items));
 }
 
 // "; particle 3: of particles.grains, at (0.1, 0.2), radius 0.05 m"; "" for a plane.
@@ -294,8 +294,8 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
     const Vec3 first = table.vector("position"), spacing = table.vector("spacing");
     for (const DeckTable& shape : table.tables("shapes")) {
       if (!collides(table, shape)) continue;
-      for (const Vec3 corner : ShapePlaces(shape, space.dimension).corners()) {
-        const Vec3 offset = turned_at_start(table, corner);
+      for (const Vec3 corner : ShapePositions(shape, space.dimension).corners()) {
+        const Vec3 offset = rotated_at_start(table, corner);
         for (std::int64_t i = 0; i < count; ++i) {
           const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
           if (allowed.inside(p)) continue;
@@ -309,7 +309,7 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
 }
 
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log) {
-  share.together([&] { check_particles_inside(deck, model); });
+  share.collectively([&] { check_particles_inside(deck, model); });
   std::vector<StartItem> items = collect_items(model, share);
   // As in a run: a particle may start many periods outside the domain.
   for (StartItem& item : items) item.position = in_periodic_box(model.space, item.position);
@@ -321,8 +321,8 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   warn_of_meshes_across(model, log);
   find_mesh_overlaps(model, items, own);
   const Real reach = 2 * radius_range(model).largest;
-  items = share.near_each_other(std::move(items), model.space, reach);
-  share.together([&] { find_pair_overlaps(model, items, reach, own); });
+  items = share.distribute_by_boxes(std::move(items), model.space, reach);
+  share.collectively([&] { find_pair_overlaps(model, items, reach, own); });
   const Overlaps all = overlaps_of_all(own, share);
   if (all.ratio <= kRoundOff) return;
   const ItemNames names(model);

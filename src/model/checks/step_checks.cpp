@@ -30,15 +30,15 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
       "a velocity-verlet step of step / substeps = {:.4g} s is unstable in dense contacts of \"{}\" and "
       "\"{}\"; it must be at most {:.4g} s",
       step, names[a], names[b], tightest->explicit_step);
-  if (tightest->law.exponent == 1) deck.table("time").fail("step", problem + left_out_step(model));
+  if (tightest->law.exponent == 1) deck.table("time").fail("step", problem + default_step_text(model));
   log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)" +
-              left_out_step(model));
+              default_step_text(model));
 }
 
 // Effective masses of a body at a contact [kg]: for forces along the normal, and for tangential friction; 0:
 // no contact.
 struct MassesOnContact {
-  Real pushed = 0, rubbed = 0;
+  Real pushed = 0, frictional = 0;
   bool beside_particle = false;  // otherwise only other bodies or walls are touched
 };
 
@@ -47,13 +47,13 @@ struct MassesOnContact {
 MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
   const bool beside_particle = other.particles > 0;
-  const MassesOnContact alone{body.smallest_body_mass, body.smallest_rubbed_mass, beside_particle};
-  if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
-  if (!bodies_can_meet(model, uses, a, b) || (beside_particle && !model.rotates()))
+  const MassesOnContact alone{body.smallest_body_mass, body.smallest_frictional_mass, beside_particle};
+  if (alone.pushed == 0 || !can_touch(model, uses, a, b)) return {};
+  if (!bodies_can_touch(model, uses, a, b) || (beside_particle && !model.rotates()))
     return beside_particle || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
   if (other.smallest_body_mass == 0) return alone;  // all other objects have infinite mass
   return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),
-          reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass), beside_particle};
+          reduced_mass(body.smallest_frictional_mass, other.smallest_frictional_mass), beside_particle};
 }
 
 }  // namespace
@@ -70,12 +70,12 @@ BodyStepLimit body_step_limit(const Model& model) {
       if (masses.pushed == 0) continue;
       const PairSize size =
           smallest_partners(uses[static_cast<std::size_t>(a)], uses[static_cast<std::size_t>(b)]);
-      const KelvinVoigt& law = model.contact.law(a, b);
+      const NormalLawParameters& law = model.contact.law(a, b);
       Real frequency = contact_frequency(typical_stiffness(law, size), masses.pushed);
       if (model.rotates())
-        frequency = std::max(
-            frequency,
-            contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size), masses.rubbed));
+        frequency = std::max(frequency,
+                             contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size),
+                                               masses.frictional));
       const Real allowed = masses.beside_particle || model.rotates() ? kMostBodyPhase : kMostAmongBodies;
       limit.good_frequency = std::max(limit.good_frequency, frequency);
       if (frequency / allowed > limit.frequency / limit.most_phase)
@@ -96,15 +96,15 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
       "must be at most {:.3g} s",
       limit.frequency, limit.most_step());
   if (model.time.step > limit.most_step() && limit.is_exact)
-    deck.table("time").fail("step", finding + left_out_step(model));
+    deck.table("time").fail("step", finding + default_step_text(model));
   if (model.time.step > limit.good_step())
     log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding, limit.good_step(),
-                            left_out_step(model)));
+                            default_step_text(model)));
 }
 
 // Advice for a step in which something moves by more than a radius. A fixed implicit step has no default.
 std::string slower_than_radius(const Model& model) {
-  if (model.integrator.particles == ParticleIntegrator::velocity_verlet) return left_out_step(model);
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet) return default_step_text(model);
   const Real most = two_digits_below(unnoticed_step(model));
   return model.time.control == StepControl::adaptive ? fmt::format("; left out, it is at most {:g} s", most)
                                                      : fmt::format("; it should be at most {:g} s", most);
@@ -145,10 +145,11 @@ void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
         "a body on a plane, with all vertices of a face of its mesh, oscillates with {:.4g} rad/s; with "
         "velocity-verlet particles the bodies' step must be at most {:.3g} s",
         on.frequency, most / on.frequency);
-    if (phase > most && on.is_exact && !held) deck.table("time").fail("step", finding + left_out_step(model));
+    if (phase > most && on.is_exact && !held)
+      deck.table("time").fail("step", finding + default_step_text(model));
     if (phase > (held ? most : kGoodBodyPhase))
       log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding,
-                              kGoodBodyPhase / on.frequency, left_out_step(model)));
+                              kGoodBodyPhase / on.frequency, default_step_text(model)));
   }
 }
 

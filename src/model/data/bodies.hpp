@@ -150,10 +150,10 @@ struct Bushing {
   Matrix6 damping{};              // C, in the units of K times s
   std::array<Real, 6> preload{};  // [N, N m]
 
-  bool resists_turning() const;
+  bool resists_rotation() const;
 };
 // The rotation vector jumps at pi; the limit leaves the distance that two bodies can rotate in one step.
-inline constexpr Real kMostBushingTurn = 2.6;  // [rad]
+inline constexpr Real kMaxBushingRotation = 2.6;  // [rad]
 
 // Force at a point of a body, and a torque. The direction is global, or turns with the body: of a spatial
 // body that of the torque too.

@@ -55,7 +55,7 @@ inline Vec3 global_spin(const BodyMotion& body) {
 
 // Rotation from one instant to a later one, in the global frame; less than half a revolution for spatial
 // bodies [rad].
-inline Vec3 turn_between(const BodyMotion& before, const BodyMotion& after) {
+inline Vec3 rotation_between(const BodyMotion& before, const BodyMotion& after) {
   if (after.kind == BodyKind::planar) return {0, 0, after.angle - before.angle};
   return rotation_matrix(before.orientation) *
          rotation_vector(conjugate(before.orientation) * after.orientation);
@@ -65,17 +65,17 @@ inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
   const Vec3 arm = body_arm(body, offset);
   if (body.kind == BodyKind::spatial)
     return {body.position + arm, body.velocity + cross(global_spin(body), arm)};
-  return {body.position + arm, body.velocity + turning_velocity(body.angular_velocity, arm)};
+  return {body.position + arm, body.velocity + rotational_velocity(body.angular_velocity, arm)};
 }
 
 // Contact wrench on one body, or on a wall with a pose.
 struct BodyWrench {
-  Vec3 force;            // [N]
-  Vec3 torque;           // about the centre of mass [N m]
-  Real slide_power = 0;  // power of friction on a wall with a tangential surface velocity [W]
+  Vec3 force;           // [N]
+  Vec3 torque;          // about the centre of mass [N m]
+  Real belt_power = 0;  // power of friction on a wall with a tangential surface velocity [W]
 
   BodyWrench& operator+=(const BodyWrench& other) {
-    force += other.force, torque += other.torque, slide_power += other.slide_power;
+    force += other.force, torque += other.torque, belt_power += other.belt_power;
     return *this;
   }
 };

@@ -10,8 +10,8 @@
 
 namespace scree {
 
-// A coordinate c of a joint is an angle [rad] or a displacement [m] (model/joint_coordinates.hpp), or the
-// length of a cylinder [m]; where none is named, the only one, or the first. An effort is the generalized
+// A coordinate c of a joint is an angle [rad] or a displacement [m] (model/derived/joint_coordinates.hpp), or
+// the length of a cylinder [m]; where none is named, the only one, or the first. An effort is the generalized
 // force on c [N m, N]; above 0 it increases c.
 
 // A function of c or of its rate, given by points; beyond them it is extrapolated linearly. Empty: 0.

@@ -31,7 +31,7 @@ struct Space {
   Vec3 min, max;                            // [m]; in 2D min.z = max.z = 0
   std::array<Boundary, kSides> boundary{};  // periodic sides come in pairs
   int wall_material = 0;                    // material of the sides that are walls
-  Leaving leaving = Leaving::error;
+  OutsidePolicy leaving = OutsidePolicy::error;
 };
 
 // Prescribed motion of a wall: one coordinate, relative to its value at t = 0.
@@ -53,9 +53,9 @@ struct Wall {
   Vec3 surface_velocity{};  // tangential velocity in the wall's frame, the global one at t = 0 [m/s]
 
   bool moves() const { return !motions.empty(); }
-  bool runs() const { return surface_velocity != Vec3{}; }  // tangential surface velocity
+  bool is_conveyor() const { return surface_velocity != Vec3{}; }  // tangential surface velocity
   // Whether its contacts are computed from the surface's pose: all surfaces but static planes.
-  bool is_placed() const { return mesh >= 0 || moves() || runs(); }
+  bool has_pose() const { return mesh >= 0 || moves() || is_conveyor(); }
 };
 
 // Triangles that walls and bodies refer to.
@@ -85,23 +85,25 @@ struct CombinedPair {
 // One law per unordered pair of materials.
 struct Contact {
   std::vector<std::string> material_names;
-  std::vector<KelvinVoigt> laws;           // [i * materials + j], symmetric
+  std::vector<NormalLawParameters> laws;   // [i * materials + j], symmetric
   std::vector<Friction> friction;          // [i * materials + j]; empty: no contact has friction
-  std::vector<RollingResistance> rolling;  // [i * materials + j]; empty: no contact has rolling resistance
+  std::vector<RollingParameters> rolling;  // [i * materials + j]; empty: no contact has rolling resistance
   std::vector<Real> wear;  // [i * materials + j], volume per dissipation of friction [1/Pa]; empty: no wear
   std::vector<CombinedPair> combined;  // the pairs that the deck does not give
-  Real reach = 0;                      // largest distance between surfaces at which a force acts [m]
+  Real interaction_range = 0;          // largest distance between surfaces at which a force acts [m]
   Real skin = 0;  // distance between surfaces up to which the neighbour list has pairs [m]
   bool connected_bodies_touch = false;
 
   int materials() const { return static_cast<int>(material_names.size()); }
-  const KelvinVoigt& law(int i, int j) const { return laws[static_cast<std::size_t>(i * materials() + j)]; }
+  const NormalLawParameters& law(int i, int j) const {
+    return laws[static_cast<std::size_t>(i * materials() + j)];
+  }
   // Only where some pair has friction.
   const Friction& friction_of(int i, int j) const {
     return friction[static_cast<std::size_t>(i * materials() + j)];
   }
-  RollingResistance rolling_of(int i, int j) const {
-    return rolling.empty() ? RollingResistance{} : rolling[static_cast<std::size_t>(i * materials() + j)];
+  RollingParameters rolling_of(int i, int j) const {
+    return rolling.empty() ? RollingParameters{} : rolling[static_cast<std::size_t>(i * materials() + j)];
   }
 };
 
@@ -151,7 +153,7 @@ struct Output {
   std::int64_t history_efforts = 100;    // number of motors, springs, limits and frictions of joints recorded
   std::int64_t history_coordinates = 0;  // number of joints recorded whose coordinates are
   std::int64_t history_bushings = 100;   // number of bushings recorded
-  std::vector<std::string> fields;       // of particles in snapshots; names in dem/output_fields.hpp
+  std::vector<std::string> fields;       // of particles in snapshots; names in dem/reports/output_fields.hpp
   std::vector<SurfaceField> surface_fields;  // of triangles in snapshots, each once
   std::vector<int> history_bodies;           // indices into Model::bodies
   std::vector<GlobalId> history_particles;   // global ids
@@ -210,8 +212,9 @@ struct Model {
   bool rotates() const { return !contact.friction.empty(); }
   // Whether contacts resist rolling or twisting.
   bool rolls() const { return !contact.rolling.empty(); }
-  bool attracts() const {
-    return std::ranges::any_of(contact.laws, [](const KelvinVoigt& law) { return law.attracts(); });
+  bool is_cohesive() const {
+    return std::ranges::any_of(contact.laws,
+                               [](const NormalLawParameters& law) { return law.is_cohesive(); });
   }
 };
 

@@ -33,7 +33,7 @@ class Share {
   IdRange part(std::int64_t count) const { return id_range(count, rank(), size()); }
 
   // Runs an action; an exception on one rank is thrown on all ranks.
-  virtual void together(const std::function<void()>& action) const { action(); }
+  virtual void collectively(const std::function<void()>& action) const { action(); }
   virtual std::int64_t sum(std::int64_t value) const { return value; }
   virtual std::int64_t min(std::int64_t value) const { return value; }
   // Largest of values >= 0.
@@ -41,11 +41,11 @@ class Share {
   // Sum over the ranks on this rank's host.
   virtual Real sum_on_host(Real value) const { return value; }
   // The items of all ranks, on every rank.
-  virtual std::vector<StartItem> everywhere(std::vector<StartItem> own) const { return own; }
+  virtual std::vector<StartItem> all_gather(std::vector<StartItem> own) const { return own; }
   // Distributes the items, some of them to several ranks, so that any two within `reach` [m] of each other,
   // also across periodic sides, are on a rank that owns one of them.
-  virtual std::vector<StartItem> near_each_other(std::vector<StartItem> own, const Space&,
-                                                 Real /*reach*/) const {
+  virtual std::vector<StartItem> distribute_by_boxes(std::vector<StartItem> own, const Space&,
+                                                     Real /*reach*/) const {
     return own;
   }
 };

@@ -17,22 +17,22 @@ namespace scree {
 template <class Normal>
 struct Beside {
   using Slider = LinearSlider;
-  static constexpr bool attracts = false;
+  static constexpr bool is_cohesive = false;
 };
 template <>
 struct Beside<HertzLaw> {
   using Slider = MindlinSlider;
-  static constexpr bool attracts = false;
+  static constexpr bool is_cohesive = false;
 };
 template <>
 struct Beside<JkrLaw> {
   using Slider = MindlinSlider;
-  static constexpr bool attracts = true;
+  static constexpr bool is_cohesive = true;
 };
 template <class Repulsion>
-struct Beside<AttractedLaw<Repulsion>> {
+struct Beside<CohesiveLaw<Repulsion>> {
   using Slider = typename Beside<Repulsion>::Slider;
-  static constexpr bool attracts = true;
+  static constexpr bool is_cohesive = true;
 };
 
 // The laws of all pairs of materials, in the order of Contact::laws. `Law` accepts them all.
@@ -62,20 +62,20 @@ template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
   using Normal = std::tuple_element_t<kFirst, NormalLaws>;
   using Slider = typename Beside<Normal>::Slider;
-  constexpr bool attracts = Beside<Normal>::attracts;
-  const bool rolls = !contact.rolling.empty(), rubs = !contact.friction.empty();
+  constexpr bool is_cohesive = Beside<Normal>::is_cohesive;
+  const bool rolls = !contact.rolling.empty(), has_friction = !contact.friction.empty();
   const bool accepts = std::all_of(contact.laws.begin(), contact.laws.end(), Normal::accepts) &&
-                       (kRolls<Normal> || !rolls) && (!kHasNeck<Normal> || rubs);
+                       (kRolls<Normal> || !rolls) && (!kIsHysteretic<Normal> || has_friction);
   if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>)
     if (!accepts) return with_contact_laws<kFirst + 1>(contact, use);
   if (!accepts) throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
-  if constexpr (kHasNeck<Normal>) {
+  if constexpr (kIsHysteretic<Normal>) {
     return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
   } else {
-    if (!rubs) return use(laws_of<ContactLaw<Normal>>(contact));
+    if (!has_friction) return use(laws_of<ContactLaw<Normal>>(contact));
     if constexpr (kRolls<Normal>)
-      if (rolls || attracts) return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
-    if constexpr (!attracts)
+      if (rolls || is_cohesive) return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
+    if constexpr (!is_cohesive)
       return use(laws_of<ContactLaw<Normal, Slider>>(contact));
     else
       throw std::logic_error("with_contact_laws: a law that attracts has no form without rolling");

@@ -58,7 +58,7 @@ Quaternion read_orientation(const DeckTable& table, const std::string& prefix) {
   return table.has(quaternion) ? read_quaternion(table, quaternion) : Quaternion{};
 }
 
-Vec3 turned_at_start(const DeckTable& body, Vec3 local) {
+Vec3 rotated_at_start(const DeckTable& body, Vec3 local) {
   if (body.choice<BodyKind>("kind") == BodyKind::planar) return Rotation(body.real("angle")).turn(local);
   return rotation_matrix(read_orientation(body)) * local;
 }
@@ -77,7 +77,7 @@ Mat3 frame_about(Vec3 axis) {
   return {cross(unit, axis), unit, axis};
 }
 
-Mat3 turned_frame(const Mat3& frame, Vec3 from, Vec3 to) {
+Mat3 rotated_frame(const Mat3& frame, Vec3 from, Vec3 to) {
   const Vec3 normal = cross(from, to);
   const Real sine = norm(normal), cosine = dot(from, to);
   const Vec3 turn = sine > 0 ? (std::atan2(sine, cosine) / sine) * normal : Vec3{};

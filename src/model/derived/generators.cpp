@@ -49,7 +49,7 @@ Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, R
     const std::size_t end = (part + 1) * radius.size() / kParts;
     const auto count = scale * static_cast<Real>(end - i);
     for (; i < end; ++i) sums.add(box.dimension, radius[i] + box.gap / 2, scale / volume);
-    const Real chance = insertion_chance(box.dimension, sums, radius[i - 1] + box.gap / 2);
+    const Real chance = insertion_probability(box.dimension, sums, radius[i - 1] + box.gap / 2);
     failures += count * std::exp(-2 * chance * static_cast<Real>(box.tries));
   }
   return failures;

@@ -80,7 +80,7 @@ JointCoordinate read_coordinate(const DeckTable& table, const Joint& joint) {
   return own.front();
 }
 
-std::vector<JointCoordinate> turning_coordinates(const Model& model, const Joint& joint) {
+std::vector<JointCoordinate> rotational_coordinates(const Model& model, const Joint& joint) {
   if (between(model, joint.body) != BodyKind::spatial) return {};
   std::vector<JointCoordinate> angles = coordinates_of(joint.kind);
   std::erase_if(angles, [](JointCoordinate c) { return !is_angle(c); });
@@ -89,7 +89,7 @@ std::vector<JointCoordinate> turning_coordinates(const Model& model, const Joint
 
 int counted_angles(const Model& model) {
   std::size_t count = 0;
-  for (const Joint& joint : model.joints) count += turning_coordinates(model, joint).size();
+  for (const Joint& joint : model.joints) count += rotational_coordinates(model, joint).size();
   return static_cast<int>(count);
 }
 

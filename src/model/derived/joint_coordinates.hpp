@@ -36,7 +36,7 @@ JointCoordinate read_coordinate(const DeckTable& table, const Joint& joint);
 
 // The angles of a joint whose full revolutions are counted, which are those in space. Planar angles are not
 // wrapped.
-std::vector<JointCoordinate> turning_coordinates(const Model& model, const Joint& joint);
+std::vector<JointCoordinate> rotational_coordinates(const Model& model, const Joint& joint);
 int counted_angles(const Model& model);  // for all joints
 
 }  // namespace scree

@@ -68,7 +68,7 @@ Real largest_eigenvalue(const std::vector<Motion>& rows, Real least) {
 // Inverse effective masses of a body on its vertices [1/kg]: for forces along a plane's normal, and for
 // tangential friction.
 struct InverseMasses {
-  Real pushed = 0, rubbed = 0;
+  Real pushed = 0, frictional = 0;
 };
 
 InverseMasses inverse_masses(const Body& body, const MeshShape& shape, const HullCorners& hull) {
@@ -79,20 +79,20 @@ InverseMasses inverse_masses(const Body& body, const MeshShape& shape, const Hul
         body.kind == BodyKind::planar ? place.x * place.x + place.y * place.y : dot(place, place);
     most.pushed = std::max(most.pushed, 1 / body.mass + lever / body.inertia);
   }
-  most.rubbed = most.pushed;
+  most.frictional = most.pushed;
   for (Index face = 0; face < hull.faces(); ++face) {
     const Vec3 normal = hull.normals[static_cast<std::size_t>(face)];
     const Vec3 axis = std::abs(normal.x) > Real(0.6) ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     const Vec3 across = cross(normal, axis), along = (1 / norm(across)) * across;
-    std::vector<Motion> pushes, rubs;
+    std::vector<Motion> pushes, has_friction;
     for (const Index corner : hull.of_face(face)) {
       const Vec3 place = shape.offset + hull.corners[static_cast<std::size_t>(corner)];
       pushes.push_back(mobility(body, place, normal));
       for (const Vec3 direction : {along, cross(normal, along)})
-        rubs.push_back(mobility(body, place, direction));
+        has_friction.push_back(mobility(body, place, direction));
     }
     most.pushed = std::max(most.pushed, largest_eigenvalue(pushes, most.pushed));
-    most.rubbed = std::max(most.rubbed, largest_eigenvalue(rubs, most.rubbed));
+    most.frictional = std::max(most.frictional, largest_eigenvalue(has_friction, most.frictional));
   }
   return most;
 }
@@ -125,13 +125,13 @@ const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& 
   return wall == model.walls.end() ? nullptr : &*wall;
 }
 
-bool may_meet_planes(const Model& model, std::size_t body, const MeshShape& shape) {
+bool may_touch_planes(const Model& model, std::size_t body, const MeshShape& shape) {
   return corners_of(model, shape) != nullptr &&
          (plane_across(model, body, shape) == nullptr || !held_bodies(model)[body]);
 }
 
-bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape) {
-  return may_meet_planes(model, body, shape) && std::ranges::any_of(model.walls, [&](const Wall& wall) {
+bool touches_planes(const Model& model, std::size_t body, const MeshShape& shape) {
+  return may_touch_planes(model, body, shape) && std::ranges::any_of(model.walls, [&](const Wall& wall) {
            return is_plane(wall) && model.contact.law(shape.material, wall.material).acts();
          });
 }
@@ -140,7 +140,7 @@ void warn_of_meshes_across(const Model& model, Log& log) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
       const Wall* const wall = plane_across(model, b, shape);
-      if (wall == nullptr || may_meet_planes(model, b, shape) ||
+      if (wall == nullptr || may_touch_planes(model, b, shape) ||
           !model.contact.law(shape.material, wall->material).acts())
         continue;
       log.warning(fmt::format(
@@ -154,7 +154,7 @@ Real largest_corner_radius(const Model& model) {
   Real largest = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes)
-      if (meets_planes(model, b, shape)) largest = std::max(largest, corners_of(model, shape)->radius);
+      if (touches_planes(model, b, shape)) largest = std::max(largest, corners_of(model, shape)->radius);
   return largest;
 }
 
@@ -163,19 +163,19 @@ CornerOscillation fastest_on_corners(const Model& model, bool held) {
   const std::vector<bool> is_held = held_bodies(model), prescribed = prescribed_bodies(model);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes) {
-      if (is_held[b] != held || prescribed[b] || !meets_planes(model, b, shape)) continue;
+      if (is_held[b] != held || prescribed[b] || !touches_planes(model, b, shape)) continue;
       const Body& body = model.bodies[b];
       const HullCorners& hull = *corners_of(model, shape);
       const InverseMasses masses = inverse_masses(body, shape, hull);
       const PairSize size{hull.radius, kInfinity, body.mass, kInfinity};
       for (const Wall& wall : model.walls) {
-        const KelvinVoigt& law = model.contact.law(shape.material, wall.material);
+        const NormalLawParameters& law = model.contact.law(shape.material, wall.material);
         if (!is_plane(wall) || !law.acts()) continue;
         Real frequency = contact_frequency(typical_stiffness(law, size), 1 / masses.pushed);
         if (model.rotates()) {
           const Friction friction = model.contact.friction_of(shape.material, wall.material);
-          frequency = std::max(frequency,
-                               contact_frequency(typical_slip_stiffness(friction, size), 1 / masses.rubbed));
+          frequency = std::max(
+              frequency, contact_frequency(typical_slip_stiffness(friction, size), 1 / masses.frictional));
         }
         if (frequency > fastest.frequency) fastest = {frequency, law.of_size(size).exponent == 1};
       }

@@ -11,9 +11,9 @@ void build_mesh_corners(Model& model);
 
 // Whether a mesh of a body may touch planes. It may not where it intersects a plane at t = 0 and the body is
 // held to the ground there, such as a shaft through a wall.
-bool may_meet_planes(const Model& model, std::size_t body, const MeshShape& shape);
+bool may_touch_planes(const Model& model, std::size_t body, const MeshShape& shape);
 // Whether the mesh may touch planes and the deck has a law for it with one of them.
-bool meets_planes(const Model& model, std::size_t body, const MeshShape& shape);
+bool touches_planes(const Model& model, std::size_t body, const MeshShape& shape);
 // A plane that the mesh intersects at t = 0 beyond round-off and contact overlaps; null: none.
 const Wall* plane_across(const Model& model, std::size_t body, const MeshShape& shape);
 // Warns of held bodies and planes that have no contact because they intersect at t = 0.

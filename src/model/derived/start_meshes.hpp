@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/twist.hpp"
+#include "base/spatial_velocity.hpp"
 #include "mesh/mesh_view.hpp"
 #include "model/data/model.hpp"
 

@@ -24,7 +24,7 @@ struct Twist {
   // The twist in a frame with the rotation `turn` and its origin at `origin` in the present frame.
   Twist seen_from(const Quaternion& turn, Vec3 origin) const {
     const Quaternion back = conjugate(turn);
-    return {turned(back, point - origin), turned(back, velocity), turned(back, spin)};
+    return {rotated(back, point - origin), rotated(back, velocity), rotated(back, spin)};
   }
 };
 
@@ -142,9 +142,9 @@ PlacedWall placed(const Wall& wall, Real end, Real t) {
       continue;
     }
     const Quaternion turn = exponential(change * motion.axis);
-    const Vec3 arm = turned(turn, twist.point - motion.point);
-    twist = {motion.point + arm, turned(turn, twist.velocity) + cross(value.rate * motion.axis, arm),
-             turned(turn, twist.spin) + value.rate * motion.axis};
+    const Vec3 arm = rotated(turn, twist.point - motion.point);
+    twist = {motion.point + arm, rotated(turn, twist.velocity) + cross(value.rate * motion.axis, arm),
+             rotated(turn, twist.spin) + value.rate * motion.axis};
     now.turn = normalized(turn * now.turn);
   }
   return now;
@@ -155,7 +155,7 @@ Real wall_speed(const Model& model, const Wall& wall, Real t) {
   if (wall.mesh >= 0)
     return fastest_along_normals(*model.meshes[static_cast<std::size_t>(wall.mesh)].surface,
                                  now.twist.seen_from(now.turn, now.twist.point));
-  const Vec3 normal = turned(now.turn, wall.normal), point = now.twist.point + turned(now.turn, wall.point);
+  const Vec3 normal = rotated(now.turn, wall.normal), point = now.twist.point + rotated(now.turn, wall.point);
   Real most = 0;
   for (const Vec3 corner : corners_in_space(model.space, point, normal))
     most = std::max(most, std::abs(dot(now.twist.at(corner), normal)));
@@ -180,13 +180,13 @@ Real wall_speed(const Model& model, const Wall& wall) {
 Vec3 in_frame_of(const Model& model, int body, Vec3 direction) {
   if (body == kGround) return direction;
   const Body& of = model.bodies[static_cast<std::size_t>(body)];
-  return of.kind == BodyKind::spatial ? turned(conjugate(of.orientation), direction)
+  return of.kind == BodyKind::spatial ? rotated(conjugate(of.orientation), direction)
                                       : Rotation(-of.angle).turn(direction);
 }
 Vec3 global(const Model& model, int body, Vec3 direction) {
   if (body == kGround) return direction;
   const Body& of = model.bodies[static_cast<std::size_t>(body)];
-  return of.kind == BodyKind::spatial ? turned(of.orientation, direction)
+  return of.kind == BodyKind::spatial ? rotated(of.orientation, direction)
                                       : Rotation(of.angle).turn(direction);
 }
 
@@ -196,7 +196,7 @@ Vec3 axis_of(const Model& model, const Joint& joint, JointCoordinate coordinate)
     return body != kGround && model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
   });
   const auto marker = [&](int side, Vec3 axis) {
-    return global(model, joint.body[side], turned(joint.marker[side], axis));
+    return global(model, joint.body[side], rotated(joint.marker[side], axis));
   };
   if (coordinate == JointCoordinate::angle_1) return marker(0, {1, 0, 0});
   if (coordinate == JointCoordinate::angle_2) return marker(1, {0, 1, 0});

@@ -43,7 +43,7 @@ TouchRule::TouchRule(const Model& model) : apart_(model.bodies.size()) {
 bool TouchRule::may_touch(int body_a, int body_b) const {
   if (body_a == kGround || body_b == kGround) return true;
   if (body_a == body_b) return false;
-  const std::vector<int>& apart = kept_apart(body_a);
+  const std::vector<int>& apart = excluded_bodies(body_a);
   return !std::binary_search(apart.begin(), apart.end(), body_b);
 }
 

@@ -27,7 +27,7 @@ class TouchRule {
   // body: an index into Model::bodies, or kGround for a particle or a wall.
   bool may_touch(int body_a, int body_b) const;
   // The bodies, besides itself, whose shapes this body's shapes must not touch; sorted, each once.
-  const std::vector<int>& kept_apart(int body) const { return apart_[static_cast<std::size_t>(body)]; }
+  const std::vector<int>& excluded_bodies(int body) const { return apart_[static_cast<std::size_t>(body)]; }
   // Whether there are two bodies whose shapes may touch.
   bool bodies_may_touch() const { return bodies_may_touch_; }
 

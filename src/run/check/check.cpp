@@ -14,7 +14,7 @@
 #include "base/index.hpp"
 #include "base/printable.hpp"
 #include "dem/backend/device.hpp"
-#include "dem/history/kept_contacts.hpp"
+#include "dem/history/packed_history.hpp"
 #include "dem/reports/output_fields.hpp"
 #include "model/checks/limits.hpp"
 #include "model/checks/memory.hpp"
@@ -23,8 +23,8 @@
 #include "model/derived/connections.hpp"
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"
-#include "run/record/link_lines.hpp"
-#include "run/report/step_trials.hpp"
+#include "run/record/joint_lines.hpp"
+#include "run/report/rebound_check.hpp"
 #include "run/state/step_clock.hpp"
 
 namespace scree {
@@ -96,7 +96,7 @@ std::string space_lines(const Model& model, int ranks) {
 
 // Resistance to rolling and twisting of a pair of materials; an empty text without any.
 std::string rolling_line(const Model& model, const PairLimit& limit) {
-  const RollingResistance rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
+  const RollingParameters rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
   std::string parts;
   const auto add = [&](const std::string& part) { parts += (parts.empty() ? "" : ", ") + part; };
   if (rolling.friction > 0)
@@ -109,13 +109,13 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
 
 // Adhesion of a pair of materials; an empty text without any.
 std::string attraction_line(const Model& model, const PairLimit& limit) {
-  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+  const NormalLawParameters& law = model.contact.law(limit.material[0], limit.material[1]);
   std::string parts;
   if (law.adhesion_work > 0)
-    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.neck ? "JKR" : "DMT", law.adhesion_work);
+    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.jkr ? "JKR" : "DMT", law.adhesion_work);
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
-  const Real reach = longest_reach(law, model.particles.totals.largest_radius);
+  const Real reach = largest_interaction_range(law, model.particles.totals.largest_radius);
   if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
@@ -134,7 +134,7 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
   std::map<MaterialPair, const CombinedPair*> made;  // mixed pairs, which the deck does not give
   for (const CombinedPair& pair : model.contact.combined) made[pair_of(pair)] = &pair;
   for (const PairLimit& limit : pair_limits(model)) {
-    const KelvinVoigt& law = limit.law;
+    const NormalLawParameters& law = limit.law;
     const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
     lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m{}, {}\n",
                          names[as_size(limit.material[0])], names[as_size(limit.material[1])],
@@ -143,7 +143,7 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
                          !sized              ? ""
                          : law.exponent == 1 ? " (smallest partners)"
                                              : " (smallest partners, at 1 % overlap)",
-                         law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
+                         law.tension || model.contact.law(limit.material[0], limit.material[1]).is_cohesive()
                              ? "tensile force allowed"
                              : "no tensile force");
     if (const auto pair = made.find(pair_of(limit)); pair != made.end())
@@ -156,7 +156,7 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
     lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
                          law.exponent == 1 ? "" : " (at 1 % overlap)");
     if (const auto trial = trial_of.find(pair_of(limit)); trial != trial_of.end())
-      lines += trial_lines(*trial->second);
+      lines += rebound_lines(*trial->second);
     if (limit.explicit_step > 0) {
       lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
                            limit.explicit_step);
@@ -222,8 +222,7 @@ std::string megabytes(Real bytes) {
 
 // Memory on the host: rank 0 holds all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
-  const Real per_particle =
-      bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
+  const Real per_particle = bytes_per_particle(model) + history_bytes_with_pairs(history_of(model.contact));
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
@@ -266,10 +265,10 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
       ranks.alone() ? "on the GPU" : "on each rank's GPU",
       meshes == 0 ? "" : fmt::format("; {} of it meshes", megabytes(static_cast<Real>(meshes))));
   choose_device(ranks);
-  const std::string trouble = device_trouble();
+  const std::string trouble = device_error();
   if (ranks.any(!trouble.empty()))
     return line + "; " + (trouble.empty() ? "another rank cannot use its GPU" : trouble) + "\n";
-  const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
+  const std::vector<DeviceClaim> claims = ranks.all_gather(std::vector{claim_device(model)});
   const auto share = [&](int rank) {
     const DeviceLoad load = load_of_device(claims, rank);
     return static_cast<Real>(load.needed) / static_cast<Real>(std::max<std::size_t>(load.free, 1));

@@ -43,7 +43,7 @@ std::string mesh_partners_line(const Model& model) {
   std::int64_t corners = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& shape : model.bodies[b].meshes)
-      if (meets_planes(model, b, shape))
+      if (touches_planes(model, b, shape))
         corners += std::ssize(model.meshes[as_size(shape.mesh)].corners->corners);
   const std::string planes =
       corners == 0 ? "" : fmt::format(", with planes at {}", counted(corners, "corner", "corners"));

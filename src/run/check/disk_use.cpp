@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "dem/kept_contacts.hpp"
-#include "model/choose_law.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
-#include "model/memory.hpp"
-#include "run/body_points.hpp"
-#include "run/checkpoint_datasets.hpp"
-#include "run/contact_network.hpp"
-#include "run/contact_rows.hpp"
-#include "run/history_columns.hpp"
-#include "run/link_lines.hpp"
-#include "run/mesh_surfaces.hpp"
-#include "run/output_plan.hpp"
+#include "dem/history/packed_history.hpp"
+#include "model/checks/memory.hpp"
+#include "model/derived/choose_law.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
+#include "run/record/body_points.hpp"
+#include "run/record/contact_network.hpp"
+#include "run/record/history_columns.hpp"
+#include "run/record/joint_lines.hpp"
+#include "run/record/mesh_surfaces.hpp"
+#include "run/record/output_plan.hpp"
+#include "run/restart/checkpoint_datasets.hpp"
+#include "run/state/contact_rows.hpp"
 
 namespace scree {
 namespace {
@@ -79,9 +79,9 @@ void add_history(const Model& model, DiskUse& use) {
 struct Sample {
   std::vector<OutputValues> particle;
   BodyPoints body;
-  MeshSurfaces::Look surface;
+  MeshSurfaces::Sample surface;
   LineSnapshot contact;
-  LinkLines::Look link;
+  JointLines::Sample link;
 };
 
 Sample sample_of(const Model& model) {
@@ -115,9 +115,9 @@ void add_snapshots(const Model& model, DiskUse& use) {
   if (!model.meshes.empty()) options.triangles = MeshSurfaces(model).triangles();
   const ContactNetwork no_contacts(model, {}, {});
   WantedLines lines{false, ContactNetwork::field_names(model), model.particles.totals.count};
-  if (model.output.links && !model.bodies.empty()) lines.links = LinkLines(model).names();
+  if (model.output.links && !model.bodies.empty()) lines.links = JointLines(model).names();
   const SnapshotCounts counts = counts_of(model, std::ssize(lines.links));
-  const MeshSurfaces::Look& surface = one.surface;
+  const MeshSurfaces::Sample& surface = one.surface;
   const auto size_of = [&](std::int64_t snapshots, bool with_contacts) {
     lines.contacts = with_contacts;
     const SnapshotsSize size = snapshots_size(
@@ -136,7 +136,7 @@ void add_snapshots(const Model& model, DiskUse& use) {
 
 void add_checkpoint(const Model& model, std::int64_t resolved_deck, DiskUse& use) {
   State state = sized_state(model);
-  state.contacts.numbers = kept_numbers(model, history_of(model.contact));
+  state.contacts.numbers = packed_numbers(model, history_of(model.contact));
   Checkpoint checkpoint = pack(state);
   checkpoint.texts = {{"fingerprint", std::string(as_size(resolved_deck), ' ')},
                       {"deck", ""},

@@ -59,7 +59,7 @@ void write_start(const Model& model, const std::string& folder, const Ranks& ran
   Log log(true);
   StageTimers timers;
   const std::unique_ptr<Backend> backend = choose_backend(model, ranks, "cpu", log);
-  BodyLink link(model, ranks);
+  BodyCoupling link(model, ranks);
   CoupledStep step(model, *backend, link, timers);
   State state;
   state.clock = StepClock(model).state();

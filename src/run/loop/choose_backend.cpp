@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "dem/backend/device.hpp"
-#include "dem/history/kept_contacts.hpp"
+#include "dem/history/packed_history.hpp"
 #include "model/checks/memory.hpp"
 #include "model/derived/choose_law.hpp"
 #include "partition/shared_model.hpp"
@@ -24,12 +24,11 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
   const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
-  const Real per_particle =
-      bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
+  const Real per_particle = bytes_per_particle(model) + history_bytes_with_pairs(history_of(model.contact));
   const ModelSize size = size_of(model);
   const Real all = per_particle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns +
                    bytes_of_shapes(size) + bytes_of_meshes(model, ranks.is_root());
-  check_memory(size, all - bytes_of_model(model), "running it on the CPU", RanksShare(ranks));
+  check_memory(size, all - bytes_of_model(model), "running it on the CPU", RankShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)

@@ -18,10 +18,10 @@
 #include "run/record/recorder.hpp"
 #include "run/report/balance.hpp"
 #include "run/report/bodies_outside.hpp"
-#include "run/report/live_view.hpp"
+#include "run/report/live_status.hpp"
 #include "run/report/surfaces_outside.hpp"
 #include "run/restart/restart.hpp"
-#include "run/state/start_book.hpp"
+#include "run/state/start_record.hpp"
 
 namespace scree {
 namespace {
@@ -37,15 +37,16 @@ class Simulation {
         restart_(options.restart.empty() ? Restart{} : read_restart(model, options, log)),
         state_(std::move(restart_.state)),
         backend_(choose_backend(model, ranks_, options.backend, log)),
-        link_(model, ranks_),
-        step_(model, *backend_, link_, timers_),
+        body_coupling_(model, ranks_),
+        step_(model, *backend_, body_coupling_, timers_),
         live_(model, options, backend_->description(), log),
         book_(restart_.starts, state_, live_.started(), backend_->description(), ranks_.size()),
         surfaces_outside_(model) {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
     ranks_.on_root([&] { folder_.clear(); });
-    recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
+    recorder_ =
+        std::make_unique<Recorder>(model, *backend_, body_coupling_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
     // A restart of a finished run into a new folder records its state there.
     const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
@@ -72,7 +73,7 @@ class Simulation {
   void progress(const State& state, Real h);
   void show_status(const std::string& status);
   void watch_bodies(const State& state);
-  void watch_escaped_particles(const std::vector<Leaver>& leavers);
+  void watch_escaped_particles(const std::vector<EscapedParticle>& escaped_particles);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
   void save_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
@@ -89,11 +90,11 @@ class Simulation {
   State state_;
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
-  BodyLink link_;
+  BodyCoupling body_coupling_;
   CoupledStep step_;
   std::unique_ptr<Recorder> recorder_;
-  LiveView live_;
-  StartBook book_;
+  LiveStatus live_;
+  StartRecord book_;
   bool body_left_ = false, load_lost_ = false, overloaded_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
@@ -105,14 +106,14 @@ void Simulation::start_or_resume() {
     state_.clock = StepClock(model_).state();
     backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
-    for (const std::string& finding : link_.start_warnings()) log_.warning(finding);
+    for (const std::string& finding : body_coupling_.start_warnings()) log_.warning(finding);
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
-    if (link_.multibody() && !link_.multibody()->redundancy().empty())
+    if (body_coupling_.multibody() && !body_coupling_.multibody()->redundancy().empty())
       log_.info(
           "redundant constraints: the reactions, which are not unique for rigid bodies, are the minimum-norm "
           "solution: " +
-          link_.multibody()->redundancy());
+          body_coupling_.multibody()->redundancy());
   } else {
     load_state();
     step_.counts() = state_.counts;
@@ -149,7 +150,8 @@ void Simulation::load_state() {
 
 // The largest change of the bodies' initial velocities, on rank 0.
 std::string Simulation::start_change() const {
-  return link_.multibody() && options_.restart.empty() ? link_.multibody()->start_change() : "";
+  return body_coupling_.multibody() && options_.restart.empty() ? body_coupling_.multibody()->start_change()
+                                                                : "";
 }
 
 // A restart in the folder of the checkpoint continues its files; in another folder new files begin.
@@ -187,19 +189,20 @@ void Simulation::watch_bodies(const State& state) {
     if (!warning.empty()) log_.warning(warning), warned = true;
   };
   if (!body_left_) warn_once(body_left_, bodies_outside_warning(model_, state.bodies, state.clock.time));
-  if (!overloaded_) warn_once(overloaded_, link_.load_warning());
+  if (!overloaded_) warn_once(overloaded_, body_coupling_.load_warning());
 }
 
 // Warns once, on every rank.
-void Simulation::watch_escaped_particles(const std::vector<Leaver>& leavers) {
+void Simulation::watch_escaped_particles(const std::vector<EscapedParticle>& escaped_particles) {
   if (load_lost_) return;
-  const std::string warning = surfaces_outside_.warning(leavers, link_.motion(), state_.clock.time);
+  const std::string warning =
+      surfaces_outside_.warning(escaped_particles, body_coupling_.motion(), state_.clock.time);
   load_lost_ = !warning.empty();
   if (load_lost_) log_.warning(warning);
 }
 
 void Simulation::progress(const State& state, Real h) {
-  if (!live_.look(state, h, recorder_->contacts())) return;
+  if (!live_.poll(state, h, recorder_->contacts())) return;
   ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
   show_status("running");
 }
@@ -225,15 +228,21 @@ ExitCode Simulation::run_to_the_end() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
   live_.begin(state_);
   show_status("running");
-  log_.info(fmt::format("{}, {}, backend {}, multibody solver {}",
-                        counted(model_.particles.totals.count, "particle", "particles"),
-                        counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
-                        link_.multibody() ? link_.multibody()->solver_description() : "none"));
-  const LoopParts parts{
-      model_,         *backend_,
-      link_,          step_,
-      *recorder_,     timers_,
-      steady_seconds, [this](const std::vector<Leaver>& leavers) { watch_escaped_particles(leavers); }};
+  log_.info(
+      fmt::format("{}, {}, backend {}, multibody solver {}",
+                  counted(model_.particles.totals.count, "particle", "particles"),
+                  counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
+                  body_coupling_.multibody() ? body_coupling_.multibody()->solver_description() : "none"));
+  const LoopParts parts{model_,
+                        *backend_,
+                        body_coupling_,
+                        step_,
+                        *recorder_,
+                        timers_,
+                        steady_seconds,
+                        [this](const std::vector<EscapedParticle>& escaped_particles) {
+                          watch_escaped_particles(escaped_particles);
+                        }};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {
@@ -273,7 +282,7 @@ void Simulation::record_failure(const std::string& why, ExitCode code) {
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
   book_.end_loop();
-  ranks_.meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
+  ranks_.error_barrier(error.what(), static_cast<int>(ExitCode::simulation_failed));
   log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
   save_last_good_state(loop);
   return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
@@ -288,7 +297,7 @@ void Simulation::save_last_good_state(StepLoop& loop) {
   }
   try {
     State* state = nullptr;
-    ranks_.together([&] { state = &loop.last_good_state(); });
+    ranks_.collectively([&] { state = &loop.last_saved_state(); });
     checkpoint(*state, "checkpoint_failed.h5");
     log_.info(fmt::format("last good state, t = {:.9g} s: {}/checkpoint_failed.h5", state->clock.time,
                           options_.output_directory));
@@ -299,14 +308,15 @@ void Simulation::save_last_good_state(StepLoop& loop) {
 
 ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->finish();
-  const std::string reactions = link_.multibody() ? link_.multibody()->reaction_warning() : "";
+  const std::string reactions =
+      body_coupling_.multibody() ? body_coupling_.multibody()->reaction_warning() : "";
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
-  if (overloaded_) log_.warning(link_.load_warning());
+  if (overloaded_) log_.warning(body_coupling_.load_warning());
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));
   summarize();  // before the record, which includes the warnings
-  log_.tell_left_out();
+  log_.report_suppressed();
   ranks_.on_root([&] { write_record(status, code); });
   show_status(status);
   return code;
@@ -319,9 +329,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.status = status, record.exit_code = static_cast<int>(code);
   record.started = live_.started(), record.ended = utc_now();
   record.backend = backend_->description();
-  record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
+  record.solver = body_coupling_.multibody() ? body_coupling_.multibody()->solver_description() : "none";
   record.start_change = start_change();
-  record.redundancy = link_.multibody() ? link_.multibody()->redundancy() : "";
+  record.redundancy = body_coupling_.multibody() ? body_coupling_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
   const LoadBalance balance = backend_->list().balance();
@@ -334,7 +344,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
-                   {"frozen_steps", n.frozen_steps},
+                   {"frozen_steps", n.lagged_steps},
                    {"list_builds", backend_->list().builds()},
                    {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
                    {"rebalances", balance.rebalances},
@@ -362,10 +372,10 @@ void Simulation::summarize() const {
       "of the time without output)",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
-  if (n.frozen_steps > 0)
+  if (n.lagged_steps > 0)
     log_.info(
         fmt::format("the friction limits were lagged in {} of the steps: shorter steps would resolve them",
-                    n.frozen_steps));
+                    n.lagged_steps));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
   log_.info(
       fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
@@ -374,8 +384,8 @@ void Simulation::summarize() const {
                   counted(state_.carried_out.left, "particle", "particles"),
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
   log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
-  const Multibody* const bodies = link_.multibody();
-  const BodiesBook of_bodies = bodies == nullptr ? BodiesBook{} : bodies_book(model_, *bodies, state_);
+  const Multibody* const bodies = body_coupling_.multibody();
+  const BodyBalance of_bodies = bodies == nullptr ? BodyBalance{} : body_balance(model_, *bodies, state_);
   if (const std::string warning = balance_warning(b, of_bodies, model_); !warning.empty())
     log_.warning(warning);
 }

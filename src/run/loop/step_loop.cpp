@@ -5,15 +5,15 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "dem/particle_store.hpp"
-#include "run/balance.hpp"
-#include "run/signals.hpp"
+#include "dem/particles/particle_store.hpp"
+#include "run/report/balance.hpp"
+#include "run/report/signals.hpp"
 
 namespace scree {
 namespace {
 
 // Share of the run's time that copies of a good state of an explicit run may take.
-constexpr double kGoodStateShare = 0.02;
+constexpr double kSaveTimeShare = 0.02;
 // Explicit steps are taken in batches of about this duration [s], and of at most so many substeps.
 constexpr double kBatchSeconds = 0.2, kMostSubsteps = 1e6;
 // Batches in mixed precision, given by numbers of the deck alone: substeps times particles in a batch, about
@@ -49,14 +49,14 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
       write_checkpoint_(std::move(write_checkpoint)),
       progress_(std::move(progress)),
       implicit_(parts.model.integrator.particles == ParticleIntegrator::hht) {
-  keep_good_state();
+  save_good_state();
 }
 
 LoopEnd StepLoop::run(Real until) {
   checkpoint_age_ = parts_.seconds();
   while (!clock_.done()) {
     if (clock_.time() >= until) return LoopEnd::paused;
-    if (look_outside() != 0) return LoopEnd::stopped_by_signal;
+    if (poll_requests() != 0) return LoopEnd::stopped_by_signal;
     take_step(until);
   }
   return LoopEnd::done;
@@ -64,7 +64,7 @@ LoopEnd StepLoop::run(Real until) {
 
 // Handles requests between two steps, the same on all ranks: a signal on any rank, or a checkpoint that rank
 // 0's clock requests. The state is complete here, so that a checkpoint does not change the steps.
-int StepLoop::look_outside() {
+int StepLoop::poll_requests() {
   const Real interval = parts_.model.output.checkpoint_wall_interval;
   const bool due = interval > 0 && ranks().is_root() && parts_.seconds() - checkpoint_age_ >= interval;
   Real wanted[] = {static_cast<Real>(signal_received()), due ? Real(1) : Real(0)};
@@ -132,11 +132,11 @@ void StepLoop::close_step(Real h) {
 void StepLoop::leave() {
   {
     const auto scope = parts_.timers.time(Stage::migrate);
-    const std::vector<Leaver> leavers = parts_.step.check_inside();
-    if (leavers.empty()) return;
-    parts_.leaving(leavers);
-    parts_.backend.particles().take_out(leavers);
-    book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
+    const std::vector<EscapedParticle> escaped_particles = parts_.step.check_inside();
+    if (escaped_particles.empty()) return;
+    parts_.leaving(escaped_particles);
+    parts_.backend.particles().remove_escaped(escaped_particles);
+    account_escaped(escaped_particles, parts_.model.space.leaving, state_.carried_out);
   }
   parts_.step.rebuild_list(parts_.model.contact.skin);  // measures stages of its own
 }
@@ -155,26 +155,26 @@ void StepLoop::output(Real h) {
   }
   if (checkpoint) write_checkpoint();
   progress_(state_, h);
-  bool stale = !implicit_ && parts_.seconds() - good_age_ > good_cost_ / kGoodStateShare;
+  bool stale = !implicit_ && parts_.seconds() - saved_at_ > save_seconds_ / kSaveTimeShare;
   if (!implicit_) ranks().broadcast(stale);
-  if (stale) keep_good_state();
+  if (stale) save_good_state();
 }
 
-void StepLoop::keep_good_state() {
+void StepLoop::save_good_state() {
   if (implicit_) return;
   const double start = parts_.seconds();
   parts_.records.write_pending();  // so that the copy counts the snapshot even if the backend fails before it
                                    // is written
   good_.reset();                   // one copy at a time
   std::vector<Particle> particles = std::move(complete_state().particles);
-  KeptContacts contacts = std::move(state_.contacts);
+  PackedHistory contacts = std::move(state_.contacts);
   std::vector<std::int64_t> works = std::move(state_.works);
   state_.particles = {}, state_.contacts = {}, state_.works = {};
   good_ = state_;
   good_->particles = std::move(particles), good_->contacts = std::move(contacts);
   good_->works = std::move(works);
-  good_age_ = parts_.seconds();
-  good_cost_ = good_age_ - start;
+  saved_at_ = parts_.seconds();
+  save_seconds_ = saved_at_ - start;
 }
 
 State& StepLoop::complete_state() {
@@ -189,6 +189,6 @@ State& StepLoop::complete_state() {
   return state_;
 }
 
-State& StepLoop::last_good_state() { return good_ ? *good_ : complete_state(); }
+State& StepLoop::last_saved_state() { return good_ ? *good_ : complete_state(); }
 
 }  // namespace scree

@@ -25,13 +25,14 @@ double steady_seconds();
 struct LoopParts {
   const Model& model;
   Backend& backend;
-  BodyLink& link;
+  BodyCoupling& link;
   CoupledStep& step;
   Records& records;
   StageTimers& timers;
   std::function<double()> seconds = steady_seconds;  // a monotonic clock [s]
   // Called with the particles that leave the domain, after the step in which they do.
-  std::function<void(const std::vector<Leaver>&)> leaving = [](const std::vector<Leaver>&) {};
+  std::function<void(const std::vector<EscapedParticle>&)> leaving = [](const std::vector<EscapedParticle>&) {
+  };
 };
 
 // Number of explicit steps of the bodies in one batch. step_seconds: wall time per step of the last batch;
@@ -53,10 +54,10 @@ class StepLoop {
   State& complete_state();
   // The state to save after a failure. Implicit: the start of the failed step. Explicit: a copy made some
   // steps ago, because explicit steps cannot be undone.
-  State& last_good_state();
+  State& last_saved_state();
 
  private:
-  int look_outside();
+  int poll_requests();
   void write_checkpoint();
   void take_step(Real until);
   void reject(const StepOutcome& outcome);
@@ -64,7 +65,7 @@ class StepLoop {
   void close_step(Real h);
   void leave();
   void output(Real h);
-  void keep_good_state();
+  void save_good_state();
   const Ranks& ranks() const { return parts_.link.ranks(); }
 
   LoopParts parts_;
@@ -78,8 +79,8 @@ class StepLoop {
   int signal_ = 0;
   double checkpoint_age_ = 0;  // time of the clock at the last checkpoint, or at the start of the loop [s]
   std::optional<State> good_;  // explicit: the copy of a good state
-  double good_cost_ = 0;       // duration of that copy [s]
-  double good_age_ = 0;        // time of the clock at that copy [s]
+  double save_seconds_ = 0;    // duration of that copy [s]
+  double saved_at_ = 0;        // time of the clock at that copy [s]
 };
 
 }  // namespace scree

@@ -1,7 +1,7 @@
 #include "run/record/body_points.hpp"
 
 #include "base/index.hpp"
-#include "model/connections.hpp"
+#include "model/derived/connections.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {

@@ -7,7 +7,7 @@
 namespace scree {
 
 ContactNetwork::ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines)
-    : rubs_(model.rotates()) {
+    : friction_steps_(model.rotates()) {
   const IdOrder order(ranks, model.particles.totals.count, lines.global_id);
   const SurfaceSet surfaces(model);
   for (const ContactLine& line : lines.of_bodies) add(line, surfaces);
@@ -21,12 +21,12 @@ void ContactNetwork::add(const ContactLine& line, const SurfaceSet& surfaces) {
   force_.push_back(contact.force);
   normal_force_.push_back(contact.normal_force), tangential_force_.push_back(contact.tangential_force);
   overlap_.push_back(contact.overlap);
-  if (rubs_) slip_.push_back(contact.slip);
+  if (friction_steps_) slip_.push_back(contact.slip);
   const auto number = [](GlobalId id) {
     return static_cast<Index>(id >= kFirstSurfaceId ? id - kFirstSurfaceId : -1);
   };
   const auto body_of = [&](Index surface) {
-    return surface >= surfaces.ground() ? surfaces.at(surface - surfaces.ground()).carrier : -1;
+    return surface >= surfaces.ground() ? surfaces.at(surface - surfaces.ground()).parent : -1;
   };
   const Index surface = number(line.second);
   const bool with_surface = surface >= 0, with_body = surface >= surfaces.ground();
@@ -48,7 +48,7 @@ LineSnapshot ContactNetwork::snapshot() const {
   add("tangential_force", {"N", "magnitude of the tangential force"}, tangential_force_);
   add("force", {"N", "contact force on the particle or body at the line's start"}, force_);
   add("overlap", {"m", "overlap; negative: gap across which the two attract each other"}, overlap_);
-  if (rubs_) add("slip", {"m", "elongation of the tangential spring"}, slip_);
+  if (friction_steps_) add("slip", {"m", "elongation of the tangential spring"}, slip_);
   add("first", {"1", "global id of the particle at the line's start, the lower of two ids; -1: none"},
       first_);
   add("second", {"1", "global id of the particle at the line's end; -1: none"}, second_);
@@ -66,7 +66,7 @@ LineSnapshot ContactNetwork::snapshot() const {
 
 std::vector<std::string> ContactNetwork::field_names(const Model& model) {
   ContactNetwork none;
-  none.rubs_ = model.rotates();
+  none.friction_steps_ = model.rotates();
   std::vector<std::string> names;
   for (const PointField& field : none.snapshot().fields) names.push_back(field.name);
   return names;

@@ -29,7 +29,7 @@ class ContactNetwork {
  private:
   void add(const ContactLine& line, const SurfaceSet& surfaces);
 
-  bool rubs_ = false;
+  bool friction_steps_ = false;
   std::vector<Vec3> ends_, force_;
   std::vector<Real> normal_force_, tangential_force_, overlap_, slip_;
   std::vector<GlobalId> first_, second_;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/index.hpp"
-#include "model/joint_coordinates.hpp"
+#include "model/derived/joint_coordinates.hpp"
 
 namespace scree {
 namespace {
@@ -139,7 +139,7 @@ void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
     joint.add_vector("torque_", "N m", "reaction torque on the joint's second body about its joint point",
                      [k](const Sample& s) { return s.reactions[k].torque; });
     const auto in_frame = [k](const Sample& s, Vec3 Reaction::*load) {
-      return turned(conjugate(s.reactions[k].frame), s.reactions[k].*load);
+      return rotated(conjugate(s.reactions[k].frame), s.reactions[k].*load);
     };
     joint.add_vector("marker_f", "N", "reaction in the axes of the joint's first marker",
                      [in_frame](const Sample& s) { return in_frame(s, &Reaction::force); });
@@ -280,7 +280,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   const Output& output = model.output;
   step_columns({"step", out});
   energy_columns({"energy", out});
-  if (model.attracts()) cohesion_columns({"energy", out});
+  if (model.is_cohesive()) cohesion_columns({"energy", out});
   if (model.rotates()) rotation_columns({"rotation", out}, model.rolls());
   momentum_columns({"momentum", out});
   for (std::size_t k = 0; k < reactions.size(); ++k)

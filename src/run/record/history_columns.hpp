@@ -22,7 +22,7 @@ struct HistorySample {
   ParticleLedger particles;
   Ledger ledger, inside;                      // inside: without particles outside the domain
   Real balance_error = 0, exchanged = 0;      // [J]
-  RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
+  TangentialLosses losses{};                  // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // escaped particles; bodies outside the domain
   std::vector<Reaction> reactions;            // of the recorded joints and drivers
   std::vector<JointEffortSample> efforts;     // of the recorded elements on joints

@@ -34,7 +34,7 @@ MeshSurfaces::MeshSurfaces(const Model& model) : model_(model) {
     const Surface& of = surfaces.at(s);
     const int wall = surfaces.is_on_body(s) ? -1 : static_cast<int>(surfaces.number_of(s));
     if (of.kind == SurfaceKind::mesh)
-      add({s, of.carrier, wall, of.material, of.point, 0, 0, nullptr}, of.mesh);
+      add({s, of.parent, wall, of.material, of.point, 0, 0, nullptr}, of.mesh);
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const MeshShape& drawn : model.bodies[b].drawn_meshes)
@@ -61,7 +61,7 @@ SeriesTriangles MeshSurfaces::triangles() const {
       {"triangle", "number of the triangle in its file or shape, counted from 0", {}}};
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const Part& part = parts_[p];
-    const int of_part[] = {as_index(p), part.wall < 0 ? part.carrier : -1, part.wall, part.material};
+    const int of_part[] = {as_index(p), part.wall < 0 ? part.parent : -1, part.wall, part.material};
     for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
       const auto row = part.first_triangle + as_size(part.mesh->original[t]);
       for (std::size_t k = 0; k < 3; ++k)
@@ -76,9 +76,9 @@ SeriesTriangles MeshSurfaces::triangles() const {
 
 // Positions of the vertices in the periodic box. The mesh is shifted as a whole, so that its centre lies in
 // the box.
-void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* position) const {
-  const Mat3 axes = rotation_matrix(orientation(carrier));
-  const Vec3 point = point_motion(carrier, part.point).position,
+void MeshSurfaces::place(const Part& part, const BodyMotion& parent, Vec3* position) const {
+  const Mat3 axes = rotation_matrix(orientation(parent));
+  const Vec3 point = point_motion(parent, part.point).position,
              middle = point + axes * (Real(0.5) * (part.mesh->box.min + part.mesh->box.max));
   ImageCount unused;
   const Vec3 shift = Subdomain(model_.space).wrap(middle, unused) - middle;
@@ -103,7 +103,7 @@ void MeshSurfaces::spread(std::vector<T>& values) const {
     }
 }
 
-void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look) const {
+void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Sample& sample) const {
   const std::vector<TriangleWorkValues> values = work_values(works);
   const auto show = [&](SurfaceField field, std::vector<Real>& to, Real TriangleWorkValues::*value) {
     if (!model_.output.shows(field)) return;
@@ -114,31 +114,32 @@ void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look
         to[row] = values[row].*value;
       }
   };
-  show(SurfaceField::impact_work, look.impact_work, &TriangleWorkValues::impact);
-  show(SurfaceField::sliding_work, look.sliding_work, &TriangleWorkValues::sliding);
-  show(SurfaceField::wear_depth, look.wear_depth, &TriangleWorkValues::worn);
-  spread(look.wear_depth);
+  show(SurfaceField::impact_work, sample.impact_work, &TriangleWorkValues::impact);
+  show(SurfaceField::sliding_work, sample.sliding_work, &TriangleWorkValues::sliding);
+  show(SurfaceField::wear_depth, sample.wear_depth, &TriangleWorkValues::worn);
+  spread(sample.wear_depth);
 }
 
-MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
-                                      const std::vector<std::int64_t>& works) const {
-  Look look{};
-  look.position.resize(points_);
-  if (model_.output.shows(SurfaceField::pressure)) look.pressure.resize(triangles_);
-  if (model_.output.shows(SurfaceField::shear)) look.shear.resize(triangles_);
-  take_works(works, look);
+MeshSurfaces::Sample MeshSurfaces::sample(std::span<const BodyMotion> motion,
+                                          std::span<const TriangleLoad> loads,
+                                          const std::vector<std::int64_t>& works) const {
+  Sample sample{};
+  sample.position.resize(points_);
+  if (model_.output.shows(SurfaceField::pressure)) sample.pressure.resize(triangles_);
+  if (model_.output.shows(SurfaceField::shear)) sample.shear.resize(triangles_);
+  take_works(works, sample);
   for (const Part& part : parts_)
-    place(part, motion[as_size(part.carrier)], look.position.data() + part.first_point);
+    place(part, motion[as_size(part.parent)], sample.position.data() + part.first_point);
   for (const TriangleLoad& load : loads) {
     const auto part = std::ranges::find(parts_, load.surface, &Part::surface);
     const SurfaceMesh& mesh = *part->mesh;
     const auto t = as_size(load.triangle);
     const std::size_t row = part->first_triangle + as_size(mesh.original[t]);
-    if (!look.pressure.empty()) look.pressure[row] = load.normal;
-    if (!look.shear.empty()) look.shear[row] = load.tangential;
+    if (!sample.pressure.empty()) sample.pressure[row] = load.normal;
+    if (!sample.shear.empty()) sample.shear[row] = load.tangential;
   }
-  spread(look.pressure), spread(look.shear);
-  return look;
+  spread(sample.pressure), spread(sample.shear);
+  return sample;
 }
 
 }  // namespace scree

@@ -18,7 +18,7 @@ namespace scree {
 class MeshSurfaces {
  public:
   // Positions and loads of the meshes at one instant.
-  struct Look {
+  struct Sample {
     std::vector<Vec3> position;  // of the vertices [m]
     // Per triangle; only the fields that the output has.
     std::vector<Real> pressure;                   // [Pa], in 2D [N/m]
@@ -31,13 +31,13 @@ class MeshSurfaces {
   explicit MeshSurfaces(const Model& model);
   SeriesTriangles triangles() const;
   // motion: of the parents (bodies, then placed walls); works: of all ranks, empty if no field needs them.
-  Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
-            const std::vector<std::int64_t>& works) const;
+  Sample sample(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
+                const std::vector<std::int64_t>& works) const;
 
  private:
   struct Part {
-    Index surface;      // index among the placed surfaces; -1: no contact detection
-    int carrier, wall;  // wall: index into Model::walls, or -1 where the parent is a body
+    Index surface;     // index among the placed surfaces; -1: no contact detection
+    int parent, wall;  // wall: index into Model::walls, or -1 where the parent is a body
     int material;
     Vec3 point;                               // origin of the mesh in the parent's frame [m]
     std::size_t first_point, first_triangle;  // rows
@@ -46,8 +46,8 @@ class MeshSurfaces {
   void add(Part part, int mesh);
   template <class T>
   void spread(std::vector<T>& values) const;
-  void take_works(const std::vector<std::int64_t>& works, Look& look) const;
-  void place(const Part& part, const BodyMotion& carrier, Vec3* position) const;
+  void take_works(const std::vector<std::int64_t>& works, Sample& sample) const;
+  void place(const Part& part, const BodyMotion& parent, Vec3* position) const;
 
   const Model& model_;
   std::vector<Part> parts_;

@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "dem/triangle_works.hpp"
-#include "model/connections.hpp"
+#include "dem/reports/triangle_works.hpp"
+#include "model/derived/connections.hpp"
 #include "partition/id_order.hpp"
 #include "run/record/contact_network.hpp"
 #include "run/record/output_plan.hpp"
@@ -19,7 +19,7 @@ namespace scree {
 namespace {
 
 // The reactions that the deck selects for the history.
-std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, const State& state) {
+std::vector<Reaction> reactions_of(const Model& model, const BodyCoupling& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_reactions == 0) return {};
   std::vector<Reaction> reactions = link.multibody()->reactions(state.bodies, state.clock.time);
   const auto wanted = as_size(model.output.history_reactions);
@@ -27,7 +27,7 @@ std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, con
   return reactions;
 }
 
-std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& link, const State& state) {
+std::vector<JointEffortSample> efforts_of(const Model& model, const BodyCoupling& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_efforts == 0) return {};
   std::vector<JointEffortSample> efforts = link.multibody()->joint_efforts(state.bodies, state.clock.time);
   const auto wanted = as_size(model.output.history_efforts);
@@ -35,12 +35,12 @@ std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& li
   return efforts;
 }
 
-std::vector<JointReading> coordinates_of(const BodyLink& link, const State& state) {
+std::vector<JointReading> coordinates_of(const BodyCoupling& link, const State& state) {
   if (link.multibody() == nullptr) return {};
   return link.multibody()->joint_readings(state.bodies, state.clock.time);
 }
 
-std::vector<BushingSample> bushings_of(const Model& model, const BodyLink& link, const State& state) {
+std::vector<BushingSample> bushings_of(const Model& model, const BodyCoupling& link, const State& state) {
   if (link.multibody() == nullptr || model.output.history_bushings == 0) return {};
   std::vector<BushingSample> bushings = link.multibody()->bushings(state.bodies, state.clock.time);
   const auto wanted = as_size(model.output.history_bushings);
@@ -83,9 +83,9 @@ EnergyExtremes extremes_of(const HistorySample& now, const State& state) {
 
 }  // namespace
 
-Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
-                   const State& state)
-    : model_(model), backend_(backend), link_(link) {
+Recorder::Recorder(const Model& model, Backend& backend, const BodyCoupling& link,
+                   const std::string& directory, const State& state)
+    : model_(model), backend_(backend), body_coupling_(link) {
   link.ranks().on_root([&] {
     columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state),
                                coordinates_of(link, state), bushings_of(model, link, state));
@@ -100,7 +100,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
   options.keep = static_cast<int>(state.snapshots), options.ranks = link.ranks();
   if (surfaces_) options.triangles = surfaces_->triangles();
   snapshots_.emplace(directory, options, wanted_lines());
-  if (writes_late()) backend.set_idle_work([this] { write_pending(); });
+  if (writes_deferred()) backend.set_idle_work([this] { write_pending(); });
 }
 
 WantedLines Recorder::wanted_lines() const {
@@ -112,7 +112,9 @@ WantedLines Recorder::wanted_lines() const {
 
 // Snapshots are written late only on a single rank: with several ranks the writing is collective, and the
 // ranks wait for their devices at different times.
-bool Recorder::writes_late() const { return backend_.computes_asynchronously() && link_.ranks().alone(); }
+bool Recorder::writes_deferred() const {
+  return backend_.computes_asynchronously() && body_coupling_.ranks().alone();
+}
 
 Recorder::~Recorder() { backend_.set_idle_work({}); }
 
@@ -134,20 +136,20 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   balance(state, sample);
   sample.left = state.carried_out.left;
   sample.bodies_outside = bodies_outside(model_, state.bodies).count;
-  sample.reactions = reactions_of(model_, link_, state);
-  sample.efforts = efforts_of(model_, link_, state);
-  sample.coordinates = coordinates_of(link_, state);
-  sample.bushings = bushings_of(model_, link_, state);
-  sample.contacts = target_contacts(model_, link_, state, backend_);
-  if (link_.multibody() != nullptr && !model_.output.history_bodies.empty())
-    sample.bodies = link_.multibody()->motion(state.bodies);
-  sample.traced = traced_of(model_, link_.ranks(), backend_);
+  sample.reactions = reactions_of(model_, body_coupling_, state);
+  sample.efforts = efforts_of(model_, body_coupling_, state);
+  sample.coordinates = coordinates_of(body_coupling_, state);
+  sample.bushings = bushings_of(model_, body_coupling_, state);
+  sample.contacts = target_contacts(model_, body_coupling_, state, backend_);
+  if (body_coupling_.multibody() != nullptr && !model_.output.history_bodies.empty())
+    sample.bodies = body_coupling_.multibody()->motion(state.bodies);
+  sample.traced = traced_of(model_, body_coupling_.ranks(), backend_);
   return sample;
 }
 
 void Recorder::sample_energies(State& state) {
   const Real kinetic = backend_.reports().inside_kinetic();
-  const Multibody* const bodies = link_.multibody();
+  const Multibody* const bodies = body_coupling_.multibody();
   const Real elastic = bodies == nullptr ? 0 : bodies->energies(state.bodies, state.clock.time).elastic;
   add_sample(state.balance, extremes_at(kinetic, elastic, state.bodies));
 }
@@ -160,11 +162,11 @@ void Recorder::rebase_balance(State& state) {
 
 void Recorder::take_energies(const State& state, HistorySample& sample) const {
   sample.particles = backend_.reports().ledger(verlet_step(model_));
-  sample.ledger =
-      make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  sample.ledger = make_ledger(sample.particles, state.carried_out, body_coupling_.multibody(), state.bodies,
+                              state.clock.time);
   sample.inside = inside_ledger(sample.ledger, sample.particles, state.carried_out);
   // The check is left out at the start, where the first step gives a more specific error.
-  if (state.balance.open && link_.ranks().any(!std::isfinite(sample.ledger.mechanical())))
+  if (state.balance.open && body_coupling_.ranks().any(!std::isfinite(sample.ledger.mechanical())))
     throw SimulationError("stage output: the energy of particles and bodies is not finite");
 }
 
@@ -182,34 +184,36 @@ void Recorder::snapshot(State& state) {
   const Reports::Instant now(backend_.reports());
   backend_.reports().start_output();
   PendingSnapshot next{state.clock.time, {}, {}, {}, {}};
-  const std::vector<BodyMotion> motion = link_.motion();
+  const std::vector<BodyMotion> motion = body_coupling_.motion();
   if (!model_.bodies.empty()) {
     const ShapePack shapes = backend_.reports().pack_shapes();
-    const std::vector<ContactSum> contacts = backend_.reports().carrier_contacts();
-    if (link_.ranks().is_root()) next.bodies = body_points(model_, shapes, motion, contacts);
+    const std::vector<ContactSum> contacts = backend_.reports().parent_contacts();
+    if (body_coupling_.ranks().is_root()) next.bodies = body_points(model_, shapes, motion, contacts);
   }
   if (!model_.meshes.empty()) {
     const Output& output = model_.output;
     std::vector<TriangleLoad> loads;
     if (output.shows(SurfaceField::pressure) || output.shows(SurfaceField::shear))
       loads = backend_.reports().triangle_loads();
-    const std::vector<std::int64_t> works = all_works(backend_.particles().works(), link_.ranks());
-    if (surfaces_) next.surfaces = surfaces_->look(motion, loads, works);
+    const std::vector<std::int64_t> works = all_works(backend_.particles().works(), body_coupling_.ranks());
+    if (surfaces_) next.surfaces = surfaces_->sample(motion, loads, works);
   }
   if (model_.output.contacts) next.contacts = backend_.reports().contact_lines();
-  if (links_) next.links = links_->look(*link_.multibody(), state.bodies, state.clock.time, motion);
+  if (links_)
+    next.links = links_->sample(*body_coupling_.multibody(), state.bodies, state.clock.time, motion);
   pending_ = std::move(next);
   ++state.snapshots;
-  if (!writes_late()) write_pending();
+  if (!writes_deferred()) write_pending();
 }
 
 void Recorder::write_pending() {
   if (!pending_) return;
   PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticleOutput p = in_id_order(link_.ranks(), model_, backend_.reports().output());
+  const ParticleOutput p = in_id_order(body_coupling_.ranks(), model_, backend_.reports().output());
   ContactNetwork contacts;
-  if (model_.output.contacts) contacts = ContactNetwork(model_, link_.ranks(), std::move(snapshot.contacts));
-  const MeshSurfaces::Look& surfaces = snapshot.surfaces;
+  if (model_.output.contacts)
+    contacts = ContactNetwork(model_, body_coupling_.ranks(), std::move(snapshot.contacts));
+  const MeshSurfaces::Sample& surfaces = snapshot.surfaces;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p.fields)},
                      snapshot.bodies.view(),
                      {surfaces.position, surfaces.pressure, surfaces.shear, surfaces.impact_work,
@@ -223,7 +227,7 @@ void Recorder::flush_history() {
 
 void Recorder::flush() {
   write_pending();
-  link_.ranks().on_root([&] { history_->flush(); });
+  body_coupling_.ranks().on_root([&] { history_->flush(); });
 }
 
 void Recorder::finish() {

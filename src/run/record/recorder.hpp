@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "coupling/body_link.hpp"
+#include "coupling/body_coupling.hpp"
 #include "dem/backend/backend.hpp"
 #include "model/data/model.hpp"
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
 #include "run/record/body_points.hpp"
 #include "run/record/history_columns.hpp"
-#include "run/record/link_lines.hpp"
+#include "run/record/joint_lines.hpp"
 #include "run/record/mesh_surfaces.hpp"
 #include "run/state/records.hpp"
 #include "run/state/state.hpp"
@@ -23,7 +23,7 @@ class Recorder : public Records {
  public:
   // Continues existing files after state.history_rows rows and state.snapshots snapshots, or starts new
   // files.
-  Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
+  Recorder(const Model& model, Backend& backend, const BodyCoupling& link, const std::string& directory,
            const State& state);
   ~Recorder() override;
   Recorder(const Recorder&) = delete;  // the backend holds its address
@@ -51,23 +51,23 @@ class Recorder : public Records {
   // A snapshot taken but not written; its particles stay in the backend until then.
   struct PendingSnapshot {
     Real time;
-    BodyPoints bodies;            // on rank 0
-    MeshSurfaces::Look surfaces;  // on rank 0, with meshes
-    ContactLines contacts;        // if the output has them
-    LinkLines::Look links;        // on rank 0, if the output has them
+    BodyPoints bodies;              // on rank 0
+    MeshSurfaces::Sample surfaces;  // on rank 0, with meshes
+    ContactLines contacts;          // if the output has them
+    JointLines::Sample links;       // on rank 0, if the output has them
   };
 
   WantedLines wanted_lines() const;
-  bool writes_late() const;
+  bool writes_deferred() const;
   HistorySample take_sample(State& state, Real h) const;  // collective; updates the balance in the state
   void take_energies(const State& state, HistorySample& sample) const;
   void balance(State& state, HistorySample& sample) const;
 
   const Model& model_;
   Backend& backend_;
-  const BodyLink& link_;
+  const BodyCoupling& body_coupling_;
   std::optional<MeshSurfaces> surfaces_;  // on rank 0, with meshes
-  std::optional<LinkLines> links_;        // on rank 0, if the output has them
+  std::optional<JointLines> links_;       // on rank 0, if the output has them
   std::vector<RecordedColumn> columns_;   // on rank 0
   std::optional<HistoryWriter> history_;  // on rank 0
   std::optional<SnapshotWriter> snapshots_;

@@ -3,16 +3,16 @@
 #include <algorithm>
 
 #include "base/index.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/surfaces/surfaces.hpp"
 
 namespace scree {
 namespace {
 
 // Index of a placed wall's parent: placed walls follow the bodies, in their order.
 std::size_t carrier_of_wall(const Model& model, int wall) {
-  std::size_t carrier = model.bodies.size();
-  for (int w = 0; w < wall; ++w) carrier += model.walls[as_size(w)].is_placed();
-  return carrier;
+  std::size_t parent = model.bodies.size();
+  for (int w = 0; w < wall; ++w) parent += model.walls[as_size(w)].has_pose();
+  return parent;
 }
 
 // Moves the torque from the parent's origin to the wall's point, which moves with the wall.
@@ -36,18 +36,18 @@ ContactSum row_sum(const std::vector<int>& bodies, const std::vector<ContactSum>
 
 }  // namespace
 
-std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link, const State& state,
+std::vector<ContactSum> target_contacts(const Model& model, const BodyCoupling& link, const State& state,
                                         Backend& backend) {
   const std::vector<ContactTarget>& targets = model.output.history_contacts;
   const auto is_plane = [&](const ContactTarget& target) {
-    return target.wall >= 0 && !model.walls[as_size(target.wall)].is_placed();
+    return target.wall >= 0 && !model.walls[as_size(target.wall)].has_pose();
   };
   const auto is_mesh = [](const ContactTarget& target) { return target.mesh >= 0; };
   std::vector<int> planes;
   for (const ContactTarget& target : targets)
     if (is_plane(target)) planes.push_back(target.wall);
   std::vector<ContactSum> on_carriers, on_surfaces;
-  if (planes.size() < targets.size()) on_carriers = backend.reports().carrier_contacts();
+  if (planes.size() < targets.size()) on_carriers = backend.reports().parent_contacts();
   if (std::ranges::any_of(targets, is_mesh)) on_surfaces = backend.reports().surface_contacts();
   const std::vector<ContactSum> on_planes = backend.reports().wall_contacts(planes);
   std::vector<BodyMotion> motion;
@@ -62,7 +62,7 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
       sum = on_wall(model.walls[as_size(target.wall)], on_carriers[carrier_of_wall(model, target.wall)],
                     link.motion()[carrier_of_wall(model, target.wall)]);
     else if (is_mesh(target))
-      sum = on_surfaces[as_size(SurfaceSet::placed_mesh(model, target.bodies.front(), target.mesh))];
+      sum = on_surfaces[as_size(SurfaceSet::posed_mesh(model, target.bodies.front(), target.mesh))];
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // on rank 0

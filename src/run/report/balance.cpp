@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "model/derived/mesh_corners.hpp"
-#include "run/report/step_trials.hpp"
+#include "run/report/rebound_check.hpp"
 
 namespace scree {
 namespace {
@@ -23,9 +23,9 @@ constexpr Real kLastBits = 16 * std::numeric_limits<Real>::epsilon();  // round-
 constexpr std::int64_t kSamplesPerDoubling = 16;
 
 EnergyExtremes wider(const EnergyExtremes& a, const EnergyExtremes& b) {
-  return {std::max(a.most_kinetic, b.most_kinetic), std::min(a.least_elastic, b.least_elastic),
-          std::max(a.most_elastic, b.most_elastic), std::min(a.least_work, b.least_work),
-          std::max(a.most_work, b.most_work)};
+  return {std::max(a.max_kinetic, b.max_kinetic), std::min(a.min_elastic, b.min_elastic),
+          std::max(a.max_elastic, b.max_elastic), std::min(a.min_work, b.min_work),
+          std::max(a.max_work, b.max_work)};
 }
 
 // Energies below this are round-off [J]. The term with the particles' weights covers sums that cancel and
@@ -44,7 +44,8 @@ Real round_off(const Ledger& ledger, const Model& model) {
 Real energy_error(const StepTrial& trial) {
   const TrialResult& r = trial.result;
   const Real normal = r.exact.restitution, tangential = std::abs(r.exact.across);
-  const Real slope = trial.rubs ? std::tan(trial.incidence) : 0;  // tangential over normal approach velocity
+  const Real slope =
+      trial.is_frictional ? std::tan(trial.incidence) : 0;  // tangential over normal approach velocity
   const Real relative_error =
       normal * normal * r.normal_error + tangential * std::max(tangential, Real(0.1)) * r.across_error;
   return 2 * relative_error / (1 + slope * slope);
@@ -107,8 +108,8 @@ EnergyExtremes extremes_at(Real kinetic, Real elastic, const MultibodyState& bod
 }
 
 Real energy_exchanged(const EnergyExtremes& extremes, const MultibodyState& bodies, const Ledger& now) {
-  return extremes.most_kinetic + (bodies.most_kinetic - bodies.least_kinetic) +
-         (extremes.most_elastic - extremes.least_elastic) + (extremes.most_work - extremes.least_work) +
+  return extremes.max_kinetic + (bodies.max_kinetic - bodies.min_kinetic) +
+         (extremes.max_elastic - extremes.min_elastic) + (extremes.max_work - extremes.min_work) +
          now.dissipated_contacts + now.dissipated_force_elements;
 }
 
@@ -119,8 +120,8 @@ void add_sample(BalanceState& balance, const EnergyExtremes& now) {
 void add_row(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& now,
              const MultibodyState& bodies) {
   if (!balance.open) balance = {true, ledger.accounted(), ledger.dissipated_integrator, 0, 0, now, ledger};
-  balance.exchanged =
-      std::max(balance.exchanged_before, energy_exchanged(wider(balance.extremes, now), bodies, ledger));
+  balance.exchanged = std::max(balance.exchanged_under_old_deck,
+                               energy_exchanged(wider(balance.extremes, now), bodies, ledger));
   balance.last = ledger;
 }
 
@@ -128,7 +129,7 @@ void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& n
   if (!balance.open) return;
   balance.start += ledger.accounted() - balance.last.accounted();
   balance.start_integrator += ledger.dissipated_integrator - balance.last.dissipated_integrator;
-  balance.exchanged_before = balance.exchanged;
+  balance.exchanged_under_old_deck = balance.exchanged;
   balance.extremes = now;
   balance.last = ledger;
 }
@@ -136,7 +137,7 @@ void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& n
 // The round-off has three terms: the energy that the forces could exchange, the weights times their distances
 // from the origin, and the kinetic energy of velocities that result from the last bits of positions. In a
 // system without motion all energies, and the energy exchanged, are that small.
-BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State& state) {
+BodyBalance body_balance(const Model& model, const Multibody& bodies, const State& state) {
   const Real t = state.clock.time;
   const MultibodyEnergies energies = bodies.energies(state.bodies, t);
   const std::vector<BodyMotion> motion = bodies.motion(state.bodies);
@@ -155,7 +156,7 @@ BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State&
 // balance error; its own ledger entry is a function of the state and oscillates. Bodies may hold much energy
 // and exchange almost none, for example a crank driven at constant speed: energy taken out of bodies is then
 // compared with the energy that they hold.
-std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model) {
+std::string balance_warning(const BalanceState& balance, const BodyBalance& bodies, const Model& model) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   const Real error = balance_error(balance), taken = taken_by_integrator(balance);
   const Real noise = round_off(balance.last, model) + bodies.round_off;

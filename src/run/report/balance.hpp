@@ -46,16 +46,16 @@ void add_row(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& 
 void rebase(BalanceState& balance, const Ledger& ledger, const EnergyExtremes& now);
 
 // Energies of the bodies at the end of a run [J].
-struct BodiesBook {
+struct BodyBalance {
   Real held = 0;       // kinetic and elastic energy
   Real taken = 0;      // by the time integration, as its ledger entry says
   Real round_off = 0;  // energies of the bodies below this are round-off
 };
-BodiesBook bodies_book(const Model& model, const Multibody& bodies, const State& state);
+BodyBalance body_balance(const Model& model, const Multibody& bodies, const State& state);
 
 // A warning if the time integration has changed the energy by more than 1 % of the energy exchanged; else an
 // empty text. Energy taken out of bodies counts only above 1 % of the energy that they hold. This is the only
 // text of a run that names a remedy for the balance error.
-std::string balance_warning(const BalanceState& balance, const BodiesBook& bodies, const Model& model);
+std::string balance_warning(const BalanceState& balance, const BodyBalance& bodies, const Model& model);
 
 }  // namespace scree

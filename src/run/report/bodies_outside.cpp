@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/index.hpp"
-#include "model/body_layout.hpp"
-#include "model/space_box.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/derived/space_box.hpp"
 
 namespace scree {
 

@@ -11,7 +11,7 @@ namespace scree {
 std::string find_scree_post();
 // Runs the program with these arguments and waits for it; its output goes into the file `log`. A failure
 // throws the last line of the output: InputError if the request cannot be fulfilled, else IoError. A signal
-// to this process (run/signals.hpp) also ends the program, and does not count as a failure.
+// to this process (run/report/signals.hpp) also ends the program, and does not count as a failure.
 void run_scree_post(const std::string& program, const std::vector<std::string>& options,
                     const std::string& log);
 

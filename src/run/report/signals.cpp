@@ -10,7 +10,7 @@ namespace {
 
 volatile std::sig_atomic_t received = 0;
 
-void remember(int signal) { received = signal; }
+void note_signal(int signal) { received = signal; }
 
 // nohup makes a program ignore the hangup of its terminal.
 bool hangup_is_ignored() {
@@ -25,7 +25,7 @@ void catch_signals() {
   sigemptyset(&caught);
   static const bool ignore_hangup = hangup_is_ignored();
   for (const int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, SIGHUP}) {
-    std::signal(signal, signal == SIGHUP && ignore_hangup ? SIG_IGN : remember);
+    std::signal(signal, signal == SIGHUP && ignore_hangup ? SIG_IGN : note_signal);
     sigaddset(&caught, signal);
   }
   pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);

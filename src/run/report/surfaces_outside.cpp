@@ -33,7 +33,7 @@ Box open_sides(const Space& space) {
 }
 
 bool particles_may_leave(const Model& model) {
-  return model.particles.totals.count > 0 && model.space.leaving != Leaving::error;
+  return model.particles.totals.count > 0 && model.space.leaving != OutsidePolicy::error;
 }
 
 // Calls visit(point, radius) for spheres and vertices, in the parent's frame, whose hull contains the
@@ -53,10 +53,10 @@ void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) 
 
 // Whether a surface is beyond an open side. 2D lines extend along z, where their domain has no sides.
 template <class Carrier>
-bool extends_beyond(const Model& model, const Carrier& carrier, const BodyMotion& motion, const Box& open) {
+bool extends_beyond(const Model& model, const Carrier& parent, const BodyMotion& motion, const Box& open) {
   const Mat3 axes = rotation_matrix(orientation(motion));
   bool beyond = false;
-  for_each_extreme(model, carrier, [&](Vec3 offset, Real radius) {
+  for_each_extreme(model, parent, [&](Vec3 offset, Real radius) {
     beyond |= !open.inside(motion.position + axes * offset, radius);
   });
   return beyond;
@@ -103,7 +103,7 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
   const WallMotions motions(model);
   std::vector<const Wall*> placed;
   for (const Wall& wall : model.walls)
-    if (wall.is_placed()) placed.push_back(&wall);
+    if (wall.has_pose()) placed.push_back(&wall);
   std::vector<bool> beyond(placed.size());
   std::vector<BodyMotion> motion(placed.size());
   for (int k = 0; k <= kInstants; ++k) {
@@ -120,13 +120,13 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
 }
 
 std::string consequence(const Model& model) {
-  return model.space.leaving == Leaving::remove
+  return model.space.leaving == OutsidePolicy::remove
              ? "are removed"
              : "are excluded from contact detection, so that no surface holds them";
 }
 
 // The periodic image of p nearest to `middle` [m].
-Vec3 image_beside(Vec3 middle, Vec3 p, Vec3 periods) {
+Vec3 image_relative_to(Vec3 middle, Vec3 p, Vec3 periods) {
   const auto along = [](Real m, Real x, Real period) {
     return period > 0 ? x - std::round((x - m) / period) * period : x;
   };
@@ -156,11 +156,11 @@ SurfacesOutside::SurfacesOutside(const Model& model) : model_(model) {
   for (const Body& body : model.bodies)
     boxes_.push_back(box_of(model, body)), names_.push_back(body_text(body));
   for (const Wall& wall : model.walls)
-    if (wall.is_placed()) boxes_.push_back(box_of(model, wall)), names_.push_back(wall_text(wall));
+    if (wall.has_pose()) boxes_.push_back(box_of(model, wall)), names_.push_back(wall_text(wall));
 }
 
-std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<const BodyMotion> motion,
-                                     Real t) const {
+std::string SurfacesOutside::warning(std::span<const EscapedParticle> escaped_particles,
+                                     std::span<const BodyMotion> motion, Real t) const {
   const Real diameter = 2 * model_.particles.totals.largest_radius;
   const Vec3 periods = periods_of(model_.space);
   for (std::size_t c = 0; c < boxes_.size(); ++c) {
@@ -168,13 +168,13 @@ std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<
     const Box& box = *boxes_[c];
     const Mat3 axes = rotation_matrix(orientation(motion[c]));
     const Vec3 middle = motion[c].position + axes * (Real(0.5) * (box.min + box.max));
-    for (const Leaver& leaver : leavers) {
-      const Vec3 place = image_beside(middle, leaver.position, periods) - motion[c].position;
-      if (!box.reaches(transposed_times(axes, place), diameter)) continue;
+    for (const EscapedParticle& escaped_particle : escaped_particles) {
+      const Vec3 place = image_relative_to(middle, escaped_particle.position, periods) - motion[c].position;
+      if (!box.is_within(transposed_times(axes, place), diameter)) continue;
       return fmt::format(
           "particle {} leaves the domain at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
           "larger domain keeps them",
-          leaver.global_id, t, names_[c], consequence(model_));
+          escaped_particle.global_id, t, names_[c], consequence(model_));
     }
   }
   return "";

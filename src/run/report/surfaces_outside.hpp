@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/reports/leaver_items.hpp"
+#include "dem/reports/escape_items.hpp"
 #include "model/data/body_exchange.hpp"
 #include "model/data/model.hpp"
 
@@ -25,7 +25,8 @@ class SurfacesOutside {
   // The warning on the first escaped particle at the surfaces of a body or wall that extends beyond an open
   // side: inside the surfaces' bounding box or less than a particle's diameter from it. Empty if there is
   // none. motion: of the bodies, then of the placed walls, at time t [s].
-  std::string warning(std::span<const Leaver> leavers, std::span<const BodyMotion> motion, Real t) const;
+  std::string warning(std::span<const EscapedParticle> escaped_particles, std::span<const BodyMotion> motion,
+                      Real t) const;
 
  private:
   const Model& model_;

@@ -9,12 +9,12 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "dem/surfaces.hpp"
-#include "dem/triangle_works.hpp"
-#include "model/body_layout.hpp"
-#include "model/connections.hpp"
-#include "model/joint_coordinates.hpp"
-#include "run/contact_rows.hpp"
+#include "dem/reports/triangle_works.hpp"
+#include "dem/surfaces/surfaces.hpp"
+#include "model/data/body_layout.hpp"
+#include "model/derived/connections.hpp"
+#include "model/derived/joint_coordinates.hpp"
+#include "run/state/contact_rows.hpp"
 
 namespace scree {
 
@@ -69,11 +69,11 @@ State sized_state(const Model& model) {
   sizes.bodies.memory.resize(as_size(memory_count(model)));
   const SurfaceSet surfaces(model);
   const bool driven =
-      std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.moves() || wall.runs(); });
-  sizes.bodies.wrench.resize(driven ? surfaces.carriers() : model.bodies.size());
-  if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
-    sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
-  if (model.output.adds_up_works()) sizes.works.resize(kWordsPerTriangle * TriangleWorks(model).triangles());
+      std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.moves() || wall.is_conveyor(); });
+  sizes.bodies.wrench.resize(driven ? surfaces.parents() : model.bodies.size());
+  if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.is_conveyor(); }))
+    sizes.bodies.belt_power.resize(surfaces.parents() - model.bodies.size());
+  if (model.output.adds_up_works()) sizes.works.resize(kLimbsPerTriangle * TriangleWorks(model).triangles());
   sizes.there = {model.rotates(), model.rolls()};
   return sizes;
 }
@@ -90,7 +90,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   if (!has_works) sizes.works.clear();
   if (has_works && !model.output.adds_up_works())
     sizes.works.resize(checkpoint.integer_array(kWorksName).size());
-  if (checkpoint.reals.count(kShapeRubbing) > 0) sizes.shapes.rubbing.of[kFrictionLoss] = 1;
+  if (checkpoint.reals.count(kShapeFrictionLosses) > 0) sizes.shapes.tangential.of[kFrictionLoss] = 1;
   for (auto [name, values] : {std::pair(kShapeContactsOf, &sizes.shape_contacts.shapes),
                               std::pair(kShapeContactsWith, &sizes.shape_contacts.keys),
                               std::pair(kShapeSidesOf, &sizes.shape_contacts.shapes),

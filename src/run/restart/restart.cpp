@@ -201,8 +201,8 @@ void reduce_to_sides(const Model& model, State& state) {
   const auto differs = [](const auto& contacts, int numbers) {
     return contacts.numbers != 0 && contacts.numbers != numbers;
   };
-  const int numbers = kept_numbers(model, history_of(model.contact)),
-            of_shapes = kept_numbers(model, history_of(without_attraction(model.contact)));
+  const int numbers = packed_numbers(model, history_of(model.contact)),
+            of_shapes = packed_numbers(model, history_of(without_cohesion(model.contact)));
   if (differs(state.contacts, numbers)) state.contacts = sides_of(state.contacts, model, numbers);
   if (differs(state.shape_contacts, of_shapes))
     state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
@@ -258,7 +258,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   const Checkpoint checkpoint = read_checkpoint(options.restart, ranks);
   Restart restart;
   Differences differences;
-  ranks.together([&] {
+  ranks.collectively([&] {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
     check_works(checkpoint, differences, model, options);
@@ -267,7 +267,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   });
   restart.state = unpack(checkpoint, ranks);
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);
-  ranks.together([&] {
+  ranks.collectively([&] {
     if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
   });
   check_hash(restart.state, checkpoint, ranks);

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "dem/history_slots.hpp"
+#include "dem/history/history_slots.hpp"
 
 namespace scree {
 namespace {
@@ -22,8 +22,8 @@ struct RowNames {
 constexpr RowNames kOfContacts{"contacts/count", "contacts/partner", "contacts/image"},
     kOfSides{"sides/count", "sides/partner", "sides/image"};
 
-const RowNames& names_of(const KeptContacts& contacts) {
-  return contacts.numbers == kSidesAlone ? kOfSides : kOfContacts;
+const RowNames& names_of(const PackedHistory& contacts) {
+  return contacts.numbers == kSidesOnly ? kOfSides : kOfContacts;
 }
 
 // Adds a dataset of rows with one integer each.
@@ -46,7 +46,7 @@ std::vector<T> read_rows(const CheckpointRows<T>& rows, std::int64_t first, std:
 // Reads the rows of this rank's contacts. below_own, below_rows: contacts of the particles of the ranks
 // below, and rows that those ranks read.
 void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t below_rows,
-                   KeptContacts& contacts) {
+                   PackedHistory& contacts) {
   const RowNames& names = names_of(contacts);
   const std::int64_t first = below_own - below_rows, count = contacts.offsets.back();
   const auto partners = read_rows(in.row_array<std::int64_t>(names.partners), first, count),
@@ -61,7 +61,7 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
 
 }  // namespace
 
-void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
+void add_contacts(const PackedHistory& contacts, Checkpoint& out) {
   if (contacts.numbers == 0) return;
   const RowNames& names = names_of(contacts);
   const std::int64_t count = std::ssize(contacts.keys);
@@ -89,16 +89,16 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
 int numbers_in(const Checkpoint& checkpoint) {
   const auto history = checkpoint.real_rows.find(kHistory);
   if (history != checkpoint.real_rows.end()) return history->second.width;
-  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesAlone : 0;
+  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesOnly : 0;
 }
 
-KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
-  KeptContacts contacts;
+PackedHistory unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
+  PackedHistory contacts;
   contacts.numbers = numbers_in(in);
   if (contacts.numbers == 0) return contacts;
   const RowNames& names = names_of(contacts);
   const std::int64_t rows = in.row_array<std::int64_t>(names.partners).count, all = ranks.sum(rows);
-  ranks.together([&] {
+  ranks.collectively([&] {
     const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(names.counts);
     contacts.set_counts(read_rows(counts, 0, counts.count));
     for (const std::int64_t count : contacts.counts())
@@ -111,21 +111,21 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
   if (ranks.sum(own) != all || (has_values && ranks.sum(in.row_array<Real>(kHistory).count) != all) ||
       ranks.sum(in.row_array<std::int64_t>(names.images).count) != all)
     throw IoError(in.path + ": the contacts' arrays do not fit together");
-  ranks.together([&] { read_contacts(in, below, below_rows, contacts); });
+  ranks.collectively([&] { read_contacts(in, below, below_rows, contacts); });
   return contacts;
 }
 
-void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash) {
+void add_contacts(const PackedHistory& contacts, std::size_t particle, BitHash& hash) {
   for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
     // Without a history the side follows from the centre, unless the centre has penetrated the surface.
-    if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[as_size(k)])) continue;
+    if (contacts.numbers == kSidesOnly && !is_penetrated(contacts.keys[as_size(k)])) continue;
     hash.add(contacts.keys[as_size(k)]);
     for (const Real value : contacts.values_of(k)) hash.add(value);
   }
 }
 
-std::string contacts_trouble(const KeptContacts& contacts, const std::vector<Particle>& particles,
-                             std::int64_t of_deck) {
+std::string contacts_error(const PackedHistory& contacts, const std::vector<Particle>& particles,
+                           std::int64_t of_deck) {
   if (contacts.numbers == 0) return "";
   if (contacts.particles() != std::ssize(particles)) return "the contacts are of another number of particles";
   for (std::size_t i = 0; i < particles.size(); ++i)

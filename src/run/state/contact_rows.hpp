@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/bit_hash.hpp"
-#include "dem/history/kept_contacts.hpp"
+#include "dem/history/packed_history.hpp"
 #include "dem/particles/particle_fields.hpp"
 #include "output/checkpoint.hpp"
 #include "partition/ranks.hpp"
@@ -15,18 +15,18 @@ namespace scree {
 
 // Adds the rows, in the order of the particles: per particle the number of its contacts, per contact the
 // partner and the values. The contacts must outlive the checkpoint and must not change meanwhile.
-void add_contacts(const KeptContacts& contacts, Checkpoint& out);
+void add_contacts(const PackedHistory& contacts, Checkpoint& out);
 // Number of values per contact in the checkpoint; 0 without such rows.
 int numbers_in(const Checkpoint& checkpoint);
 // The contacts of the particles whose rows this rank has. Throws IoError, on every rank, if the rows are
 // inconsistent. Collective.
-KeptContacts unpack_contacts(const Checkpoint& checkpoint, const Ranks& ranks);
+PackedHistory unpack_contacts(const Checkpoint& checkpoint, const Ranks& ranks);
 
 // Adds the contacts of one particle to its hash.
-void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash);
+void add_contacts(const PackedHistory& contacts, std::size_t particle, BitHash& hash);
 // Message on the first contact that is not valid for these particles, in a deck with `of_deck` particles;
 // empty if all are valid.
-std::string contacts_trouble(const KeptContacts& contacts, const std::vector<Particle>& particles,
-                             std::int64_t of_deck);
+std::string contacts_error(const PackedHistory& contacts, const std::vector<Particle>& particles,
+                           std::int64_t of_deck);
 
 }  // namespace scree

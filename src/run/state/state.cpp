@@ -14,8 +14,8 @@
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "run/contact_rows.hpp"
-#include "run/state_visitors.hpp"
+#include "run/state/contact_rows.hpp"
+#include "run/state/state_visitors.hpp"
 
 namespace scree {
 namespace {
@@ -66,17 +66,17 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("bodies/applied", state.bodies.applied);
   visit.if_any("bodies/memory", state.bodies.memory);
   visit("bodies/wrench", state.bodies.wrench);
-  visit.if_any("bodies/slide_power", state.bodies.slide_power);
+  visit.if_any("bodies/slide_power", state.bodies.belt_power);
   visit("bodies/dissipated", state.bodies.dissipated);
   visit("bodies/integrator_loss", state.bodies.integrator_loss);
   visit("bodies/driver_work", state.bodies.driver_work);
   visit("shapes/contact_loss", state.shapes.contact_loss);
   visit("shapes/loss_power", state.shapes.loss_power);
   visit("shapes/integrator_loss", state.shapes.integrator_loss);
-  visit.if_any(kShapeRubbing, state.shapes.rubbing);
-  const bool sides_alone = state.shape_contacts.numbers == kSidesAlone;
-  visit.if_any(sides_alone ? kShapeSidesOf : kShapeContactsOf, state.shape_contacts.shapes);
-  visit.if_any(sides_alone ? kShapeSidesWith : kShapeContactsWith, state.shape_contacts.keys);
+  visit.if_any(kShapeFrictionLosses, state.shapes.tangential);
+  const bool sides_only = state.shape_contacts.numbers == kSidesOnly;
+  visit.if_any(sides_only ? kShapeSidesOf : kShapeContactsOf, state.shape_contacts.shapes);
+  visit.if_any(sides_only ? kShapeSidesWith : kShapeContactsWith, state.shape_contacts.keys);
   visit.if_any(kShapeHistory, state.shape_contacts.values);
   visit.if_any(kWorksName, state.works);
   visit("carried_out/left", state.carried_out.left);
@@ -87,20 +87,20 @@ void visit_state(Visitor& visit, StateType& state) {
   if (state.there.rotates)
     for (int kind = 0; kind < kLossKinds; ++kind)
       visit(kCarriedLosses[kind], state.carried_out.losses.of[kind]);
-  visit("carried_out/drifting_energy", state.carried_out.drifting_energy);
-  visit("carried_out/drifting_integrator_loss", state.carried_out.drifting_integrator_loss);
-  visit("bodies/least_kinetic", state.bodies.least_kinetic);
-  visit("bodies/most_kinetic", state.bodies.most_kinetic);
+  visit("carried_out/drifting_energy", state.carried_out.ballistic_energy);
+  visit("carried_out/drifting_integrator_loss", state.carried_out.ballistic_integrator_loss);
+  visit("bodies/least_kinetic", state.bodies.min_kinetic);
+  visit("bodies/most_kinetic", state.bodies.max_kinetic);
   visit("balance/open", state.balance.open);
   visit("balance/start", state.balance.start);
   visit("balance/start_integrator", state.balance.start_integrator);
   visit("balance/exchanged", state.balance.exchanged);
-  visit("balance/exchanged_before", state.balance.exchanged_before);
-  visit("balance/most_kinetic", state.balance.extremes.most_kinetic);
-  visit("balance/least_elastic", state.balance.extremes.least_elastic);
-  visit("balance/most_elastic", state.balance.extremes.most_elastic);
-  visit("balance/least_work", state.balance.extremes.least_work);
-  visit("balance/most_work", state.balance.extremes.most_work);
+  visit("balance/exchanged_before", state.balance.exchanged_under_old_deck);
+  visit("balance/most_kinetic", state.balance.extremes.max_kinetic);
+  visit("balance/least_elastic", state.balance.extremes.min_elastic);
+  visit("balance/most_elastic", state.balance.extremes.max_elastic);
+  visit("balance/least_work", state.balance.extremes.min_work);
+  visit("balance/most_work", state.balance.extremes.max_work);
   visit_ledger(visit, state.balance.last);
 }
 
@@ -113,7 +113,7 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("clock/checkpoints", state.clock.checkpoints);
   visit("output/history_rows", state.history_rows);
   visit("output/snapshots", state.snapshots);
-  if (state.there.rotates) visit("counts/frozen_steps", state.counts.frozen_steps);
+  if (state.there.rotates) visit("counts/frozen_steps", state.counts.lagged_steps);
 }
 
 // Visits the datasets of the particles in a checkpoint: the ids and the fields that are present. visit: as in
@@ -216,11 +216,11 @@ namespace {
 // Derives the number of values per contact from the array lengths, unless the contacts store sides alone.
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
-  const bool has_values = contacts.numbers != kSidesAlone && count > 0;
+  const bool has_values = contacts.numbers != kSidesOnly && count > 0;
   if (contacts.keys.size() != count || (has_values ? values == 0 || values % count > 0 : values > 0))
     throw IoError(fmt::format("{}: the arrays {}, {} and {} do not fit together", path, kShapeContactsOf,
                               kShapeContactsWith, kShapeHistory));
-  if (contacts.numbers != kSidesAlone) contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
+  if (contacts.numbers != kSidesOnly) contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
   for (std::size_t k = 1; k < count; ++k)
     if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
         std::pair(contacts.shapes[k], contacts.keys[k]))
@@ -229,11 +229,11 @@ void count_numbers(const std::string& path, ShapeContacts& contacts) {
 
 }  // namespace
 
-int shape_numbers_in(const Checkpoint& in) { return in.integers.count(kShapeSidesOf) > 0 ? kSidesAlone : 0; }
+int shape_numbers_in(const Checkpoint& in) { return in.integers.count(kShapeSidesOf) > 0 ? kSidesOnly : 0; }
 
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
-  ranks.together([&] {  // one rank's rows may be unreadable
+  ranks.collectively([&] {  // one rank's rows may be unreadable
     Reader reader(checkpoint);
     state.there = fields_there(checkpoint);
     state.shape_contacts.numbers = shape_numbers_in(checkpoint);
@@ -283,17 +283,17 @@ void check_state(const State& state, const std::string& path, std::int64_t parti
   if (found != particles - removed)
     refuse(path,
            fmt::format("{} particles; the deck has {}, of which {} were removed", found, particles, removed));
-  ranks.together([&] {
+  ranks.collectively([&] {
     FiniteCheck finite;
     visit_state(finite, state);
     if (!finite.name().empty()) refuse(path, "'" + finite.name() + "' is not finite");
     check_particles(state, path, particles);
-    const std::string wrong = contacts_trouble(state.contacts, state.particles, particles);
+    const std::string wrong = contacts_error(state.contacts, state.particles, particles);
     if (!wrong.empty()) refuse(path, wrong);
   });
   std::vector<GlobalId> ends;  // first and last id of each rank's part
   if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};
-  ends = ranks.gather_everywhere(ends);
+  ends = ranks.all_gather(ends);
   for (std::size_t k = 2; k < ends.size(); k += 2) check_ids_increase(path, ends[k - 1], ends[k]);
 }
 

@@ -16,9 +16,9 @@ namespace scree {
 // Extremes of energies over sample instants, which depend on the number of steps alone (next_energy_sample)
 // [J].
 struct EnergyExtremes {
-  Real most_kinetic = 0;                     // of particles that have not escaped
-  Real least_elastic = 0, most_elastic = 0;  // of force elements
-  Real least_work = 0, most_work = 0;        // Ledger::driver_work
+  Real max_kinetic = 0;                   // of particles that have not escaped
+  Real min_elastic = 0, max_elastic = 0;  // of force elements
+  Real min_work = 0, max_work = 0;        // Ledger::driver_work
 };
 
 // Energy balance since t = 0. Its ledgers come from inside_ledger().
@@ -27,7 +27,8 @@ struct BalanceState {
   Real start = 0;             // Ledger::accounted() at t = 0 [J]
   Real start_integrator = 0;  // Ledger::dissipated_integrator at t = 0 [J]
   Real exchanged = 0;         // energy_exchanged() at the last row [J]
-  Real exchanged_before = 0;  // energy_exchanged() with the decks before --allow-changes changed them [J]
+  Real exchanged_under_old_deck =
+      0;  // energy_exchanged() with the decks before --allow-changes changed them [J]
   EnergyExtremes extremes;
   Ledger last;  // at the last row
 };
@@ -38,8 +39,8 @@ struct State {
   MultibodyState bodies;
   // The particles of one rank, ordered by global id; between checkpoints they are in the backend.
   std::vector<Particle> particles;
-  FieldsThere there;      // fields that the particles have
-  KeptContacts contacts;  // of these particles, for laws with a history
+  FieldsThere there;       // fields that the particles have
+  PackedHistory contacts;  // of these particles, for laws with a history
   ShapeLosses shapes;
   ShapeContacts shape_contacts;  // for laws with a history; on rank 0, between checkpoints in the backend
   // Dissipation at the triangles of meshes (TriangleWorks), if the output asks for it; in a checkpoint summed
@@ -59,8 +60,8 @@ inline constexpr const char *kShapeContactsOf = "shapes/contact_shape",
                             *kShapeContactsWith = "shapes/contact_partner",
                             *kShapeHistory = "shapes/contact_history", *kShapeSidesOf = "shapes/side_shape",
                             *kShapeSidesWith = "shapes/side_partner",
-                            *kShapeRubbing = "shapes/rubbing_losses";
-// ShapeContacts::numbers according to the names of the datasets: kSidesAlone or 0.
+                            *kShapeFrictionLosses = "shapes/rubbing_losses";
+// ShapeContacts::numbers according to the names of the datasets: kSidesOnly or 0.
 int shape_numbers_in(const Checkpoint& in);
 // The fields that the particles of a checkpoint have.
 FieldsThere fields_there(const Checkpoint& in);

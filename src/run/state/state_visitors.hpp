@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "model/data/body_exchange.hpp"
 #include "output/checkpoint.hpp"
-#include "physics/rubbing_losses.hpp"
+#include "physics/tangential_losses.hpp"
 
 namespace scree {
 
@@ -34,8 +34,8 @@ class Writer {
   void if_any(const char* name, const std::vector<std::int64_t>& values) {
     if (!values.empty()) out_.integers[name] = values;
   }
-  void if_any(const char* name, const RubbingLosses& losses) {
-    if (losses != RubbingLosses{}) out_.reals[name] = {std::begin(losses.of), std::end(losses.of)};
+  void if_any(const char* name, const TangentialLosses& losses) {
+    if (losses != TangentialLosses{}) out_.reals[name] = {std::begin(losses.of), std::end(losses.of)};
   }
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto end = position.end() - static_cast<std::ptrdiff_t>(angles);
@@ -65,7 +65,7 @@ class Reader {
   void if_any(const char* name, std::vector<std::int64_t>& values) {
     if (in_.integers.count(name) > 0) values = in_.integer_array(name);
   }
-  void if_any(const char* name, RubbingLosses& losses) {
+  void if_any(const char* name, TangentialLosses& losses) {
     if (in_.reals.count(name) == 0) return;
     const std::vector<Real>& values = in_.real_array(name);
     if (values.size() != kLossKinds)
@@ -111,8 +111,8 @@ class Hasher {
   void if_any(const char*, const std::vector<std::int64_t>& values) {
     for (const std::int64_t value : values) hash_.add(value);
   }
-  void if_any(const char*, const RubbingLosses& losses) {
-    if (losses != RubbingLosses{})
+  void if_any(const char*, const TangentialLosses& losses) {
+    if (losses != TangentialLosses{})
       for (const Real value : losses.of) hash_.add(value);
   }
   // Hashes poses, and of counted angles the full revolutions if any angle has made one: the rest of an angle
@@ -144,7 +144,7 @@ class FiniteCheck {
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
   void if_any(const char*, const std::vector<std::int64_t>&) {}
-  void if_any(const char* name, const RubbingLosses& losses) {
+  void if_any(const char* name, const TangentialLosses& losses) {
     for (const Real value : losses.of) check(name, value);
   }
   void poses(const std::vector<Real>& position, std::size_t) { (*this)(kPositions, position); }

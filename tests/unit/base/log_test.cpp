@@ -16,16 +16,16 @@ TEST_CASE("ten warnings of a kind are kept, further ones are counted") {
                 std::string(1, static_cast<char>('a' + i)) + ".density: no material has it");
   for (int i = 0; i < 10; ++i) log.warning("body \"" + std::to_string(i) + "\": is far away");
   CHECK(log.warnings().size() == 30);
-  log.tell_left_out();
+  log.report_suppressed();
   REQUIRE(log.warnings().size() == 32);
   CHECK(log.warnings()[30] ==
         "1 more warning like this one: robot.toml:0:3: bodies.arma.density: no material has it");
   CHECK(log.warnings()[31].starts_with(
       "57 more warnings like this one: mesh \"link 0\": its triangles are small"));
-  log.tell_left_out();
+  log.report_suppressed();
   CHECK(log.warnings().size() == 32);
   log.warning("mesh \"late\": its triangles are small beside the particles: near 2 of them");
-  log.tell_left_out();
+  log.report_suppressed();
   CHECK(log.warnings().size() == 33);
 }
 

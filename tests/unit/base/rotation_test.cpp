@@ -22,7 +22,7 @@ TEST_CASE("the rotational velocity is the derivative of the rotated vector") {
   const Vec3 s{0.3, -1.7, 0.4};
   const Vec3 difference =
       (1 / (2 * kStep)) * (Rotation(0.7 + kRate * kStep).turn(s) - Rotation(0.7 - kRate * kStep).turn(s));
-  CHECK(norm(difference - turning_velocity(kRate, Rotation(0.7).turn(s))) < kTruncation);
+  CHECK(norm(difference - rotational_velocity(kRate, Rotation(0.7).turn(s))) < kTruncation);
 }
 
 }  // namespace scree

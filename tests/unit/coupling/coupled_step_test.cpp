@@ -141,7 +141,7 @@ struct Coupled {
     all.insert(all.end(), overrides.begin(), overrides.end());
     model = model_of(kDeck, all);
     backend = make_test_backend(model);
-    link = std::make_unique<BodyLink>(model);
+    link = std::make_unique<BodyCoupling>(model);
     step = std::make_unique<CoupledStep>(model, *backend, *link, timers);
     backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
     step->start(bodies);
@@ -150,7 +150,7 @@ struct Coupled {
   Model model;
   StageTimers timers;
   std::unique_ptr<Backend> backend;
-  std::unique_ptr<BodyLink> link;
+  std::unique_ptr<BodyCoupling> link;
   std::unique_ptr<CoupledStep> step;
   MultibodyState bodies;
 };
@@ -237,7 +237,7 @@ point = [0.0, 0.0]
 )");
   StageTimers timers;
   const std::unique_ptr<Backend> backend = make_test_backend(model);
-  BodyLink link(model);
+  BodyCoupling link(model);
   CoupledStep alone(model, *backend, link, timers);
   MultibodyState bodies;
   backend->particles().load({}, {});

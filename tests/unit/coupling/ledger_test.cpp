@@ -9,24 +9,25 @@ namespace scree {
 
 namespace {
 
-const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, {{0.25, 0.125, 0.0625}}, 2},
-                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, {{0.125, 0, 0}}, 0}};
+const std::vector<EscapedParticle> kLeavers = {
+    {3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, {{0.25, 0.125, 0.0625}}, 2},
+    {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, {{0.125, 0, 0}}, 0}};
 
 }  // namespace
 
 TEST_CASE("removed particles take all their energy along, ballistic ones the energy of their contacts") {
   CarriedOut removed, drifting;
   for (int twice = 0; twice < 2; ++twice) {
-    book_leavers(kLeavers, Leaving::remove, removed);
-    book_leavers(kLeavers, Leaving::drift, drifting);
+    account_escaped(kLeavers, OutsidePolicy::remove, removed);
+    account_escaped(kLeavers, OutsidePolicy::drift, drifting);
   }
   CHECK((removed.left == 4 && removed.removed == 4));
   CHECK((removed.energy == 16 && removed.contact_loss == 1.5 && removed.integrator_loss == 0.25));
-  CHECK(removed.losses == RubbingLosses{{0.75, 0.25, 0.125}});
+  CHECK(removed.losses == TangentialLosses{{0.75, 0.25, 0.125}});
   CHECK((drifting.left == 4 && drifting.removed == 0));
   CHECK((drifting.energy == 4 && drifting.contact_loss == 0 && drifting.integrator_loss == 0));
-  CHECK((drifting.drifting_energy == 12 && drifting.drifting_integrator_loss == 0.25));
-  CHECK((removed.drifting_energy == 0 && removed.drifting_integrator_loss == 0));
+  CHECK((drifting.ballistic_energy == 12 && drifting.ballistic_integrator_loss == 0.25));
+  CHECK((removed.ballistic_energy == 0 && removed.ballistic_integrator_loss == 0));
 }
 
 TEST_CASE("removing a particle leaves the balance as it was") {
@@ -37,7 +38,7 @@ TEST_CASE("removing a particle leaves the balance as it was") {
   CHECK((with.mechanical() == 25 && with.accounted() == 30));
 
   CarriedOut carried;
-  book_leavers(kLeavers, Leaving::remove, carried);
+  account_escaped(kLeavers, OutsidePolicy::remove, carried);
   ParticleLedger after = before;
   after.kinetic -= 6, after.contact_elastic -= 2, after.contact_loss -= carried.contact_loss;
   after.integrator_loss -= carried.integrator_loss;
@@ -69,12 +70,12 @@ TEST_CASE("inside the domain the ledger is that of a run which removes the balli
   removed.inside = {20, -3, 1 - 0.125};
   drifting.kinetic = 20 + 1000, drifting.gravitational = -3 - 994, drifting.contact_elastic = 0;
   drifting.integrator_loss = 1 + 0.5, drifting.inside = removed.inside;
-  const auto ledger = [](const ParticleLedger& particles, Leaving policy) {
+  const auto ledger = [](const ParticleLedger& particles, OutsidePolicy policy) {
     CarriedOut carried_out;
-    book_leavers(kLeavers, policy, carried_out);
+    account_escaped(kLeavers, policy, carried_out);
     return inside_ledger(make_ledger(particles, carried_out, nullptr, {}, 0), particles, carried_out);
   };
-  const Ledger one = ledger(removed, Leaving::remove), other = ledger(drifting, Leaving::drift);
+  const Ledger one = ledger(removed, OutsidePolicy::remove), other = ledger(drifting, OutsidePolicy::drift);
   CHECK(one.entries() == other.entries());
   CHECK(one.accounted() == make_ledger(before, {}, nullptr, {}, 0).accounted());
 }

@@ -26,7 +26,7 @@ struct Pair {
         cuda(make_cuda_backend(model)) {
     for (Backend* backend : {cpu.get(), cuda.get()}) {
       backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
-      backend->list().place_bodies(motion);
+      backend->list().set_body_motion(motion);
       backend->list().build(skin, timers);
       backend->particles().initial_forces();
     }
@@ -76,7 +76,7 @@ void check_contacts(Pair& pair, Real tolerance) {
   for (int k = 0; k < 2; ++k) {
     Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
     sums[k] = backend.reports().wall_contacts(all);
-    for (const ContactSum& body : backend.reports().carrier_contacts()) sums[k].push_back(body);
+    for (const ContactSum& body : backend.reports().parent_contacts()) sums[k].push_back(body);
     for (const ContactSum& surface : backend.reports().surface_contacts()) sums[k].push_back(surface);
   }
   REQUIRE(sums[0].size() == sums[1].size());
@@ -147,18 +147,18 @@ TEST_CASE("an implicit step is the same on both backends") {
 // Removes the escaped particles; returns the energy that they take along [J]: all of it, and the contacts'
 // part.
 std::array<Real, 2> leave(Backend& backend) {
-  const std::vector<Leaver> leavers = backend.particles().outside();
+  const std::vector<EscapedParticle> escaped_particles = backend.particles().outside();
   std::array<Real, 2> taken{};
-  for (const Leaver& l : leavers)
+  for (const EscapedParticle& l : escaped_particles)
     taken[0] += l.energy + l.contact_loss + l.integrator_loss + l.elastic, taken[1] += l.elastic;
-  backend.particles().take_out(leavers);
+  backend.particles().remove_escaped(escaped_particles);
   return taken;
 }
 
 TEST_CASE(
     "particles that escape after an implicit step, and the remaining ones, are the same on both backends") {
   for (const BoxCase& c : kBoxes)
-    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+    for (const OutsidePolicy leaving : {OutsidePolicy::drift, OutsidePolicy::remove}) {
       if (c.periodic_axes == c.dimension) continue;
       CAPTURE(c.name, static_cast<int>(leaving));
       Model model = dense_box(c, ParticleIntegrator::hht, kParticles);
@@ -200,7 +200,7 @@ Outcome take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h
   out.wrench.resize(pair.model.bodies.size());
   std::unique_ptr<ExplicitRun> run = backend.start_run(h);
   for (Index left = steps; left > 0;) {
-    backend.list().place_bodies(pair.motion);
+    backend.list().set_body_motion(pair.motion);
     const StepsTaken steps_taken = run->take_steps(std::min(left, most), left > most, pair.timers);
     left -= steps_taken.closed;
     if (steps_taken.open) continue;
@@ -216,7 +216,7 @@ Outcome take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h
 
 TEST_CASE("explicit steps are the same on both backends") {
   for (const BoxCase& c : kBoxes)
-    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+    for (const OutsidePolicy leaving : {OutsidePolicy::drift, OutsidePolicy::remove}) {
       CAPTURE(c.name);
       Model model = dense_box(c, ParticleIntegrator::velocity_verlet, kParticles);
       model.contact.skin = 0.004;  // expires within the run

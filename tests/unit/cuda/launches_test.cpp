@@ -57,7 +57,7 @@ Outcome explicit_steps(const Model& model, Real step, const Launches& choice) {
   const Index steps = 300, at_once = model.bodies.empty() ? steps : 1;
   const std::unique_ptr<ExplicitRun> run = box.backend->start_run(step);
   for (Index left = steps; left > 0; left -= at_once) {
-    box.backend->list().place_bodies(box.motion);
+    box.backend->list().set_body_motion(box.motion);
     REQUIRE(run->take_steps(at_once, left > at_once, box.timers).closed == at_once);
   }
   CHECK(box.backend->list().builds() > 1);

@@ -1,6 +1,6 @@
 // Predicted device memory against the memory that the run takes.
-#include "dem/device.hpp"
-#include "model/particle_file.hpp"
+#include "dem/backend/device.hpp"
+#include "model/builder/particle_file.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "unit/dem/random_box.hpp"
@@ -104,7 +104,7 @@ TEST_CASE("settled spheres with friction take at most 800 bytes each, in steps a
     constexpr std::size_t kPerContact = sizeof(std::int64_t) + 3 * sizeof(Real);
     const std::size_t rooms =
         kRecordsAtOnce * sizeof(Particle) +
-        static_cast<std::size_t>(kRowsAtOnce) * (kRoomInRows * kPerContact + sizeof(Index));
+        static_cast<std::size_t>(kRowsAtOnce) * (kContactsPerRow * kPerContact + sizeof(Index));
     CHECK(device_memory_in_use() - before - rooms <= 800 * model.particles.size());
   }
 }

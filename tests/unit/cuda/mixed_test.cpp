@@ -41,7 +41,7 @@ struct Run {
       : model(of), backend(cuda ? make_cuda_backend(model) : make_cpu_backend(model)) {
     measured_on_gpu(device_name());
     backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
-    backend->list().place_bodies({});
+    backend->list().set_body_motion({});
     backend->list().build(model.contact.skin, timers);
     backend->particles().initial_forces();
   }
@@ -140,7 +140,7 @@ TEST_CASE(
   Model model = box_model(1000, Precision::mixed);
   const bool hertz = GENERATE(false, true);
   if (hertz) {
-    KelvinVoigt& law = model.contact.laws[0];
+    NormalLawParameters& law = model.contact.laws[0];
     law = {}, law.effective_modulus = 5e6, law.damping_ratio = 0.1;
     model.contact.friction = {{0.3, 0, 2e6, 0.1}};
   } else {
@@ -170,11 +170,11 @@ TEST_CASE(
   const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
              exactly = exact.backend->reports().ledger(1e-4).contact_loss;
   CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
-  const Real rubbed = mixed.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss],
+  const Real friction_loss = mixed.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss],
              exact_friction = exact.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss];
   CHECK(exact_friction > 0);
-  CHECK(rubbed <= lost);
-  CHECK(near(rubbed, exact_friction, {.relative = 1e-3, .absolute = 1e-9}));
+  CHECK(friction_loss <= lost);
+  CHECK(near(friction_loss, exact_friction, {.relative = 1e-3, .absolute = 1e-9}));
   std::printf(
       "%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
@@ -182,9 +182,10 @@ TEST_CASE(
 
 TEST_CASE("mixed precision: cohesion and rolling resistance run in double precision, with a message") {
   Model model = box_model(10, Precision::mixed);
-  const bool attracts = GENERATE(true, false);
-  if (attracts)
-    model.contact.laws[0].attraction = 5, model.contact.laws[0].range = 0.02, model.contact.reach = 0.02;
+  const bool is_cohesive = GENERATE(true, false);
+  if (is_cohesive)
+    model.contact.laws[0].attraction = 5, model.contact.laws[0].range = 0.02,
+    model.contact.interaction_range = 0.02;
   else
     model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0.1}},
     model.contact.rolling = {{.friction = 0.2, .stiffness_factor = 2.25}};
@@ -193,8 +194,8 @@ TEST_CASE("mixed precision: cohesion and rolling resistance run in double precis
   CHECK_FALSE(mixed.backend->is_mixed());
   const std::string told = mixed.backend->description();
   CAPTURE(told);
-  CHECK(told.find(attracts ? "precision double, because particles attract each other"
-                           : "precision double, because contacts resist rolling") != std::string::npos);
+  CHECK(told.find(is_cohesive ? "precision double, because particles attract each other"
+                              : "precision double, because contacts resist rolling") != std::string::npos);
   mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
   const std::vector<Particle> a = mixed.backend->particles().records(),
                               b = exact.backend->particles().records();
@@ -230,7 +231,7 @@ TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[lon
 TEST_CASE("mixed precision: ballistic particles keep their exact positions at any distance") {
   Model model = box_model(100, Precision::mixed);
   model.gravity = {0, -9.81, 0};
-  model.space.leaving = Leaving::drift;
+  model.space.leaving = OutsidePolicy::drift;
   add_sphere(model, {50, -3, 50}, {-900, -20, 35}), add_sphere(model, {50, 50, 50}, {});
   Run mixed(model, true), exact(model, false);
   for (Run* run : {&mixed, &exact}) {

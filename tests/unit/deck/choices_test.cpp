@@ -34,8 +34,8 @@ TEST_CASE("a key is read as the choice that it was declared with") {
   const DeckTable root = parse_deck(kSmallDeck, "deck.toml", {"space.x_min=wall"}).root;
   const DeckTable& space = root.table("space");
   CHECK(space.choice<Boundary>("x_min") == Boundary::wall);
-  CHECK(space.choice<Leaving>("leaving") == Leaving::error);
-  CHECK_THROWS_AS(space.choice<Leaving>("x_min"), std::logic_error);
+  CHECK(space.choice<OutsidePolicy>("leaving") == OutsidePolicy::error);
+  CHECK_THROWS_AS(space.choice<OutsidePolicy>("x_min"), std::logic_error);
   CHECK_THROWS_AS(space.choice<Boundary>("wall_material"), std::logic_error);
   CHECK_THROWS_AS(space.choice<Boundary>("w_min"), std::logic_error);
 }

@@ -53,7 +53,7 @@ struct ContactProblem {
       const Real mass = velocity[static_cast<std::size_t>(i)].w * kInverseScale;
       // The sum of a symmetric matrix's entries bounds its norm.
       const Real bound = block.xx + block.yy + block.zz;
-      largest_stiffening = std::max(largest_stiffening, bound / mass);
+      largest_stiffness_ratio = std::max(largest_stiffness_ratio, bound / mass);
       block += Sym3{mass, 0, 0, mass, 0, mass};
       inverse_block.push_back(inverse(block));
       right_hand_side.push_back(vector(random));
@@ -133,7 +133,7 @@ struct ContactProblem {
   std::vector<Index> offsets, count;
   std::vector<ContactEntry> entries;
   std::vector<Vec3> right_hand_side;
-  Real largest_stiffening = 0;
+  Real largest_stiffness_ratio = 0;
 };
 
 }  // namespace
@@ -163,7 +163,7 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
                                        residual,
                                        halo,
                                        alone,
-                                       p.largest_stiffening,
+                                       p.largest_stiffness_ratio,
                                        tolerance};
       const int products = BlockSolver().solve(system, d, solution);
       const std::vector<Real> expected = p.gauss();
@@ -176,7 +176,7 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
       }
       // Chebyshev's bound: the error falls by (sqrt(c) - 1) / (sqrt(c) + 1) per product, c <= 2 (1 +
       // stiffness ratio).
-      CHECK(products <= 5 + 20 * std::sqrt(2 * (1 + p.largest_stiffening)));
+      CHECK(products <= 5 + 20 * std::sqrt(2 * (1 + p.largest_stiffness_ratio)));
     }
 }
 

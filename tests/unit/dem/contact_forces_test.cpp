@@ -44,7 +44,7 @@ void add_contact(BruteContacts& sum, const NormalLaw& law, const BruteContact& c
   ++sum.contacts[i];
 }
 
-void add_contact(BruteContacts& sum, const KelvinVoigt& law, const BruteContact& c, std::size_t i) {
+void add_contact(BruteContacts& sum, const NormalLawParameters& law, const BruteContact& c, std::size_t i) {
   if (law.effective_modulus > 0) return add_contact(sum, HertzLaw(law).of_pair(c.size), c, i);
   add_contact(sum, PowerLaw(law), c, i);
 }
@@ -67,12 +67,12 @@ BruteContacts brute_contacts(const LoadedBox& box) {
     for (std::size_t j = 0; j < items.size(); ++j)
       for_each_shift(Subdomain(box.model.space).period(), [&](Vec3 shift, int image) {
         const BruteItem& b = items[j];
-        if ((i == j && image == kNoShift) || !rule.may_touch(a.body, b.body)) return;
+        if ((i == j && image == kZeroShift) || !rule.may_touch(a.body, b.body)) return;
         const Vec3 r = a.position - b.position - shift;
         const Real overlap = a.radius + b.radius - norm(r);
         if (overlap <= 0) return;
         const Vec3 normal = (1 / norm(r)) * r;
-        const KelvinVoigt& law = box.model.contact.law(a.material, b.material);
+        const NormalLawParameters& law = box.model.contact.law(a.material, b.material);
         const Real arm = norm(r) * a.radius / (a.radius + b.radius);
         add_contact(sum, law,
                     {overlap, -dot(normal, a.velocity - b.velocity), normal, arm, size_of(a, b), 0.5}, i);
@@ -81,7 +81,7 @@ BruteContacts brute_contacts(const LoadedBox& box) {
     for (const Wall& wall : box.model.walls) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
-      const KelvinVoigt& law = box.model.contact.law(a.material, wall.material);
+      const NormalLawParameters& law = box.model.contact.law(a.material, wall.material);
       const PairSize size{a.radius, kInfinity, a.mass, kInfinity};
       add_contact(sum, law,
                   {overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, size, 1}, i);
@@ -204,7 +204,7 @@ TEST_CASE("the ledger adds what particles and shapes have lost so far, and Verle
   }
   box.records[3].drifting = true;
   box.backend->particles().load(box.records, {7, 0});
-  box.backend->list().place_bodies(box.motion);
+  box.backend->list().set_body_motion(box.motion);
   box.backend->list().build(0.02, box.timers);
   const ParticleLedger ledger = box.backend->reports().ledger(0);
   CHECK(ledger.contact_loss == lost + 7);

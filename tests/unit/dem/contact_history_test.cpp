@@ -2,9 +2,9 @@
 // escaping particles.
 #include "random_box.hpp"
 #include "support/catch.hpp"
-#include "support/contact_book.hpp"
+#include "support/contact_record.hpp"
+#include "support/history_test_backend.hpp"
 #include "support/particle_bits.hpp"
-#include "support/remembering_backend.hpp"
 
 namespace scree {
 
@@ -17,7 +17,7 @@ Model moving_box(const BoxCase& c, int particles = 150) {
   Model model = random_box(c, particles, 21);
   model.integrator.particles = ParticleIntegrator::velocity_verlet;
   model.contact.skin = kSkin;
-  for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
+  for (NormalLawParameters& law : model.contact.laws) law.exponent = 1;
   if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone do not repeat
     model.walls.resize(1);
     model.walls[0].normal = {0, 1, 0};
@@ -32,9 +32,9 @@ void move_bodies(LoadedBox& box, Real h) {
 
 // Removes escaped particles; the list is built anew.
 bool leave(LoadedBox& box) {
-  const std::vector<Leaver> leavers = box.backend->particles().outside();
-  if (leavers.empty()) return false;
-  box.backend->particles().take_out(leavers);
+  const std::vector<EscapedParticle> escaped_particles = box.backend->particles().outside();
+  if (escaped_particles.empty()) return false;
+  box.backend->particles().remove_escaped(escaped_particles);
   box.backend->list().build(kSkin, box.timers);
   return true;
 }
@@ -43,12 +43,12 @@ bool leave(LoadedBox& box) {
 
 TEST_CASE("contact histories are those of a record kept by brute force") {
   for (const BoxCase& c : kBoxes)
-    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+    for (const OutsidePolicy leaving : {OutsidePolicy::drift, OutsidePolicy::remove}) {
       CAPTURE(c.name, static_cast<int>(leaving));
       Model model = moving_box(c);
       model.space.leaving = leaving;
-      LoadedBox box(model, kSkin, make_remembering_backend<kNumbers>);
-      ContactBook<kNumbers> record(box.model);
+      LoadedBox box(model, kSkin, make_history_test_backend<kNumbers>);
+      ContactRecord<kNumbers> record(box.model);
       RankParticles& particles = box.backend->particles();
       std::string wrong;
       std::size_t contacts = 0;
@@ -57,7 +57,7 @@ TEST_CASE("contact histories are those of a record kept by brute force") {
         record.add_step(particles.records(), box.motion);
         leave(box);
         const std::vector<Particle> records = particles.records();
-        const KeptContacts expected = record.contacts(records);
+        const PackedHistory expected = record.contacts(records);
         contacts += expected.keys.size();
         if (const std::string found = difference(particles.contacts(), expected); !found.empty())
           wrong = "step " + std::to_string(step) + ": " + found;
@@ -75,8 +75,8 @@ TEST_CASE("contact histories are those of a record kept by brute force") {
 TEST_CASE("reports between steps, and batches of steps, do not change contact histories") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
-    LoadedBox one(moving_box(c), kSkin, make_remembering_backend<3>),
-        queried(moving_box(c), kSkin, make_remembering_backend<3>);
+    LoadedBox one(moving_box(c), kSkin, make_history_test_backend<3>),
+        queried(moving_box(c), kSkin, make_history_test_backend<3>);
     RankParticles &a = one.backend->particles(), &b = queried.backend->particles();
     for (int part = 0; part < 6; ++part) {
       const Index steps =
@@ -86,7 +86,7 @@ TEST_CASE("reports between steps, and batches of steps, do not change contact hi
       for (Index k = 0; k < steps; ++k) {
         verlet_steps(queried, kStep, 1);
         queried.backend->reports().ledger(kStep);
-        queried.backend->reports().carrier_contacts();
+        queried.backend->reports().parent_contacts();
         queried.backend->list().build(0.01 * (k % 5 + 1), queried.timers);
       }
       CHECK(differing_fields(a.records(), b.records()) == "");
@@ -94,12 +94,12 @@ TEST_CASE("reports between steps, and batches of steps, do not change contact hi
       CHECK(a.contacts().numbers == 3);
     }
     // Back into a backend without history.
-    LoadedBox onward(moving_box(c), kSkin, make_remembering_backend<3>);
+    LoadedBox onward(moving_box(c), kSkin, make_history_test_backend<3>);
     onward.motion = one.motion;
     onward.backend->particles().load(a.records(), {});
     onward.backend->particles().load_contacts(a.contacts());
     CHECK(difference(onward.backend->particles().contacts(), a.contacts()) == "");
-    onward.backend->list().place_bodies(onward.motion);
+    onward.backend->list().set_body_motion(onward.motion);
     onward.backend->list().build(kSkin, onward.timers);
     CHECK(difference(onward.backend->particles().contacts(), a.contacts()) == "");
     for (LoadedBox* box : {&one, &onward}) verlet_steps(*box, kStep, 10);
@@ -112,7 +112,7 @@ TEST_CASE("a law without history stores none") {
   LoadedBox box(moving_box(kBoxes[4]), kSkin);
   box.backend->particles().load_contacts(no_contacts(3, 150));
   verlet_steps(box, kStep, 3);
-  const KeptContacts contacts = box.backend->particles().contacts();
+  const PackedHistory contacts = box.backend->particles().contacts();
   CHECK(contacts.numbers == 0);
   CHECK(contacts.particles() == 0);
 }

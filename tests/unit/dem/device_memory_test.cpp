@@ -1,5 +1,5 @@
 // Whether the ranks that share a GPU fit into its memory.
-#include "dem/device.hpp"
+#include "dem/backend/device.hpp"
 #include "support/catch.hpp"
 #include "unit/dem/random_box.hpp"
 

@@ -25,7 +25,7 @@ Found search_along(const Slope& slope) {
   Found found{1, 0};
   for (; found.evaluations < 100; ++found.evaluations) {
     if (!search.is_open()) break;
-    search.look(-slope(found.share));
+    search.update(-slope(found.share));
     if (!search.overshoots()) break;
     const Real next = search.next_share(), change = search.shorten();
     CHECK(near(found.share + change, next, {.absolute = kRoundOff}));
@@ -40,7 +40,7 @@ Found search_along(const Slope& slope) {
 TEST_CASE("without a correction nothing overshoots") {
   LineSearch search;
   CHECK_FALSE(search.is_open());
-  search.look(-1);
+  search.update(-1);
   CHECK_FALSE(search.overshoots());
 }
 
@@ -50,12 +50,12 @@ TEST_CASE("a correction overshoots if it leaves more than half the slope that it
   CHECK(search.is_open());
   CHECK_FALSE(search.overshoots());
   for (const Real along : {3.0, 0.0, -2.0}) {
-    search.look(along);
+    search.update(along);
     CHECK_FALSE(search.overshoots());
   }
-  search.look(-2.001);
+  search.update(-2.001);
   CHECK(search.overshoots());
-  search.look(std::numeric_limits<Real>::quiet_NaN());
+  search.update(std::numeric_limits<Real>::quiet_NaN());
   CHECK_FALSE(search.overshoots());
 }
 
@@ -84,12 +84,12 @@ TEST_CASE("at a kink the search ends, at a fraction before it or too small to be
 
 TEST_CASE("the next correction starts with all of it") {
   LineSearch search;
-  search.open(1), search.look(-1e9);
+  search.open(1), search.update(-1e9);
   search.shorten(), search.shorten();
   CHECK_FALSE(search.is_open());
   search.open(1);
   CHECK((search.is_open() && !search.overshoots()));
-  search.look(-1);
+  search.update(-1);
   CHECK(search.next_share() == 0.5);
 }
 
@@ -97,13 +97,13 @@ TEST_CASE("where there is no potential a correction is halved while the residual
   ResidualSearch search;
   CHECK_FALSE(search.is_open());
   search.open(1);
-  search.look(1);
+  search.update(1);
   CHECK_FALSE(search.overshoots());
   Real share = 1;
   int evaluations = 0;
-  for (search.look(2); search.overshoots(); search.look(2)) share += search.shorten(), ++evaluations;
+  for (search.update(2); search.overshoots(); search.update(2)) share += search.shorten(), ++evaluations;
   CHECK((share == Real(0.0625) && evaluations == 4));
-  search.open(3), search.look(2);
+  search.open(3), search.update(2);
   CHECK((search.is_open() && !search.overshoots()));
 }
 

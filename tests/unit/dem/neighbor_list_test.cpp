@@ -44,7 +44,7 @@ struct Items {
   }
 
   int image_of(Index j) const {
-    return j < layout.owned ? kNoShift : ghosts[static_cast<std::size_t>(j - layout.owned)].image;
+    return j < layout.owned ? kZeroShift : ghosts[static_cast<std::size_t>(j - layout.owned)].image;
   }
   Vec4 position(Index j) const { return store.position[static_cast<std::size_t>(j)]; }
   GlobalId global_id(Index j) const { return id_of(store.row_key[static_cast<std::size_t>(j)]); }
@@ -62,7 +62,7 @@ std::vector<Entry> expected_row(const Items& items, Vec3 period, Index i) {
       const Vec4 p = items.position(i), q = items.position(j);
       const Vec3 d = xyz(p) - (xyz(q) + shift);
       const Real reach = p.w + q.w + kSkin;
-      const bool itself = j == i && image == kNoShift;
+      const bool itself = j == i && image == kZeroShift;
       if (dot(d, d) < reach * reach && !itself) row.emplace_back(items.global_id(j), image);
     });
   std::sort(row.begin(), row.end());
@@ -185,7 +185,7 @@ TEST_CASE("pair histories return to both slots, and a slot's previous history st
     pairs.match(built.list, built.items.store);
     std::vector<Vec4> slots(pairs.slots);
     for (std::size_t s = 0; s < slots.size(); ++s) slots[s] = {static_cast<Real>(s), 1, 2, 3};
-    pairs.take_records(slots.data(), 1);
+    pairs.fetch_records(slots.data(), 1);
     REQUIRE(pairs.records.size() == pairs.pairs.size());
     for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
       CHECK(pairs.records[p].x == static_cast<Real>(pairs.pairs[p].slot));
@@ -194,8 +194,8 @@ TEST_CASE("pair histories return to both slots, and a slot's previous history st
     }
     HistoryViews history;
     history.neighbors = slots.data(), history.step = 4;
-    leave_records<Law>(pairs, history);
-    CHECK_FALSE(pairs.keeps_records);
+    return_records<Law>(pairs, history);
+    CHECK_FALSE(pairs.has_records);
     for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
       const ListedPair& pair = pairs.pairs[p];
       CAPTURE(p, pair.slot, pair.mirror);

@@ -1,5 +1,5 @@
 // The fields of snapshots.
-#include "dem/output_fields.hpp"
+#include "dem/reports/output_fields.hpp"
 
 #include <set>
 

@@ -73,7 +73,7 @@ TEST_CASE("every field goes into the backend, through its cells, and out") {
     backend->particles().load(records, {});
     CHECK(differing_fields(backend->particles().records(), records) == "");
     StageTimers timers;
-    backend->list().place_bodies(motion_of(model.bodies));
+    backend->list().set_body_motion(motion_of(model.bodies));
     for (const Real skin : {0.1, 0.3}) backend->list().build(skin, timers);
     CHECK(differing_fields(backend->particles().records(), records) == "");
   }

@@ -79,7 +79,7 @@ inline Space random_space(const BoxCase& box) {
   space.max = {0.9, 0.8, box.dimension == 3 ? 1.6 : 0.0};
   for (int side = 0; side < 2 * box.periodic_axes; ++side)
     space.boundary[static_cast<std::size_t>(side)] = Boundary::periodic;
-  space.leaving = Leaving::drift;
+  space.leaving = OutsidePolicy::drift;
   return space;
 }
 
@@ -118,7 +118,7 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
   model.contact.material_names.assign(static_cast<std::size_t>(box.materials), "material");
   for (int k = 0; k < box.materials * box.materials; ++k) {
     const int i = k / box.materials, j = k % box.materials;
-    KelvinVoigt law{1e3 * (1 + i + j), 5.0 + i * j, box.exponent, box.tension};
+    NormalLawParameters law{1e3 * (1 + i + j), 5.0 + i * j, box.exponent, box.tension};
     if (box.modulus > 0) law = {0, 0, 1, box.tension, box.modulus * (1 + i + j), 0.1 + 0.1 * i * j};
     model.contact.laws.push_back(law);
   }
@@ -175,7 +175,7 @@ inline std::vector<BodyMotion> carriers_of(const Model& model) {
   std::vector<BodyMotion> motion = motion_of(model.bodies);
   BodyMotion wall;
   wall.kind = BodyKind::spatial;
-  motion.resize(SurfaceSet(model).carriers(), wall);
+  motion.resize(SurfaceSet(model).parents(), wall);
   return motion;
 }
 
@@ -188,7 +188,7 @@ struct LoadedBox {
         motion(carriers_of(model)),
         backend(make(model, {})) {
     backend->particles().load(records, {});
-    backend->list().place_bodies(motion);
+    backend->list().set_body_motion(motion);
     backend->list().build(skin, timers);
     backend->particles().initial_forces();
   }
@@ -205,7 +205,7 @@ struct LoadedBox {
 // A run of explicit steps with the bodies held at `motion`; returns the number of steps taken.
 inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {
   const std::unique_ptr<ExplicitRun> run = box.backend->start_run(h);
-  box.backend->list().place_bodies(box.motion);
+  box.backend->list().set_body_motion(box.motion);
   return run->take_steps(steps, false, box.timers).closed;
 }
 

@@ -22,7 +22,7 @@ class CountedReports : public Reports {
   }
   ContactLines contact_lines() override { return {}; }
   std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
-  std::vector<ContactSum> carrier_contacts() override { return {}; }
+  std::vector<ContactSum> parent_contacts() override { return {}; }
   std::vector<ContactSum> surface_contacts() override { return {}; }
   std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }
   std::vector<TriangleLoad> triangle_loads() override { return {}; }
@@ -40,7 +40,7 @@ struct Reported {
 };
 
 Reported tell(Reports& reports, const std::vector<int>& walls) {
-  Reported reported{reports.ledger(0), reports.pack_shapes(), reports.carrier_contacts()};
+  Reported reported{reports.ledger(0), reports.pack_shapes(), reports.parent_contacts()};
   for (const ContactSum& wall : reports.wall_contacts(walls)) reported.contacts.push_back(wall);
   return reported;
 }

@@ -32,7 +32,7 @@ TEST_CASE("a rolled-back step leaves no trace") {
     const std::vector<Particle> before = box.backend->particles().records();
     const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-3);
     step->contact_force();
-    box.backend->list().place_bodies(box.motion);
+    box.backend->list().set_body_motion(box.motion);
     step->particle_correct();
     CHECK_FALSE(same_bits(box.backend->particles().records(), before));
     step->undo();
@@ -123,15 +123,15 @@ TEST_CASE("the list expires when an item has moved by half the skin") {
   CHECK(box.backend->list().displacement() == 0);
   box.motion[4].position.x += 0.04;
   const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-9);
-  box.backend->list().place_bodies(box.motion);
+  box.backend->list().set_body_motion(box.motion);
   CHECK(near(box.backend->list().displacement(), 0.8, {.relative = kRoundOff}));
   box.motion[4].position.x += 0.02;
-  box.backend->list().place_bodies(box.motion);
+  box.backend->list().set_body_motion(box.motion);
   CHECK(near(box.backend->list().displacement(), 1.2, {.relative = kRoundOff}));
 }
 
 TEST_CASE("particles escape once, ordered by global id, and become ballistic or are removed") {
-  for (const Leaving leaving : {Leaving::error, Leaving::remove, Leaving::drift}) {
+  for (const OutsidePolicy leaving : {OutsidePolicy::error, OutsidePolicy::remove, OutsidePolicy::drift}) {
     CAPTURE(static_cast<int>(leaving));
     Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
     model.space.leaving = leaving;
@@ -143,22 +143,23 @@ TEST_CASE("particles escape once, ordered by global id, and become ballistic or 
     LoadedBox box(model, 0.5);
     verlet_steps(box, h, 1);
     const ParticleLedger before = box.backend->reports().ledger(0);
-    const std::vector<Leaver> leavers = box.backend->particles().outside();
-    REQUIRE(leavers.size() == 3);
-    CHECK((leavers[0].global_id == 7 && leavers[1].global_id == 23 && leavers[2].global_id == 41));
-    for (const Leaver& l : leavers) CHECK((l.position.x > model.space.max.x && !l.lost));
-    if (leaving == Leaving::error) continue;
-    box.backend->particles().take_out(leavers);
+    const std::vector<EscapedParticle> escaped_particles = box.backend->particles().outside();
+    REQUIRE(escaped_particles.size() == 3);
+    CHECK((escaped_particles[0].global_id == 7 && escaped_particles[1].global_id == 23 &&
+           escaped_particles[2].global_id == 41));
+    for (const EscapedParticle& l : escaped_particles) CHECK((l.position.x > model.space.max.x && !l.lost));
+    if (leaving == OutsidePolicy::error) continue;
+    box.backend->particles().remove_escaped(escaped_particles);
     CHECK(box.backend->list().displacement() > 1);
     box.backend->list().build(0.1, box.timers);
     CHECK(box.backend->particles().outside().empty());
     const ParticleLedger after = box.backend->reports().ledger(0);
-    const bool removed = leaving == Leaving::remove;
+    const bool removed = leaving == OutsidePolicy::remove;
     CHECK(box.backend->particles().records().size() ==
           static_cast<std::size_t>(removed ? kParticles - 3 : kParticles));
     CHECK(after.drifting == (removed ? 0 : 3));
     Real taken = 0;
-    for (const Leaver& l : leavers) taken += l.energy;
+    for (const EscapedParticle& l : escaped_particles) taken += l.energy;
     const Real energy = after.kinetic + after.gravitational + (removed ? taken : 0);
     CHECK(near(energy, before.kinetic + before.gravitational, {.relative = kRoundOff}));
   }

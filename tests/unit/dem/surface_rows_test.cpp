@@ -1,11 +1,11 @@
 // The surfaces near each particle, against a search over all of them and their images.
-#include "dem/surface_rows.hpp"
+#include "dem/search/surface_rows.hpp"
 
 #include <algorithm>
 #include <tuple>
 #include <vector>
 
-#include "dem/host/surface_side.hpp"
+#include "dem/host/host_surfaces.hpp"
 #include "dem/search/neighbor_list.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
@@ -33,10 +33,10 @@ struct BuiltRows {
         motion(carriers_of(model)) {
     side.set_motion(motion);
     side.bring_into_box();
-    side.place();
+    side.update_poses();
     store.load(initial_records(model.particles, subdomain));
     layout.owned = layout.items = store.owned, layout.active = store.owned - kDrifting;
-    builder.build(store, layout, builder.cells(kSkin, store.owned), {side.places()}, kSkin, list);
+    builder.build(store, layout, builder.cells(kSkin, store.owned), {side.poses()}, kSkin, list);
   }
   std::vector<Entry> row(Index i) const {
     const SurfaceRows& rows = list.surfaces;
@@ -49,7 +49,7 @@ struct BuiltRows {
   }
   Model model;
   Subdomain subdomain;
-  SurfaceSide side;
+  HostSurfaces side;
   NeighborBuilder builder;
   std::vector<BodyMotion> motion;
   ParticleStore store;
@@ -63,9 +63,9 @@ std::vector<Entry> expected_row(const BuiltRows& built, Index i) {
   const Vec4 p = built.store.position[i];
   for (Index w = 0; w < static_cast<Index>(built.model.walls.size()); ++w)
     if (dot(xyz(p) - built.model.walls[w].point, built.model.walls[w].normal) < p.w + kSkin)
-      row.emplace_back(w, kNoShift);
+      row.emplace_back(w, kZeroShift);
   Index surface = built.side.surfaces().ground();
-  for (const PlacedSurface& s : built.side.placed()) {
+  for (const SurfacePose& s : built.side.placed()) {
     for_each_shift(built.subdomain.period(), [&](Vec3 shift, std::int8_t image) {
       if (norm(xyz(p) - s.point - shift) < p.w + s.radius + kSkin) row.emplace_back(surface, image);
     });
@@ -130,8 +130,8 @@ seed = 3
 
 // The triangles within `past` of particle i, image by image, in the order of the groups.
 std::vector<std::vector<Index>> triangles_in_range(const BuiltRows& built, Index i, Index s, Real past) {
-  const SurfacePlaces places = built.side.places();
-  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+  const SurfacePoses places = built.side.poses();
+  const SurfacePose& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
   const Vec4 p = built.store.position[i];
@@ -161,7 +161,7 @@ TEST_CASE("a particle's row holds every surface and image in reach, once, in the
         CHECK(row == expected_row(built, i));
         for (const Entry& entry : row) {
           const bool ground = entry.first < built.side.surfaces().ground();
-          on_ground += ground, on_bodies += !ground, images += entry.second != kNoShift;
+          on_ground += ground, on_bodies += !ground, images += entry.second != kZeroShift;
         }
       }
     }
@@ -215,7 +215,7 @@ TEST_CASE("rows hold the triangles that come near a particle, farther out of mes
       if (rows.surfaces[g.entry] != built.side.surfaces().number_of(s)) continue;
       const auto first = rows.triangles.begin() + g.first_triangle;
       of_particle[static_cast<std::size_t>(rows.particles[g.entry])].emplace_back(first, first + g.triangles);
-      ++found, images += rows.images[g.entry] != kNoShift;
+      ++found, images += rows.images[g.entry] != kZeroShift;
     }
     for (Index i = 0; i < built.layout.active; ++i) {
       CAPTURE(s, i);

@@ -1,5 +1,5 @@
 // Surfaces on bodies: position of a sphere relative to them, and the sums of their contacts.
-#include "dem/surfaces.hpp"
+#include "dem/surfaces/surfaces.hpp"
 
 #include <array>
 #include <vector>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr Real kRoundOff = 1e-14;
 
-PlacedSurface placed(SurfaceKind kind, Real radius, Vec3 normal) {
-  PlacedSurface s{};
+SurfacePose placed(SurfaceKind kind, Real radius, Vec3 normal) {
+  SurfacePose s{};
   s.kind = kind, s.radius = radius, s.normal = normal;
   s.point = {1, 2, 0}, s.arm = {0.5, 0, 0};
   s.velocity = {0, 0, 3}, s.spin = {0, 0, 2};
@@ -39,7 +39,7 @@ SurfaceStep random_contact(RandomNumbers& random) {
 }  // namespace
 
 TEST_CASE("a sphere and a sphere on a body touch on the line of their centres") {
-  const PlacedSurface s = placed(SurfaceKind::sphere, 0.5, {});
+  const SurfacePose s = placed(SurfaceKind::sphere, 0.5, {});
   const SurfacePair pair = surface_pair(s, {10, 0, 0}, {11, 3, 0, 0.75});
   CHECK(pair.geometry.overlap == 0.25);
   CHECK(pair.geometry.normal() == Vec3{0, 1, 0});
@@ -48,7 +48,7 @@ TEST_CASE("a sphere and a sphere on a body touch on the line of their centres") 
 }
 
 TEST_CASE("a sphere and a plane on a body touch at its radius below its centre") {
-  const PlacedSurface s = placed(SurfaceKind::plane, 0, {0, 1, 0});
+  const SurfacePose s = placed(SurfaceKind::plane, 0, {0, 1, 0});
   const SurfacePair pair = surface_pair(s, {0, 10, 0}, {4, 12.5, 1, 0.75});
   CHECK(pair.geometry.overlap == 0.25);
   CHECK(pair.geometry.normal() == Vec3{0, 1, 0});

@@ -67,7 +67,7 @@ std::array<Real, 6> wrench_at(LoadedBox& box, ImplicitStep& step, const std::vec
                               ContactWrenches& contacts, std::size_t body = 0) {
   std::vector<BodyWrench> end(motion.size());
   contacts.wrench.resize(motion.size());
-  box.backend->list().place_bodies(motion);
+  box.backend->list().set_body_motion(motion);
   step.contact_force();
   step.reduce_wrench(contacts, end);
   const BodyWrench& wrench = contacts.wrench[body];

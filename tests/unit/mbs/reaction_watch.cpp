@@ -95,8 +95,8 @@ TEST_CASE("the watch: fifty alternating steps and a tenfold growth, of reactions
       watch.observe(start, end, {gap_turns ? sign : 1});
       start = end;
     }
-    CHECK(watch.gap_share() == 0.5);
-    CHECK((watch.worst_share() > 0) == watch.oscillates());
+    CHECK(watch.relative_gap() == 0.5);
+    CHECK((watch.worst_ratio() > 0) == watch.oscillates());
     return watch.oscillates();
   };
   CHECK(watched(1.1, 0, true, 100));

@@ -34,7 +34,7 @@ Real farthest(const TriangleMesh& given, const TriangleMesh& coarse) {
 
 CoarseMesh sound(const TriangleMesh& mesh, Real distance, bool sheet = false) {
   CoarseMesh coarse = coarsened(mesh, distance, kFeatureAngle);
-  CHECK(mesh_troubles(coarse.mesh, sheet) == std::vector<std::string>{});
+  CHECK(mesh_defects(coarse.mesh, sheet) == std::vector<std::string>{});
   CHECK(coarse.moved <= distance);
   return coarse;
 }

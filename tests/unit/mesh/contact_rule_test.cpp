@@ -76,13 +76,13 @@ TEST_CASE("the nearest point of an open surface is a contact, also where regions
   MeshRandom random(41);
   for (const TriangleMesh& mesh :
        {hills(6, 0.02, 1), hills(6, 0.3, 2), hills(6, 2, 3), hills(1, 1, 4), drum_shell(12, 0.5, 1, 3),
-        turned(block({0, 0, 0}, {1, 1, 1}, 2), random.turn()), mapped(hills(6, 0.3, 5), [](Vec3 v) {
+        rotated(block({0, 0, 0}, {1, 1, 1}, 2), random.turn()), mapped(hills(6, 0.3, 5), [](Vec3 v) {
           return Vec3{v.x, v.y / 500, v.z};
         })}) {
     const SurfaceMesh surface = sheet_mesh(mesh);
     int wrong = 0;
     for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(surface, 0.2, random);
+      const Vec3 c = position_near(surface, 0.2, random);
       const auto contacts = contacts_at(surface, c, 0.25);
       wrong += contacts.empty() || std::abs(contacts[0].distance - distance_from(surface, c)) > 1e-12;
     }
@@ -98,7 +98,7 @@ TEST_CASE("where a face was touched last changes no contact") {
     const MeshView view = surface.view();
     int wrong = 0, in_one_plane = 0;
     for (int i = 0; i < 3000; ++i) {
-      const Vec3 c = place_near(surface, 0.2, random);
+      const Vec3 c = position_near(surface, 0.2, random);
       const auto row = triangles_near(surface, c, 0.25);
       const auto n = static_cast<Index>(row.size());
       const bool one_plane = slots_needed(view, RowKind::any, false, row.data(), n) == 1;
@@ -128,7 +128,7 @@ TEST_CASE("a query with a larger range finds the contacts of a smaller one first
         closed_mesh(potato(2, 0.1, 2))}) {
     int wrong = 0, farther = 0;
     for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(surface, 1.3 * kRadius, random);
+      const Vec3 c = position_near(surface, 1.3 * kRadius, random);
       const auto touched = contacts_at(surface, c, kRadius);
       auto found = contacts_at(surface, c, kRadius * random.in(1, 1.3));
       const auto beyond = std::find_if(found.begin(), found.end(), [](const MeshContact& contact) {
@@ -182,7 +182,7 @@ TEST_CASE("the nearest point of a closed mesh is a contact from outside, from in
     const SurfaceMesh surface = closed_mesh(mesh);
     int wrong = 0, outside = 0;
     for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(surface, 0.2, random);
+      const Vec3 c = position_near(surface, 0.2, random);
       const auto contacts = contacts_at(surface, c, 0.25);
       const Real distance = distance_from(surface, c);
       if (distance < 1e-12) continue;
@@ -203,10 +203,10 @@ TEST_CASE("a convex body has one contact, wherever the sphere is") {
   MeshRandom random(49);
   for (const TriangleMesh& mesh :
        {icosphere(0, 1), icosphere(3, 1), tetrahedron(), block({0, 0, 0}, {1, 1, 1}, 3)}) {
-    const SurfaceMesh body = closed_mesh(turned(mesh, random.turn()));
+    const SurfaceMesh body = closed_mesh(rotated(mesh, random.turn()));
     int wrong = 0, outside = 0;
     for (int i = 0; i < 20000; ++i) {
-      const Vec3 c = place_near(body, 0.3, random);
+      const Vec3 c = position_near(body, 0.3, random);
       const Real distance = distance_from(body, c);
       if (distance < 1e-12) continue;
       const auto contacts = contacts_at(body, c, 0.5);
@@ -229,7 +229,7 @@ TEST_CASE("where sides are flat but for noise, edges count from outside and neve
     const SurfaceMesh mesh = closed_mesh(box);
     int wrong = 0, found = 0;
     for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(mesh, 0.1, random);
+      const Vec3 c = position_near(mesh, 0.1, random);
       const Real depth = std::min({c.x, c.y, c.z, 1 - c.x, 1 - c.y, 1 - c.z});
       const auto contacts = contacts_at(mesh, c, 0.2);
       if (depth < -1e-3)
@@ -251,7 +251,7 @@ TEST_CASE("contacts depend neither on the order of the row nor on what else is i
                                   closed_mesh(flipped(icosphere(0, 1))), sheet_mesh(jittered_grid(10, 5))}) {
     bool same = true;
     for (int i = 0; i < 2000; ++i) {
-      const Vec3 c = place_near(mesh, 0.3, random);
+      const Vec3 c = position_near(mesh, 0.3, random);
       const Real reach = random.in(0.2, 1);
       auto row = triangles_near(mesh, c, reach);
       const auto contacts = contacts_of_row(mesh, c, reach, row);
@@ -293,7 +293,7 @@ TEST_CASE("a row needs at least as many slots as contacts come of it") {
   const SurfaceMesh mesh = sheet_mesh(hills(6, 0.3, 7));
   bool enough = true;
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 c = place_near(mesh, 0.3, random);
+    const Vec3 c = position_near(mesh, 0.3, random);
     const auto row = triangles_near(mesh, c, 0.2);
     enough = enough && static_cast<int>(contacts_of_row(mesh, c, 0.2, row).size()) <= needed(mesh, row);
   }
@@ -309,7 +309,7 @@ TEST_CASE("a feature evaluated elsewhere agrees with its own contact") {
   const SurfaceMesh mesh = sheet_mesh(hills(6, 0.3, 8));
   bool same = true;
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 c = place_near(mesh, 0.2, random);
+    const Vec3 c = position_near(mesh, 0.2, random);
     for (const MeshContact& contact : contacts_at(mesh, c, 0.25)) {
       const MeshContact seen = mesh_feature_at(mesh.view(), contact.feature, c, contact.normal);
       same = same && same_bits(seen.distance, contact.distance) && seen.normal == contact.normal &&

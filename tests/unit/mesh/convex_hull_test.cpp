@@ -68,8 +68,8 @@ TEST_CASE("a cube with a dent weighs as the cube, whatever is cut into its faces
   check_same_mass(sound_hull(dented_cube(0.6).vertices), about, 1e-15);
   check_same_mass(sound_hull(refined(about, 0.1).vertices), about, 1e-14);
   const Mat3 turn = MeshRandom(3).turn();
-  const TriangleMesh turned_cube = turned(about, turn);
-  check_same_mass(sound_hull(turned(refined(about, 0.2), turn).vertices), turned_cube, 1e-11);
+  const TriangleMesh turned_cube = rotated(about, turn);
+  check_same_mass(sound_hull(rotated(refined(about, 0.2), turn).vertices), turned_cube, 1e-11);
 }
 
 TEST_CASE("the hull of what is convex is itself; that of a torus and of an L has closed forms") {

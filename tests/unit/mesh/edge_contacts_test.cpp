@@ -73,7 +73,7 @@ TEST_CASE("around a block the force is k times the overlap, over sides, edges an
   for (const int n : {1, 3, 8}) {
     const TriangleMesh box = block({0, 0, 0}, {3, 4, 5}, n);
     for (const Mat3& turn : {identity3(), random.turn()}) {
-      const SurfaceMesh mesh = closed_mesh(turned(box, turn));
+      const SurfaceMesh mesh = closed_mesh(rotated(box, turn));
       const auto level = [&](Real above) {
         const Real across = std::sqrt(kDistance * kDistance - above * above);
         return moved(around_rectangle(3, 4, across), [&](Vec3 p) { return p + Vec3{0, 0, 5 + above}; });
@@ -95,7 +95,7 @@ TEST_CASE("around an open surface's free border the force is k times the overlap
   for (const int n : {1, 5}) {
     const TriangleMesh sheet = plate({0, 0, 0}, {3, 0, 0}, {0, 4, 0}, n, n);
     for (const Mat3& turn : {identity3(), random.turn()}) {
-      const SurfaceMesh mesh = sheet_mesh(turned(sheet, turn));
+      const SurfaceMesh mesh = sheet_mesh(rotated(sheet, turn));
       for (const Real y : {0.0, 0.3, 2.0, 3.2})
         check(mesh,
               moved(around_rectangle(3, 0, kDistance),

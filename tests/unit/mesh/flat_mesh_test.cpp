@@ -84,7 +84,7 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
   for (const TriangleMesh& mesh : flat_meshes()) {
     const Real size = mesh.vertices.back().x;
     const Mat3 turn = random.turn();
-    const SurfaceMesh surface = sheet_mesh(turned(mesh, turn));
+    const SurfaceMesh surface = sheet_mesh(rotated(mesh, turn));
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
     Real error = 0;

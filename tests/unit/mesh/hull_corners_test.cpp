@@ -41,7 +41,7 @@ void check_hull(const HullCorners& hull, const std::vector<Vec3>& points, bool p
   for (const Vec3 corner : hull.corners) CHECK(norm(corner - hull.middle) <= hull.reach);
 }
 
-std::vector<Vec3> turned(const std::vector<Vec3>& points, const Mat3& axes, Vec3 move) {
+std::vector<Vec3> rotated(const std::vector<Vec3>& points, const Mat3& axes, Vec3 move) {
   std::vector<Vec3> out;
   for (const Vec3 p : points) out.push_back(axes * p + move);
   return out;
@@ -69,8 +69,8 @@ TEST_CASE("corners of a hull are strict: triangles on faces and edges add none, 
   for (const Case& one : cases)
     for (int pose = 0; pose < 4; ++pose) {
       const bool as_made = pose == 0;
-      const std::vector<Vec3> points = turned(one.mesh.vertices, as_made ? identity3() : random.turn(),
-                                              as_made ? Vec3{} : random.in({-2, -2, -2}, {2, 2, 2}));
+      const std::vector<Vec3> points = rotated(one.mesh.vertices, as_made ? identity3() : random.turn(),
+                                               as_made ? Vec3{} : random.in({-2, -2, -2}, {2, 2, 2}));
       CAPTURE(one.name, pose);
       const HullCorners hull = hull_corners(points, false);
       CHECK(std::ssize(hull.corners) == one.corners);
@@ -109,7 +109,7 @@ TEST_CASE("in the plane corners are those of the outline") {
     for (const Real angle : {Real(0), Real(0.7), Real(2.1)}) {
       const Real c = std::cos(angle), s = std::sin(angle);
       const std::vector<Vec3> points =
-          turned(line(one.points), {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}, {5, 7, 0});
+          rotated(line(one.points), {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}, {5, 7, 0});
       CAPTURE(one.corners, angle);
       const HullCorners hull = hull_corners(points, true);
       CHECK(std::ssize(hull.corners) == one.corners);

@@ -89,14 +89,14 @@ TEST_CASE("mass properties depend neither on a mesh's fineness nor on its orient
   check_near(solid_mesh_mass(refined(mesh, 0.05), 3), mass, 1e-14, 3);
   const Mat3 turn = some_turn();
   check_near(solid_mesh_mass(moved(mesh, turn, {}), 3),
-             {mass.mass, turn * mass.center, turned_tensor(turn, mass.inertia)}, 1e-14, 3);
+             {mass.mass, turn * mass.center, rotated_tensor(turn, mass.inertia)}, 1e-14, 3);
   // So far away that no coordinate is rounded, and as far that all are, to 1.2e-10 m.
   const Vec3 exact{1 << 20, -(1 << 20), 1 << 19}, far{1e6, -1e6, 7e5};
   check_near(solid_mesh_mass(moved(mesh, identity3(), exact), 3),
              {mass.mass, mass.center + exact, mass.inertia}, 1e-14, 1e6);
   const TriangleMesh rounded = moved(moved(mesh, turn, far), identity3(), -far);
   check_near(solid_mesh_mass(moved(mesh, turn, far), 3),
-             {mass.mass, turn * mass.center + far, turned_tensor(turn, mass.inertia)}, 1e-9, 1e6);
+             {mass.mass, turn * mass.center + far, rotated_tensor(turn, mass.inertia)}, 1e-9, 1e6);
   const MassProperties near_by = solid_mesh_mass(rounded, 3);
   check_near(solid_mesh_mass(moved(mesh, turn, far), 3),
              {near_by.mass, near_by.center + far, near_by.inertia}, 1e-14, 1e6);

@@ -38,7 +38,7 @@ MeshRepair repair_of(const TriangleMesh& mesh, bool sheet = false) {
 
 // Volume of a repaired closed mesh, which must be sound.
 Real volume_of(const MeshRepair& repair) {
-  CHECK(mesh_troubles(repair.mesh.mesh, false) == Texts{});
+  CHECK(mesh_defects(repair.mesh.mesh, false) == Texts{});
   return mesh_volume(repair.mesh.mesh);
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("a long row of triangles without area takes as many steps as it has") 
   for (Index i = 2; i < end; i += 2) mesh.triangles.push_back({end, i - 2, i});
   const MeshRepair repair = repair_of(mesh, true);
   CHECK(repair.without_area.count == 2 * kCount - 1);
-  CHECK(mesh_troubles(repair.mesh.mesh, true) == Texts{});
+  CHECK(mesh_defects(repair.mesh.mesh, true) == Texts{});
   CHECK(near(mesh_area(repair.mesh.mesh), 2 * kCount, {.relative = 1e-13}));
   CHECK(build_surface_mesh(repair.mesh.mesh, 0.5, true).parts.size() == 1);
 }
@@ -152,7 +152,7 @@ TEST_CASE("duplicate triangles: the edges decide which stay") {
   const TriangleMesh plate = rectangle_mesh(1, 1);
   const MeshRepair both = repair_of(with(plate, turned_over(plate)));
   CHECK(both.mesh.mesh.triangles.size() == 2);
-  CHECK(mesh_troubles(both.mesh.mesh, false)[0].starts_with("4 edges have one triangle"));
+  CHECK(mesh_defects(both.mesh.mesh, false)[0].starts_with("4 edges have one triangle"));
 }
 
 TEST_CASE("shells are oriented outward, and cavities stay") {
@@ -180,13 +180,13 @@ TEST_CASE("shells are oriented outward, and cavities stay") {
   // A solid inside a solid is not an error of windings.
   const MeshRepair inner = repair_of(with(cube(), ball));
   CHECK(inner.turned.count == 0);
-  CHECK(mesh_troubles(inner.mesh.mesh, false)[0].starts_with("a shell lies inside another"));
+  CHECK(mesh_defects(inner.mesh.mesh, false)[0].starts_with("a shell lies inside another"));
 }
 
 TEST_CASE("an open surface may have any windings, and be one-sided") {
   TriangleMesh sheet = rectangle_mesh(2, 1);
   std::swap(sheet.triangles[1][1], sheet.triangles[1][2]);
-  CHECK(mesh_troubles(sheet, true) == Texts{});
+  CHECK(mesh_defects(sheet, true) == Texts{});
   const MeshRepair repair = repair_of(sheet, true);
   CHECK(repair.turned.count == 1);
   CHECK(build_surface_mesh(repair.mesh.mesh, 0.5, true).parts.size() == 1);
@@ -205,7 +205,7 @@ TEST_CASE("an open surface may have any windings, and be one-sided") {
     strip.triangles.push_back({a, beside, next});
   }
   const MeshRepair twisted = repair_of(strip, true);
-  CHECK(mesh_troubles(twisted.mesh.mesh, true) == Texts{});
+  CHECK(mesh_defects(twisted.mesh.mesh, true) == Texts{});
   const SurfaceMesh surface = build_surface_mesh(twisted.mesh.mesh, 0.5, true);
   std::size_t seams = 0;
   for (const MeshFeature& feature : surface.features) seams += feature.b >= 0 && feature.tests == 3;

@@ -96,9 +96,9 @@ TEST_CASE("slivers join the plane of their neighbours, whatever their own normal
   const TriangleMesh mesh = mapped(unit_grid(4, 4), [&](Vec3 v) {
     return Vec3{lines[static_cast<int>(4 * v.x)], lines[static_cast<int>(4 * v.y)], 0};
   });
-  for (int i = 0; i < 10; ++i) CHECK(sheet_mesh(turned(mesh, random.turn())).parts.size() == 1);
+  for (int i = 0; i < 10; ++i) CHECK(sheet_mesh(rotated(mesh, random.turn())).parts.size() == 1);
   // Slivers alone, none of which defines the plane accurately to the far end.
-  CHECK(sheet_mesh(turned(unit_grid(1, 30000), random.turn())).parts.size() == 1);
+  CHECK(sheet_mesh(rotated(unit_grid(1, 30000), random.turn())).parts.size() == 1);
 }
 
 // Queries and all bounds on them use the plane of the part for each triangle.
@@ -107,7 +107,7 @@ TEST_CASE("vertices lie within the stated flatness of their part's plane, sliver
   int off = 0;
   for (int i = 0; i < 100; ++i) {
     const SurfaceMesh mesh =
-        sheet_mesh(turned({{{0, 0, 0}, {0.33, 0, 0}, {0.17, 7e-10, 0}}, {{0, 1, 2}}}, random.turn()));
+        sheet_mesh(rotated({{{0, 0, 0}, {0.33, 0, 0}, {0.17, 7e-10, 0}}, {{0, 1, 2}}}, random.turn()));
     REQUIRE(mesh.parts.size() == 1);
     for (const Vec3& v : mesh.vertices) {
       const Real distance = std::abs(dot(v - mesh.parts[0].point, mesh.parts[0].normal));

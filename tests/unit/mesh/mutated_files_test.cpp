@@ -111,7 +111,7 @@ class Mutator {
 
 // A repaired mesh needs no further repair.
 void check_repair(const NumberedMesh& mesh, bool sheet) {
-  if (!mesh_troubles(mesh.mesh, sheet).empty()) return;
+  if (!mesh_defects(mesh.mesh, sheet).empty()) return;
   if (!sheet && !(mesh_volume(mesh.mesh) > 0)) throw std::logic_error("not sound");
   if (!repair_text(repaired(mesh, sheet), sheet).empty()) throw std::logic_error("not put right");
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
 void check_sound(const TriangleMesh& mesh, bool sheet = false, Index shells = 1) {
-  for (const std::string& trouble : mesh_troubles(mesh, sheet)) FAIL_CHECK(trouble);
+  for (const std::string& trouble : mesh_defects(mesh, sheet)) FAIL_CHECK(trouble);
   const TriangleMesh again = welded(mesh);
   CHECK(again.vertices.size() == mesh.vertices.size());
   const std::vector<Index> shell = shells_of(mesh);
@@ -236,42 +236,42 @@ TEST_CASE("a closed planar line bounds a solid") {
   CHECK(without_ends(mesh).triangles == extruded_line_mesh(l, true, 1).triangles);
   CHECK(mesh_volume(line_of_depth(mesh, 0.5)) == 1.5);
   const TriangleMesh clockwise = extruded_outline_mesh({l.rbegin(), l.rend()}, 1);
-  CHECK(mesh_troubles(clockwise, false).at(0).starts_with("its volume is -6 m^3, below 0"));
+  CHECK(mesh_defects(clockwise, false).at(0).starts_with("its volume is -6 m^3, below 0"));
   CHECK_THROWS_WITH(extruded_outline_mesh({l[0], l[2], l[1], l[5]}, 1),
                     "the closed line is no outline: it crosses itself or has no area");
 }
 
 TEST_CASE("shapes that cannot be") {
-  CHECK(shape_trouble(BoxShape{{1, 0, 1}}) == "size = [1, 0, 1]: must be positive");
-  CHECK(shape_trouble(CylinderShape{1, 2, 2}) == "segments = 2: must be 3 to 10000");
-  CHECK(shape_trouble(CylinderShape{-1, 2, 8}) == "radius = -1: must be positive");
-  CHECK(shape_trouble(ConeShape{1, -0.1, 2, 8}) == "top_radius = -0.1: must be at least 0");
-  CHECK(shape_trouble(SphereShape{1, 11}) == "levels = 11: must be 0 to 10");
-  CHECK(shape_trouble(CapsuleShape{1, 2, 6}) == "segments = 6: must be a multiple of 4, 4 to 10000");
-  CHECK(shape_trouble(PlateShape{{1, 2, 0.1}, 0.5, 8}) ==
+  CHECK(shape_defect(BoxShape{{1, 0, 1}}) == "size = [1, 0, 1]: must be positive");
+  CHECK(shape_defect(CylinderShape{1, 2, 2}) == "segments = 2: must be 3 to 10000");
+  CHECK(shape_defect(CylinderShape{-1, 2, 8}) == "radius = -1: must be positive");
+  CHECK(shape_defect(ConeShape{1, -0.1, 2, 8}) == "top_radius = -0.1: must be at least 0");
+  CHECK(shape_defect(SphereShape{1, 11}) == "levels = 11: must be 0 to 10");
+  CHECK(shape_defect(CapsuleShape{1, 2, 6}) == "segments = 6: must be a multiple of 4, 4 to 10000");
+  CHECK(shape_defect(PlateShape{{1, 2, 0.1}, 0.5, 8}) ==
         "hole_radius = 0.5: must be less than half of the plate, 0.5");
-  CHECK(shape_trouble(FunnelShape{0.1, 0, 1, 0, 8}) == "top_radius = 0: must be positive");
-  CHECK(shape_trouble(HopperShape{{1, 0, 0}, {1, 1, 0}, 1, 0}) == "size = [1, 0]: must be positive");
-  CHECK(shape_trouble(HopperShape{{1, 1, 0}, {1, 1, 0}, 1, -1}) == "outlet_length = -1: must be at least 0");
-  CHECK(shape_trouble(PipeShape{1, 1, 1, 8}) == "outer_radius = 1: must be above inner_radius = 1");
+  CHECK(shape_defect(FunnelShape{0.1, 0, 1, 0, 8}) == "top_radius = 0: must be positive");
+  CHECK(shape_defect(HopperShape{{1, 0, 0}, {1, 1, 0}, 1, 0}) == "size = [1, 0]: must be positive");
+  CHECK(shape_defect(HopperShape{{1, 1, 0}, {1, 1, 0}, 1, -1}) == "outlet_length = -1: must be at least 0");
+  CHECK(shape_defect(PipeShape{1, 1, 1, 8}) == "outer_radius = 1: must be above inner_radius = 1");
   DrumShape drum{1, 0.1, 2, 0, 6, 0.3, 0.1, 36};
-  CHECK(shape_trouble(drum) == "");
+  CHECK(shape_defect(drum) == "");
   drum.lifter_height = 1;
-  CHECK(shape_trouble(drum) == "6 lifters of height 1 and width 0.1 do not fit into radius = 1");
+  CHECK(shape_defect(drum) == "6 lifters of height 1 and width 0.1 do not fit into radius = 1");
   drum.lifter_height = 0.95, drum.lifters = 8;
-  CHECK(shape_trouble(drum) == "8 lifters of height 0.95 and width 0.1 do not fit into radius = 1");
+  CHECK(shape_defect(drum) == "8 lifters of height 0.95 and width 0.1 do not fit into radius = 1");
   drum.lifter_height = 1e-4, drum.lifter_width = 0.1;
-  CHECK(shape_trouble(drum).starts_with("lifter_height = 0.0001: must be above the sag of the wall"));
+  CHECK(shape_defect(drum).starts_with("lifter_height = 0.0001: must be above the sag of the wall"));
   ScrewShape screw{0.1, 0.5, 0.5, 0.05, 1, 1, 24};
-  CHECK(shape_trouble(screw) == "");
+  CHECK(shape_defect(screw) == "");
   screw.thickness = 0.5;
-  CHECK(shape_trouble(screw) == "thickness = 0.5: must be less than the pitch, 0.5");
+  CHECK(shape_defect(screw) == "thickness = 0.5: must be less than the pitch, 0.5");
   screw.thickness = 0.1, screw.core_length = 0.9;
-  CHECK(shape_trouble(screw) == "core_length = 0.9: must be at least length = 1");
+  CHECK(shape_defect(screw) == "core_length = 0.9: must be at least length = 1");
   screw.core_length = 1, screw.pitch = 0;
-  CHECK(shape_trouble(screw) == "pitch = 0: must not be 0");
+  CHECK(shape_defect(screw) == "pitch = 0: must not be 0");
   screw.pitch = 1e-9, screw.thickness = 1e-10;
-  CHECK(shape_trouble(screw) == "segments = 24: would make more than 100000000 triangles");
+  CHECK(shape_defect(screw) == "segments = 24: would make more than 100000000 triangles");
 }
 
 }  // namespace scree

@@ -33,7 +33,7 @@ void check_tetrahedron(const TriangleMesh& read) {
   const TriangleMesh mesh = welded(read);
   CHECK(mesh.vertices.size() == 4);
   CHECK(mesh.triangles.size() == 4);
-  for (const std::string& trouble : mesh_troubles(mesh, false)) FAIL_CHECK(trouble);
+  for (const std::string& trouble : mesh_defects(mesh, false)) FAIL_CHECK(trouble);
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ TEST_CASE("solids of polygons") {
   for (const MeshFile& file : polygon_files()) {
     CAPTURE(file.name);
     const TriangleMesh mesh = welded(parse_mesh(file.bytes, file.name));
-    CHECK(mesh_troubles(mesh, false) == std::vector<std::string>{});
+    CHECK(mesh_defects(mesh, false) == std::vector<std::string>{});
     CHECK(mesh.triangles.size() == (file.name == "l.obj" ? 20 : 12));
     CHECK(mesh_volume(mesh) == (file.name == "l.obj" ? 3 : 1));
   }

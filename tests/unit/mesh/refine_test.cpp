@@ -44,7 +44,7 @@ TEST_CASE("no edge is longer than asked for, and none has a vertex in between") 
       const TriangleMesh fine = refined(mesh, length);
       CHECK(longest_edge(fine) <= length);
       CHECK(fine.triangles.size() >= mesh.triangles.size());
-      CHECK(mesh_troubles(fine, false) == std::vector<std::string>{});
+      CHECK(mesh_defects(fine, false) == std::vector<std::string>{});
       CHECK(near(mesh_volume(fine), mesh_volume(mesh), {.relative = 1e-14}));
       CHECK(near(mesh_area(fine), mesh_area(mesh), {.relative = 1e-14}));
       CHECK(std::equal(mesh.vertices.begin(), mesh.vertices.end(), fine.vertices.begin()));
@@ -79,7 +79,7 @@ TEST_CASE("an open surface with three triangles at an edge is refined, too") {
   const TriangleMesh fine = refined(sheet, 0.2);
   CHECK(longest_edge(fine) <= 0.2);
   CHECK(near(mesh_area(fine), 1.5, {.relative = 1e-14}));
-  CHECK(mesh_troubles(fine, true) == mesh_troubles(sheet, true));
+  CHECK(mesh_defects(fine, true) == mesh_defects(sheet, true));
 }
 
 TEST_CASE("too small a length is refused") {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "mesh/standing.hpp"
+#include "mesh/cached_contact.hpp"
 #include "support/catch.hpp"
 #include "support/test_meshes.hpp"
 
@@ -39,7 +39,7 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
     const MeshView view = surface.view();
     int wrong = 0;
     for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const Vec3 c = position_near(surface, 1.2 * kRadius, random);
       const auto row = triangles_near(surface, c, 1.2 * kRadius);
       const auto n = static_cast<Index>(row.size());
       const RowKind kind = kind_of_row(view, row.data(), n);
@@ -52,7 +52,8 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
           static_cast<int>(contacts.size()) > slots_needed(view, kind, is_seen_from_one_side, row.data(), n);
       const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
       MeshContact nearest;
-      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, Alone{}, nearest);
+      const Nearest found =
+          NearestContact(view, c, kRadius).find(row.data(), n, likely, SingleLane{}, nearest);
       all_unclear += found == Nearest::unclear;
       if (found == Nearest::none) wrong += !contacts.empty();
       if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
@@ -73,19 +74,20 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
     const MeshView view = surface.view();
     int wrong = 0;
     for (int i = 0; i < 4000; ++i) {
-      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const Vec3 c = position_near(surface, 1.2 * kRadius, random);
       const auto row = triangles_near(surface, c, 1.4 * kRadius);
       const auto n = static_cast<Index>(row.size());
       const auto contacts = contacts_of_row(surface, c, kRadius, row);
-      const StandingRow<Alone> at{view, kind_of_row(view, row.data(), n), row.data(), n, c, kRadius};
-      Standing cached = kNoStanding;
+      const CachedContactRow<SingleLane> at{view,   kind_of_row(view, row.data(), n), row.data(), n, c,
+                                            kRadius};
+      CachedContact cached = kNoCachedContact;
       if (contacts.empty())
         cached = at.clear();
       else if (contacts.size() == 1 && contacts[0].feature < view.part_count)
         cached = at.over(contacts[0].triangle);
-      for (int k = 0; k < 10 && cached.room > 0; ++k) {
+      for (int k = 0; k < 10 && cached.safe_distance > 0; ++k) {
         const Real part_of_room = k % 2 == 0 ? random.in(0, 1) : Real(0.999999);
-        const Vec3 moved = c + part_of_room * cached.room * random.direction();
+        const Vec3 moved = c + part_of_room * cached.safe_distance * random.direction();
         if (!cached.holds(moved)) continue;
         const auto found = contacts_of_row(surface, moved, kRadius, row);
         if (cached.triangle < 0) {
@@ -119,13 +121,13 @@ TEST_CASE("beside an edge a sphere stays over a triangle while what lies past th
           REQUIRE(higher < mesh_detail::uncertainty(view));
           const Index row[] = {0, 1}, below = view.vertices[view.triangles[0].vertex[2]].y > 0 ? 0 : 1;
           const Vec3 c{0.5, inside, height};
-          const StandingRow<Alone> at{view, RowKind::smooth, row, 2, c, 2 * height};
-          const Standing cached = at.over(below);
-          stands += cached.room > 0;
+          const CachedContactRow<SingleLane> at{view, RowKind::smooth, row, 2, c, 2 * height};
+          const CachedContact cached = at.over(below);
+          stands += cached.safe_distance > 0;
           for (int k = 0; k <= 8; ++k) {
             const Real turn = M_PI * k / 16;
-            const Vec3 moved = c + 0.999999 * cached.room * Vec3{0, -std::cos(turn), std::sin(turn)};
-            wrong += cached.room > 0 &&
+            const Vec3 moved = c + 0.999999 * cached.safe_distance * Vec3{0, -std::cos(turn), std::sin(turn)};
+            wrong += cached.safe_distance > 0 &&
                      !(mesh_detail::distance_to(view, view.triangles[1 - below], moved) > moved.z);
           }
         }

@@ -57,7 +57,7 @@ TEST_CASE("boxes that overlap cross, wherever one corner of each lies") {
     for (const Vec3 p : {found.position, found.position - shift})
       CHECK(std::max({std::abs(p.x) - 0.05, std::abs(p.y) - 0.05, std::abs(p.z) - 0.02}) ==
             Approx(0).margin(1e-12));
-    CHECK(mesh_troubles(two, false) == Texts{});
+    CHECK(mesh_defects(two, false) == Texts{});
     CHECK(crossing_text(two).starts_with("its shells 0 and 1 cut through each other, first at ("));
   }
   // Bars that cross without a corner of one inside the other.
@@ -75,7 +75,7 @@ TEST_CASE("of three shells those that cross are named") {
   CHECK(crossings(chain).size() == 2);
   CHECK(crossing_text(chain).ends_with("; so do 1 more pairs of shells"));
   // A misplaced shell beside two that intersect.
-  const Texts troubles = mesh_troubles(with(three, box_mesh({{0.01, 0.01, 0.01}}), {}), false);
+  const Texts troubles = mesh_defects(with(three, box_mesh({{0.01, 0.01, 0.01}}), {}), false);
   REQUIRE(troubles.size() == 1);
   CHECK(troubles[0].starts_with("a shell lies inside another"));
 }
@@ -89,7 +89,7 @@ TEST_CASE("shells that touch do not cross, and weigh what each of them does") {
     const TriangleMesh two = with(slab(), refined(slab(), 0.07), shift);
     for (const TriangleMesh& mesh : {two, moved(two, turned, {0.3, 0.1, -0.7})}) {
       CHECK(crossings(mesh).empty());
-      CHECK(mesh_troubles(mesh, false) == Texts{});
+      CHECK(mesh_defects(mesh, false) == Texts{});
       CHECK(crossing_text(mesh).empty());
       CHECK(mesh_volume(mesh) == Approx(8e-4).epsilon(kAccumulatedRoundOff));
     }
@@ -97,7 +97,7 @@ TEST_CASE("shells that touch do not cross, and weigh what each of them does") {
     TriangleMesh rounded = moved(two, turned, {0.3, 0.1, -0.7});
     for (Vec3& v : rounded.vertices)
       v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-    CHECK(mesh_troubles(rounded, false) == Texts{});
+    CHECK(mesh_defects(rounded, false) == Texts{});
     CHECK(crossing_text(rounded).empty());
   }
 }
@@ -106,24 +106,24 @@ TEST_CASE("cavities are right, solids inside solids are not, also where they tou
   const TriangleMesh ball = sphere_mesh({0.01, 2}), half = refined(box_mesh({{0.05, 0.05, 0.02}}), 0.02);
   const TriangleMesh hollow = with(slab(), turned_over(ball), {0.02, 0.01, 0});
   CHECK(crossings(hollow).empty());
-  CHECK(mesh_troubles(hollow, false) == Texts{});
-  CHECK(mesh_troubles(with(hollow, sphere_mesh({0.005, 1}), {0.02, 0.01, 0}), false) == Texts{});
+  CHECK(mesh_defects(hollow, false) == Texts{});
+  CHECK(mesh_defects(with(hollow, sphere_mesh({0.005, 1}), {0.02, 0.01, 0}), false) == Texts{});
   // A ball in the cavity that touches its wall.
-  CHECK(mesh_troubles(with(hollow, sphere_mesh({0.005, 2}), {0.025, 0.01, 0}), false) == Texts{});
+  CHECK(mesh_defects(with(hollow, sphere_mesh({0.005, 2}), {0.025, 0.01, 0}), false) == Texts{});
   const auto is_inside = [](const TriangleMesh& mesh) {
-    const Texts troubles = mesh_troubles(mesh, false);
+    const Texts troubles = mesh_defects(mesh, false);
     return troubles.size() == 1 && troubles[0].starts_with("a shell lies inside another");
   };
   CHECK(is_inside(with(slab(), ball, {0.02, 0.01, 0})));
   CHECK(is_inside(with(slab(), half, {0, 0, 0.01})));      // with a face in the top
   CHECK(is_inside(with(slab(), half, {0.025, 0, 0.01})));  // with a face in a side, too
   // One box twice, the second with smaller triangles.
-  const Texts twice = mesh_troubles(with(slab(), refined(slab(), 0.03), {}), false);
+  const Texts twice = mesh_defects(with(slab(), refined(slab(), 0.03), {}), false);
   REQUIRE(twice.size() == 1);
   CHECK(twice[0].find("inside") != std::string::npos);
   // Blocks of equal cubes that share a layer: all edges of one lie along edges of the other.
   const TriangleMesh block = refined(box_mesh({{4, 4, 4}}), 1.5);
-  CHECK(!mesh_troubles(with(block, block, {2, 0, 0}), false).empty());
+  CHECK(!mesh_defects(with(block, block, {2, 0, 0}), false).empty());
 }
 
 }  // namespace scree

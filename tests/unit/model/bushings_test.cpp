@@ -135,7 +135,7 @@ TEST_CASE("a row of bushings is counted and keeps its bodies from touching") {
   REQUIRE(model.bushings.size() == 2);
   CHECK(model.bushings[1].name == "b.1");
   CHECK(connected_bodies(model) == std::vector<std::pair<int, int>>{{0, 1}, {1, 2}});
-  CHECK(bodies_and_links(parse_deck(row, "deck.toml", {}).root).links == 3);  // at most: one for each body
+  CHECK(bodies_and_joints(parse_deck(row, "deck.toml", {}).root).links == 3);  // at most: one for each body
 }
 
 TEST_CASE("invalid bushings are refused with the key and the allowed values") {

@@ -1,6 +1,6 @@
 // Cylinders built from a deck: a line of free length, a motor on it, and limits.
-#include "model/connections.hpp"
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
+#include "model/derived/connections.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -92,7 +92,7 @@ TEST_CASE("cylinders connect the bodies of a row, and take springs and friction"
   CHECK(model.joint_frictions.size() == 2);
   CHECK(model.joint_springs[0].joint == 1);
   const Deck deck = parse_deck(kDeck + row, "deck.toml", {});
-  CHECK(bodies_and_links(deck.root).links == 4);
+  CHECK(bodies_and_joints(deck.root).links == 4);
 }
 
 TEST_CASE("keys that a cylinder must not have") {

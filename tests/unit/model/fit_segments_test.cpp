@@ -1,5 +1,5 @@
 // Default segments of round meshes where the deck does not give them.
-#include "model/fit_segments.hpp"
+#include "model/builder/fit_segments.hpp"
 
 #include <fmt/format.h>
 

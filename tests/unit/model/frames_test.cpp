@@ -165,7 +165,7 @@ TEST_CASE("a joint's ends are its markers") {
   CHECK((j.point[0] == Vec3{0, 0, 0.5}));
   CHECK((j.point[1] == Vec3{0, -0.1, 0.5}));
   for (const int side : {0, 1})
-    CHECK(norm(to_global_direction(model, side, turned(j.marker[side], {0, 0, 1})) - Vec3{1, 0, 0}) <
+    CHECK(norm(to_global_direction(model, side, rotated(j.marker[side], {0, 0, 1})) - Vec3{1, 0, 0}) <
           kRoundOff);
 }
 
@@ -199,8 +199,8 @@ TEST_CASE("axes of markers that are a little off are made exact") {
   const Model model = model_of(marked("", "z_axis = [0, 0, 1]\nx_axis = [1e-7, -1, 0]\n") + joint("fixed"));
   const Joint& j = model.joints[0];
   for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}})
-    CHECK(norm(to_global_direction(model, 0, turned(j.marker[0], axis)) -
-               to_global_direction(model, 1, turned(j.marker[1], axis))) < kRoundOff);
+    CHECK(norm(to_global_direction(model, 0, rotated(j.marker[0], axis)) -
+               to_global_direction(model, 1, rotated(j.marker[1], axis))) < kRoundOff);
 }
 
 TEST_CASE("markers on rows, and where they cannot be") {
@@ -255,7 +255,7 @@ TEST_CASE("springs and forces at markers") {
   CHECK((model.spring_dampers[0].point[1] == Vec3{0, -0.1, 0.1}));
   CHECK(near(model.spring_dampers[0].free_length, 0.4, {.relative = 1e-15}));
   CHECK((model.applied_forces[0].point == Vec3{0, 0, 0.5}));
-  CHECK(norm(turned(model.applied_forces[0].axes, {0, 0, 1}) - Vec3{1, 0, 0}) < kRoundOff);
+  CHECK(norm(rotated(model.applied_forces[0].axes, {0, 0, 1}) - Vec3{1, 0, 0}) < kRoundOff);
   CHECK(contains(model_error(marked("", "") + marker("g", "ground", "") +
                              "[[applied_forces]]\nname = \"f\"\nmarker = \"g\"\nfz = 3.0\n"),
                  "this one is on the ground"));

@@ -68,7 +68,7 @@ TEST_CASE("a pair without a stiffness follows Hertz's law from the moduli of its
       model_of(kSpace + kSteel + kRubber + kGrains + kLarge + steel_pair("restitution = 0.9\n") +
                pair_of("rubber", "steel", "restitution = 0.5\nlimit_damping = false\n") +
                pair_of("rubber", "rubber", "stiffness = 0.0\n"));
-  const KelvinVoigt &steel = model.contact.law(0, 0), &mixed = model.contact.law(0, 1);
+  const NormalLawParameters &steel = model.contact.law(0, 0), &mixed = model.contact.law(0, 1);
   CHECK(near(steel.effective_modulus, 2e11 / (2 * 0.91), {.relative = kRoundOff}));
   CHECK(near(mixed.effective_modulus, 1 / (0.91 / 2e11 + 0.75 / 1e7), {.relative = kRoundOff}));
   CHECK(model.contact.law(1, 0).effective_modulus == mixed.effective_modulus);

@@ -1,6 +1,6 @@
 // Motors, springs and limits on joints, and couplers, built from a deck.
-#include "model/connections.hpp"
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
+#include "model/derived/connections.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -59,7 +59,7 @@ TEST_CASE("an effort on a row of joints is one on each") {
   CHECK(!model.joint_springs[2].free.has_value());
   CHECK(model.joint_springs[3].name == "coil");
   CHECK(model.motors[0].joint == 1);
-  CHECK(bodies_and_links(parse_deck(kDeck + springs, "deck.toml", {}).root).links == 5 + 3 + 1 + 1);
+  CHECK(bodies_and_joints(parse_deck(kDeck + springs, "deck.toml", {}).root).links == 5 + 3 + 1 + 1);
 }
 
 TEST_CASE("friction on joints has the lever of its surfaces") {

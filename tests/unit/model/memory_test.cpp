@@ -1,5 +1,5 @@
 // The memory needed by a model is compared with the free memory before it is built.
-#include "model/memory.hpp"
+#include "model/checks/memory.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -44,7 +44,7 @@ each = "net"
 local_points = [[0.0, 1.0], [0.0, 0.0]]
 stiffness = 1.0
 )";
-  const ModelSize size = bodies_and_links(parse_deck(deck, "deck.toml", {}).root);
+  const ModelSize size = bodies_and_joints(parse_deck(deck, "deck.toml", {}).root);
   CHECK((size.bodies == 8 && size.shapes == 7 * (1 + 5) && size.drawn_shapes == 7 * 3));
   CHECK(size.links == 1 + 7 + 7);  // a chain of 7 counted as 7
 }
@@ -80,7 +80,7 @@ mesh = "ball"
   CHECK(shown_meshes(model).triangles == 2 * triangles);
   CHECK(shown_meshes(model).points == 2 * (triangles / 2 + 2));
   CHECK(bytes_of_meshes(model, false) == kBytesPerTriangle * triangles);
-  CHECK(bytes_of_meshes(model, true) == (kBytesPerKeptTriangle + 2 * kBytesPerShownTriangle) * triangles);
+  CHECK(bytes_of_meshes(model, true) == (kBytesPerStoredTriangle + 2 * kBytesPerShownTriangle) * triangles);
   CHECK(bytes_of_model(model) == kBytesPerTriangle * triangles);
   CHECK(bytes_per_particle(with_lines) - bytes_per_particle(model) == kLinesPerParticle * kBytesPerLine);
 }

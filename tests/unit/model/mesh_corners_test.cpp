@@ -1,5 +1,5 @@
 // Meshes of bodies on planes: their contacts, stiffness, and refusals.
-#include "model/mesh_corners.hpp"
+#include "model/derived/mesh_corners.hpp"
 
 #include <fmt/format.h>
 
@@ -63,9 +63,9 @@ TEST_CASE("a body oscillates on all corners of a face at once") {
                std::sqrt(kStiffness * std::max(corners / body.mass, turning)), {.relative = 1e-3}));
   }
   // Friction has k_t = 2/7 K; along the normal the contact is stiffer.
-  const Model rubbing = model_of(deck(kCube), {"contact.pairs.0.friction=0.3"});
-  CHECK(
-      near(fastest_on_corners(rubbing, false).frequency, std::sqrt(6 * kStiffness / 4), {.relative = 1e-6}));
+  const Model frictional = model_of(deck(kCube), {"contact.pairs.0.friction=0.3"});
+  CHECK(near(fastest_on_corners(frictional, false).frequency, std::sqrt(6 * kStiffness / 4),
+             {.relative = 1e-6}));
   for (const std::string override : {"walls=[]", "bodies.b.meshes.0.collides=false"})
     CHECK(fastest_on_corners(model_of(deck(kCube), {override}), false).frequency == 0);
 }

@@ -1,5 +1,5 @@
 // Warnings about meshes: too fine for the particles, folds too sharp for soft contacts, intersecting shells.
-#include "model/mesh_plausibility.hpp"
+#include "model/checks/mesh_plausibility.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -155,7 +155,8 @@ TEST_CASE("a fold beyond the feature angle requires overlaps below r (1 - cos of
 TEST_CASE("a surface that runs across every face takes nothing along") {
   const std::string sheet = kSpace + mesh("kind = \"rectangle\"\nsize = [1.0, 1.0]");
   const auto warned = [&](const char* velocity) {
-    return of("is perpendicular to every face", sheet, {fmt::format("walls.w.surface_velocity={}", velocity)}).size();
+    return of("is perpendicular to every face", sheet, {fmt::format("walls.w.surface_velocity={}", velocity)})
+        .size();
   };
   CHECK(warned("[0, 0, 1]") == 1);
   CHECK(warned("[0.1, 0, 1]") == 0);

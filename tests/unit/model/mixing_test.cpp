@@ -1,5 +1,5 @@
 // Pairs of materials that the deck does not give: the rules, the result for every key, and refusals.
-#include "model/mixing.hpp"
+#include "model/builder/mixing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,18 +44,18 @@ std::string deck_of(const std::string& rule, const std::string& of_a, const std:
 
 // All values of a derived pair and of one with given keys must agree.
 void check_alike(const Model& made, const Model& given) {
-  const KelvinVoigt &x = made.contact.law(0, 1), &y = given.contact.law(0, 1);
+  const NormalLawParameters &x = made.contact.law(0, 1), &y = given.contact.law(0, 1);
   CHECK((x.normal_stiffness == y.normal_stiffness && x.normal_damping == y.normal_damping));
   CHECK((x.exponent == y.exponent && x.tension == y.tension && x.damping_ratio == y.damping_ratio));
   CHECK((x.effective_modulus == y.effective_modulus && x.adhesion_work == y.adhesion_work));
-  CHECK((x.neck == y.neck && x.attraction == y.attraction && x.range == y.range));
+  CHECK((x.jkr == y.jkr && x.attraction == y.attraction && x.range == y.range));
   REQUIRE(made.contact.friction.size() == given.contact.friction.size());
   if (made.rotates()) {
     const Friction f = made.contact.friction_of(0, 1), g = given.contact.friction_of(0, 1);
     CHECK((f.friction == g.friction && f.stiffness == g.stiffness && f.shear_modulus == g.shear_modulus));
     CHECK(f.damping_ratio == g.damping_ratio);
   }
-  const RollingResistance r = made.contact.rolling_of(0, 1), s = given.contact.rolling_of(0, 1);
+  const RollingParameters r = made.contact.rolling_of(0, 1), s = given.contact.rolling_of(0, 1);
   CHECK((r.friction == s.friction && r.stiffness == s.stiffness && r.damping == s.damping));
   CHECK((r.stiffness_factor == s.stiffness_factor && r.damping_ratio == s.damping_ratio));
   CHECK(r.twisting_friction == s.twisting_friction);

@@ -23,9 +23,9 @@ std::string deck_of(const std::string& pair, const std::string& more = "", bool 
 }
 
 bool is_plain(const Model& model) {
-  const KelvinVoigt& law = model.contact.law(0, 0);
-  return !model.rolls() && !model.attracts() && !law.neck && law.adhesion_work == 0 && law.attraction == 0 &&
-         law.range == 0 && model.contact.reach == 0;
+  const NormalLawParameters& law = model.contact.law(0, 0);
+  return !model.rolls() && !model.is_cohesive() && !law.jkr && law.adhesion_work == 0 &&
+         law.attraction == 0 && law.range == 0 && model.contact.interaction_range == 0;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The probability of a free random position, by which random groups are checked, against positions tried.
-#include "model/generators.hpp"
+#include "model/derived/generators.hpp"
 #include "physics/plausible.hpp"
 #include "physics/random_packing.hpp"
 #include "support/catch.hpp"
@@ -63,20 +63,20 @@ TEST_CASE("the probability of a free random position") {
     CAPTURE(one.dimension, one.fraction, one.smallest);
     const Packing p = packing(one.dimension, one.fraction, one.smallest, one.length);
     const Real tried = tried_chance(p, one.smallest),
-               estimated = insertion_chance(one.dimension, p.sums, one.smallest);
+               estimated = insertion_probability(one.dimension, p.sums, one.smallest);
     CAPTURE(tried, estimated);
     CHECK(tried < 2 * estimated);
     CHECK(tried > 0.4 * estimated);
   }
-  CHECK(insertion_chance(2, 0) == 1);
-  CHECK(insertion_chance(2, 0.55) == 0);
-  CHECK(insertion_chance(3, 0.39) == 0);
+  CHECK(insertion_probability(2, 0) == 1);
+  CHECK(insertion_probability(2, 0.55) == 0);
+  CHECK(insertion_probability(3, 0.39) == 0);
 }
 
 TEST_CASE("overlaps at rest and at impact") {
-  const KelvinVoigt linear{1e4, 0, 1, false}, hertz{1e6, 0, 1.5, false};
-  CHECK(near(resting_overlap(linear, 10), 1e-3, {.relative = kRoundOff}));
-  CHECK(near(1e6 * std::pow(resting_overlap(hertz, 10), 1.5), 10, {.relative = kRoundOff}));
+  const NormalLawParameters linear{1e4, 0, 1, false}, hertz{1e6, 0, 1.5, false};
+  CHECK(near(static_overlap(linear, 10), 1e-3, {.relative = kRoundOff}));
+  CHECK(near(1e6 * std::pow(static_overlap(hertz, 10), 1.5), 10, {.relative = kRoundOff}));
   CHECK(near(impact_overlap(linear, 1, 2), 2 / std::sqrt(1e4), {.relative = kRoundOff}));
   CHECK(near(PowerLaw(hertz).energy(impact_overlap(hertz, 3, 2)), 0.5 * 3 * 4, {.relative = kRoundOff}));
   CHECK(near(damping_ratio(2 * std::sqrt(1e4 * 0.5), 1e4, 0.5), 1, {.relative = kRoundOff}));

@@ -28,7 +28,7 @@ std::string deck_of(const std::string& pair, int dimension = 3, const std::strin
 }
 const std::string kSoft = "[[materials]]\nname = \"soft\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n";
 
-const KelvinVoigt& law_of(const Model& model) { return model.contact.law(0, 0); }
+const NormalLawParameters& law_of(const Model& model) { return model.contact.law(0, 0); }
 
 }  // namespace
 
@@ -39,7 +39,7 @@ TEST_CASE("a restitution beside a stiffness becomes a damping ratio") {
     CHECK(near(restitution_of(law_of(linear).damping_ratio, tension), 0.4, {.relative = kRoundOff}));
     CHECK(law_of(linear).normal_damping == 0);
     const PairSize size{0.02, 0.02, 0.1, 0.1};
-    CHECK(near(RatedLinearLaw(law_of(linear)).of_pair(size).damping(1e-4),
+    CHECK(near(LinearRestitutionLaw(law_of(linear)).of_pair(size).damping(1e-4),
                contact_damping(law_of(linear).damping_ratio, 0.05, 1e5, 1), {.relative = kRoundOff}));
     const Model power = model_of(deck_of("stiffness = 1e6\nexponent = 2.0\nrestitution = 0.4\n" + pulls));
     CHECK(near(PowerLaw(law_of(power)).of_pair(size).damping(1e-4),
@@ -96,15 +96,15 @@ TEST_CASE("keys of rolling and twisting become the pair's resistance") {
     return model_of(deck_of("stiffness = 1e5\nfriction = 0.4\n" + keys, dimension)).contact.rolling_of(0, 0);
   };
   CHECK(model_of(deck_of("stiffness = 1e5\nfriction = 0.4\n")).contact.rolling.empty());
-  const RollingResistance spring = rolling("rolling_friction = 0.1\nrolling_damping_ratio = 0.3\n");
+  const RollingParameters spring = rolling("rolling_friction = 0.1\nrolling_damping_ratio = 0.3\n");
   CHECK((spring.friction == 0.1 && spring.damping_ratio == 0.3 && spring.stiffness_factor == 2.25 &&
          spring.stiffness == 0 && spring.damping == 0 && spring.twisting_friction == 0.4));
-  const RollingResistance given =
+  const RollingParameters given =
       rolling("rolling_friction = 0.1\nrolling_stiffness = 0.7\ntwisting_friction = 0.0\n");
   CHECK((given.stiffness == 0.7 && given.stiffness_factor == 0 && given.twisting_friction == 0));
-  const RollingResistance flat = rolling("rolling_friction = 0.1\nrolling_damping = 2e-4\n", 2);
+  const RollingParameters flat = rolling("rolling_friction = 0.1\nrolling_damping = 2e-4\n", 2);
   CHECK((flat.stiffness_factor == 3 && flat.damping == 2e-4 && flat.twisting_friction == 0));
-  const RollingResistance twisting = rolling("twisting_friction = 0.2\n");
+  const RollingParameters twisting = rolling("twisting_friction = 0.2\n");
   CHECK((twisting.friction == 0 && twisting.damping == 0 && twisting.twisting_friction == 0.2));
 }
 

@@ -1,5 +1,5 @@
 // Points inside the domain, and beyond which of its sides others are.
-#include "model/space_box.hpp"
+#include "model/derived/space_box.hpp"
 
 #include <limits>
 
@@ -38,8 +38,8 @@ TEST_CASE("a margin counts inwards, a width outwards") {
   const Box box = open_box(mixed_space(2));
   CHECK(box.inside({0, 0.75, 0}, 0.25));
   CHECK_FALSE(box.inside({0, 0.75, 0}, 0.5));
-  CHECK(box.reaches({0, -1.25, 0}, 0.25));
-  CHECK_FALSE(box.reaches({0, -1.5, 0}, 0.25));
+  CHECK(box.is_within({0, -1.25, 0}, 0.25));
+  CHECK_FALSE(box.is_within({0, -1.5, 0}, 0.25));
 }
 
 TEST_CASE("beyond a wall is past that side alone") {

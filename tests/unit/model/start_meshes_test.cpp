@@ -1,5 +1,5 @@
 // Overlaps with meshes at the start, and random groups clear of them.
-#include "model/start_meshes.hpp"
+#include "model/derived/start_meshes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Speeds of driven surfaces, and the resulting stiffness and step.
-#include "model/surface_speeds.hpp"
+#include "model/derived/surface_speeds.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Pairs of particles and shapes with possible contacts, and their sizes.
-#include "model/touching.hpp"
+#include "model/derived/touching.hpp"
 
 #include "support/catch.hpp"
 
@@ -35,16 +35,16 @@ TEST_CASE("shapes of one body and of connected bodies have no contacts unless th
           (std::min(a, b) == 0 && std::max(a, b) == 1) || (std::min(a, b) == 1 && std::max(a, b) == 2);
       CHECK(rule.may_touch(a, b) == (a != b && !connected));
     }
-  CHECK(rule.kept_apart(1) == std::vector<int>{0, 2});
-  CHECK(rule.kept_apart(2) == std::vector<int>{1});
-  CHECK(rule.kept_apart(4).empty());
+  CHECK(rule.excluded_bodies(1) == std::vector<int>{0, 2});
+  CHECK(rule.excluded_bodies(2) == std::vector<int>{1});
+  CHECK(rule.excluded_bodies(4).empty());
   for (int a = kGround; a < 5; ++a) CHECK((rule.may_touch(a, kGround) && rule.may_touch(kGround, a)));
 
   model.contact.connected_bodies_touch = true;
   const TouchRule touching(model);
   CHECK(touching.may_touch(0, 1));
   CHECK_FALSE(touching.may_touch(3, 3));
-  CHECK(touching.kept_apart(1).empty());
+  CHECK(touching.excluded_bodies(1).empty());
 }
 
 TEST_CASE("bodies may touch where two that have shapes are not connected") {

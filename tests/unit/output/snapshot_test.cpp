@@ -50,7 +50,7 @@ void write_lines(SnapshotWriter& writer, const std::vector<int>& contacts) {
       for (int k = 0; k < 2 * lines; ++k) at.push_back({PredictableSnapshot::value(step, k), 0, 1});
       return at;
     };
-    const std::vector<Vec3> of_contacts = ends(n), of_links = ends(2);
+    const std::vector<Vec3> of_contacts = ends(n), of_joints = ends(2);
     std::vector<Real> overlap;
     for (int k = 0; k < n; ++k) overlap.push_back(PredictableSnapshot::value(step, k));
     const std::vector<int> kind(static_cast<std::size_t>(n), step);
@@ -60,7 +60,7 @@ void write_lines(SnapshotWriter& writer, const std::vector<int>& contacts) {
         of.time, of.particles(), of.bodies(), {},
         {of_contacts,
          {{"overlap", {"m", "overlap"}, 1, overlap.data()}, {"kind", {"1", "kind"}, 1, kind.data()}}},
-        {of_links, {{"force", {"N", "force"}, 1, force.data()}}});
+        {of_joints, {{"force", {"N", "force"}, 1, force.data()}}});
   }
 }
 

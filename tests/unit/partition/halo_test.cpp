@@ -51,7 +51,7 @@ TEST_CASE("ghosts lie within the width of the box, on shifts of their own, and e
     }
     std::set<std::pair<Index, int>> found;
     for (const Ghost& ghost : ghosts_of(s, points)) {
-      CHECK(ghost.image != kNoShift);
+      CHECK(ghost.image != kZeroShift);
       CHECK(found.emplace(ghost.source, ghost.image).second);
     }
     std::set<std::pair<Index, int>> expected;
@@ -59,7 +59,7 @@ TEST_CASE("ghosts lie within the width of the box, on shifts of their own, and e
     for (Index i = 0; i < 300; ++i)
       for (int shift = 0; shift < 27; ++shift) {
         const int sx = shift % 3 - 1, sy = shift / 3 % 3 - 1, sz = shift / 9 - 1;
-        if (shift == kNoShift || (dimension == 2 && sz != 0)) continue;
+        if (shift == kZeroShift || (dimension == 2 && sz != 0)) continue;
         const Vec4 p = points[static_cast<std::size_t>(i)];
         if (within(p.x + sx * period.x, s.min.x, s.max.x) && within(p.y + sy * period.y, s.min.y, s.max.y) &&
             within(p.z + sz * period.z, s.min.z, s.max.z))

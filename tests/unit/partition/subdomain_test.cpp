@@ -168,7 +168,7 @@ TEST_CASE("points are inside between sides that are not periodic, and beyond wal
   const Subdomain subdomain(s);
   struct Place {
     Vec3 p;
-    bool inside, beyond_wall;
+    bool inside, is_beyond_wall;
   };
   for (const Place& place :
        {Place{{0.5, 0.5, 0.5}, true, false}, Place{{0, 0, 0}, true, false},
@@ -177,7 +177,7 @@ TEST_CASE("points are inside between sides that are not periodic, and beyond wal
         Place{{0.5, 0.5, 7}, true, false}, Place{{std::nan(""), 0.5, 0.5}, false, false}}) {
     CAPTURE(place.p.x, place.p.y, place.p.z);
     CHECK(subdomain.inside(place.p) == place.inside);
-    CHECK(subdomain.beyond_wall(place.p) == place.beyond_wall);
+    CHECK(subdomain.is_beyond_wall(place.p) == place.is_beyond_wall);
   }
   s.dimension = 2, s.min.z = s.max.z = 0;
   CHECK(Subdomain(s).inside({0.5, 0.5, 0}));

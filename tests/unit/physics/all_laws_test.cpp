@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "model/choose_law.hpp"
+#include "model/derived/choose_law.hpp"
 #include "random_contact.hpp"
 #include "support/catch.hpp"
 
@@ -19,7 +19,7 @@ constexpr Real kStep = 0.05;
 
 struct NamedPair {
   const char* name;
-  KelvinVoigt law;
+  NormalLawParameters law;
 };
 const NamedPair kPairs[] = {{"linear", {100, 0.5, 1, false}},
                             {"linear, with tension", {100, 0.5, 1, true}},
@@ -31,7 +31,7 @@ const NamedPair kPairs[] = {{"linear", {100, 0.5, 1, false}},
                             {"Hertz, DMT", {0, 0, 1, false, 100, 0.2, 0.5, false}},
                             {"JKR", {0, 0, 1, false, 100, 0.2, 0.5, true}}};
 
-Contact contact_with(const KelvinVoigt& law, bool friction, bool rolling) {
+Contact contact_with(const NormalLawParameters& law, bool friction, bool rolling) {
   Contact contact;
   contact.laws = {law};
   if (friction)
@@ -57,7 +57,7 @@ void for_each_law(const Use& use) {
           with_contact_laws(contact_with(pair.law, friction, rolling),
                             [&](const auto& laws) { use(laws.front()); });
         } catch (const std::logic_error&) {
-          CHECK(pair.law.neck);  // JKR has a law with friction only
+          CHECK(pair.law.jkr);  // JKR has a law with friction only
         }
       }
 }
@@ -72,7 +72,7 @@ std::size_t number_of(const Normal& normal) {
 
 template <class Law>
 ContactOutcome outcome_of(const Law& law, const RandomContact& c) {
-  if constexpr (Law::kMoves)
+  if constexpr (Law::kNeedsMotion)
     return law.load(c.pair, c.history);
   else
     return {law.load(c.pair), {}, {}, {}, {}};
@@ -117,7 +117,7 @@ TEST_CASE("dampers and unloading springs of every law dissipate") {
     RandomNumbers random;
     for (int k = 0; k < kCases; ++k, random.vector()) {
       const ContactOutcome out = outcome_of(law, contact_of(random, kStep, false));
-      if constexpr (!std::decay_t<decltype(law)>::kMoves) CHECK(out.load.loss >= 0);
+      if constexpr (!std::decay_t<decltype(law)>::kNeedsMotion) CHECK(out.load.loss >= 0);
       for (const SpringLosses& losses : {out.friction, out.rolling, out.twisting})
         CHECK((losses.dashpot >= 0 && losses.unloading >= 0));
     }

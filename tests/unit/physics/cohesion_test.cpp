@@ -31,14 +31,14 @@ TEST_CASE("JKR: characteristic points") {
   for (const auto& row : table.rows()) {
     const JkrPair law = jkr_pair(row);
     CHECK(near(law.pull_off, row["Fc"], {.relative = kTable}));
-    CHECK(near(law.reach(), -row["d_sep"], {.relative = kTable}));
-    CHECK(near(law.last_radius, row["a_sep"], {.relative = kTable}));
+    CHECK(near(law.interaction_range(), -row["d_sep"], {.relative = kTable}));
+    CHECK(near(law.pull_off_radius, row["a_sep"], {.relative = kTable}));
     CHECK(near(law.contact_radius(0), row["a_d0"], {.relative = kTable}));
     CHECK(near(law.elastic(0), row["F_d0"], {.relative = kTable}));
     CHECK(std::abs(law.elastic(row["d_F0"])) <= kTable * row["Fc"]);
     CHECK(near(law.elastic(row["d_Fc"]), -row["Fc"], {.relative = kTable}));
-    CHECK(near(law.making_loss(), row["W_stick"], {.relative = kTable}));
-    CHECK(near(law.energy(0), -law.making_loss(), {.relative = kTable}));
+    CHECK(near(law.formation_loss(), row["W_stick"], {.relative = kTable}));
+    CHECK(near(law.energy(0), -law.formation_loss(), {.relative = kTable}));
     // The root of dF/dd = infinity: half the digits.
     CHECK(near(law.elastic(row["d_sep"] * (1 - 1e-15)), row["F_sep"], {.relative = 1e-6}));
     CHECK(std::abs(law.energy(row["d_sep"] * (1 - 1e-15))) <= 1e-6 * row["W_stick"]);
@@ -51,14 +51,14 @@ TEST_CASE("JKR: contact radius, force, stiffness, energy") {
     const auto& head = points.rows().at(row.word("set") == "a" ? 0 : 1);
     const JkrPair law = jkr_pair(head);
     const Real d = row["d"];
-    if (!(d > -law.reach() * (1 - 1e-12))) continue;  // the pull-off point itself: see above
+    if (!(d > -law.interaction_range() * (1 - 1e-12))) continue;  // the pull-off point itself: see above
     CAPTURE(row.word("set"), d);
     // Near the pull-off point the error of d grows as the root of the distance to it falls.
-    const Real digits = kTable / std::min<Real>(1, std::sqrt(1 + d / law.reach()));
+    const Real digits = kTable / std::min<Real>(1, std::sqrt(1 + d / law.interaction_range()));
     CHECK(near(law.contact_radius(d), row["a"], {.relative = digits}));
     CHECK(near(law.elastic(d), row["F"], {.relative = digits, .absolute = digits * law.pull_off}));
     CHECK(near(law.slope(d), row["dF_dd"],
-               {.relative = 10 * digits, .absolute = digits * law.pull_off / law.reach()}));
+               {.relative = 10 * digits, .absolute = digits * law.pull_off / law.interaction_range()}));
     CHECK(near(law.energy(d) - law.energy(0), row["energy"],
                {.relative = digits, .absolute = digits * head["W_stick"]}));
   }
@@ -68,7 +68,7 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
   const ContactLaw<JkrLaw> law{{1e7, 0, 0.05}};
   static_assert(decltype(law)::kHistory == 1);
   const PairSize size{1e-4, kInfinity, 2e-9, kInfinity};
-  const Real reach = reach_beyond_touch(law.normal, size);
+  const Real reach = pair_interaction_range(law.normal, size);
   CHECK(reach > 0);
   const auto at = [&](Real overlap, bool touched) {
     const ContactGeometry geometry{overlap, size.radius_i - overlap, {0, 0, 1}, 1};
@@ -78,7 +78,7 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
   CHECK(at(-0.1 * reach, false).load.force == Vec3{});
   CHECK_FALSE(at(-0.1 * reach, false).history.touched);
   CHECK(at(0.1 * reach, false).history.touched);
-  const Real formation = law.normal.of_pair(size).making_loss();  // in a step of 1 s, without rate
+  const Real formation = law.normal.of_pair(size).formation_loss();  // in a step of 1 s, without rate
   CHECK(at(0.1 * reach, false).load.loss == formation);
   CHECK(at(0.1 * reach, true).load.loss == 0);
   CHECK(at(-0.1 * reach, true).load.force.z < 0);
@@ -89,20 +89,20 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
 
 TEST_CASE("an attractive force on top of another law, with and without range") {
   const PairSize size{2, 2, 1, 1};
-  const auto near_only = AttractedLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 4, 0}.of_pair(size);
+  const auto near_only = CohesiveLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 4, 0}.of_pair(size);
   CHECK(near_only.elastic(0.5) == 100 * 0.5 - (3 + 4));
   CHECK(near_only.adhesion(0.5) == 7);
   CHECK(near_only.elastic(-1e-9) == 0);
   CHECK(near_only.energy(-1e-9) == 0);
-  const auto far = AttractedLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 0, 0.2}.of_pair(size);
-  CHECK(far.reach() == 0.2);
+  const auto far = CohesiveLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 0, 0.2}.of_pair(size);
+  CHECK(far.interaction_range() == 0.2);
   CHECK(near(far.elastic(-0.1), -1.5, {.relative = kRoundOff}));
   CHECK(far.elastic(-0.3) == 0);
   for (const Real d : {-0.15, -0.05, 0.05, 0.3}) {  // the force is the slope of the energy
     const Real step = 1e-6, slope = (far.energy(d + step) - far.energy(d - step)) / (2 * step);
     CHECK(near(far.elastic(d), slope, {.relative = 1e-8, .absolute = 1e-8}));
   }
-  const ContactLaw<AttractedLaw<LinearLaw>> law{{LinearLaw(100, 0, true), 3, 0, 0.2}};
+  const ContactLaw<CohesiveLaw<LinearLaw>> law{{LinearLaw(100, 0, true), 3, 0, 0.2}};
   static_assert(decltype(law)::kHistory == 0);
   const ContactGeometry apart = sphere_pair(Vec3{0, 0, 4.1}, Real(4));
   const ContactMotion rest = sphere_motion(apart, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
@@ -112,8 +112,8 @@ TEST_CASE("an attractive force on top of another law, with and without range") {
 TEST_CASE(
     "an attractive force without history is a law of the instant, in double and single, and of implicit "
     "steps") {
-  const ContactLaw<AttractedLaw<HertzLaw>> law{{HertzLaw(100, 0.1, true), 0.5, 2, 0}};
-  static_assert(!decltype(law)::kMoves);
+  const ContactLaw<CohesiveLaw<HertzLaw>> law{{HertzLaw(100, 0.1, true), 0.5, 2, 0}};
+  static_assert(!decltype(law)::kNeedsMotion);
   const PairSize size{2, 2, 1, 1};
   const PairState pair{sphere_pair(Vec3{0, 3.9, 0}, Real(4)), {0.1, -0.3, 0}, size};
   const auto load = law.load(pair);
@@ -124,7 +124,7 @@ TEST_CASE(
       {0.1f, 3.9f, {0, 3.9f, 0}, 1 / 3.9f}, {0.1f, -0.3f, 0}, {2, 2, 1, 1}};
   CHECK(near(in_double(law.load(single).force), load.force, {.relative = 1e-5}));
   // Undamped, touching on a straight path: the impulse's work is the energy.
-  const auto undamped = AttractedLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
+  const auto undamped = CohesiveLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
   const Real touching = step_contact_force(undamped, {-0.01, 1, 0.02, 1, 0.03}).force;
   CHECK(near(touching / 2 * 0.03, undamped.energy(0.02), {.relative = kRoundOff}));
 }

@@ -18,15 +18,16 @@ constexpr Real kTruncation = 5e-10;  // of central differences over 1e-6, and th
 // A law and the policy that evaluates it, for loops over both.
 struct LawCase {
   const char* name;
-  KelvinVoigt law;
-  ContactForce (*force)(const KelvinVoigt&, Real, Real);
-  Real (*energy)(const KelvinVoigt&, Real);
+  NormalLawParameters law;
+  ContactForce (*force)(const NormalLawParameters&, Real, Real);
+  Real (*energy)(const NormalLawParameters&, Real);
 };
 
 template <class Law>
-LawCase law_case(const char* name, const KelvinVoigt& law) {
-  return {name, law, [](const KelvinVoigt& p, Real d, Real d_dot) { return contact_force(Law(p), d, d_dot); },
-          [](const KelvinVoigt& p, Real d) { return Law(p).energy(d); }};
+LawCase law_case(const char* name, const NormalLawParameters& law) {
+  return {name, law,
+          [](const NormalLawParameters& p, Real d, Real d_dot) { return contact_force(Law(p), d, d_dot); },
+          [](const NormalLawParameters& p, Real d) { return Law(p).energy(d); }};
 }
 
 const LawCase kLaws[] = {

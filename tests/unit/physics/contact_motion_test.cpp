@@ -37,7 +37,7 @@ TEST_CASE("both sides of a pair see the same contact, odd or even, to the last b
     const ContactMotion &a = one.pair.motion, &b = other.pair.motion;
     CHECK((a.normal0 == -b.normal0 && a.normal1 == -b.normal1 && a.overlap0 == b.overlap0));
     CHECK((a.slip == -b.slip && a.rolling == -b.rolling));
-    CHECK((a.twisting == b.twisting && a.turn == -b.turn && a.leverage == b.leverage));
+    CHECK((a.twisting == b.twisting && a.turn == -b.turn && a.lever_arm_ratio == b.lever_arm_ratio));
     const ContactOutcome f = all_laws().load(one.pair, one.history);
     const ContactOutcome g = all_laws().load(other.pair, other.history);
     CHECK((f.load.force == -g.load.force && f.load.loss == g.load.loss));
@@ -78,14 +78,14 @@ TEST_CASE("a transported history keeps its length, and its part along the normal
   RandomNumbers random;
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, 0.05, false);
-    const Vec3 spring = turned_across(c.pair.motion, c.history.spring),
-               moment = turned_with(c.pair.motion, c.history.moment);
+    const Vec3 spring = rotated_tangential(c.pair.motion, c.history.spring),
+               moment = rotated_with(c.pair.motion, c.history.moment);
     CHECK(near(norm(spring), norm(c.history.spring), {.relative = kRoundOff}));
     CHECK(std::abs(dot(spring, c.pair.motion.normal1)) <= kRoundOff * norm(spring));
     CHECK(near(norm(moment), norm(c.history.moment), {.relative = kRoundOff}));
     CHECK(near(dot(moment, c.pair.motion.normal1), dot(c.history.moment, c.pair.motion.normal0),
                {.absolute = kRoundOff}));
-    const Vec3 same = turned_with(c.pair.motion, c.history.spring);
+    const Vec3 same = rotated_with(c.pair.motion, c.history.spring);
     CHECK(near(same, spring, {.relative = kRoundOff}));
   }
 }
@@ -96,13 +96,13 @@ TEST_CASE("a pair that rotates rigidly takes its spring along, to second order")
     const Vec3 omega = vector(row, "Om"), n = vector(row, "n"), xi = vector(row, "xi");
     const auto error_after = [&](int steps) {
       const Real h = row["t"] / steps, radius[2] = {0.02, 0.03}, reach = radius[0] + radius[1];
-      const TurningPartner i{omega, radius[0], 1}, j{omega, radius[1], 1};
+      const RotatingPartner i{omega, radius[0], 1}, j{omega, radius[1], 1};
       Vec3 r = Real(0.99) * reach * vector(row, "n0"), spring = vector(row, "xi0"), slip{};
       for (int k = 0; k < steps; ++k) {
         const Vec3 half = r + (h / 2) * cross(omega, r);  // the midpoint rule, kept at its length
         const Vec3 raw = r + h * cross(omega, half), next = (norm(r) / norm(raw)) * raw;
         const ContactMotion c = sphere_motion(sphere_pair(next, reach), next - r, i, j, h);
-        spring = turned_across(c, spring), slip += c.slip;
+        spring = rotated_tangential(c, spring), slip += c.slip;
         r = next;
       }
       CHECK(norm(slip) <= 10 * reach / (static_cast<Real>(steps) * steps));
@@ -124,16 +124,16 @@ TEST_CASE("a sphere that rotates with the face it lies on keeps its spring, and 
     Vec3 n{0, 0, 1}, spring{0.3, 0.5, 0}, slip{};
     const Quaternion whole = turned_in(omega, 1), part = turned_in(omega, h);
     for (int k = 0; k < steps; ++k) {
-      const Vec3 next = turned(part, n), middle = Real(0.5) * (n + next);
+      const Vec3 next = rotated(part, n), middle = Real(0.5) * (n + next);
       // The centre's velocity over that of the face's point under it.
-      const Vec3 travel = h * cross(omega, radius * middle);
+      const Vec3 displacement = h * cross(omega, radius * middle);
       const ContactGeometry geometry{0, radius, next, 1};
-      const ContactMotion c = face_motion(geometry, n, travel, {omega, radius, 1}, {omega}, h);
-      spring = turned_across(c, spring), slip += c.slip;
+      const ContactMotion c = face_motion(geometry, n, displacement, {omega, radius, 1}, {omega}, h);
+      spring = rotated_tangential(c, spring), slip += c.slip;
       n = next;
     }
     CHECK(norm(slip) <= 10 * kUlp);
-    return norm(spring - turned(whole, {0.3, 0.5, 0}));
+    return norm(spring - rotated(whole, {0.3, 0.5, 0}));
   };
   const Real coarse = error_after(50), fine = error_after(100);
   CHECK(fine < 1e-4);

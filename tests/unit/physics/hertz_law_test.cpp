@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/contact_books.hpp"
+#include "physics/contact_losses.hpp"
 #include "physics/step_limits.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -22,7 +22,7 @@ constexpr PairSize kSize{0.01, 0.03, 0.1, 0.3};
 const Real kStiffness = 4e9 / 3 * std::sqrt(0.0075);  // K [N/m^1.5]
 
 HertzPairOf<Real> hertz(Real damping_ratio, bool tension = false, const PairSize& size = kSize) {
-  return HertzLaw(KelvinVoigt{0, 0, 1, tension, 1e9, damping_ratio}).of_pair(size);
+  return HertzLaw(NormalLawParameters{0, 0, 1, tension, 1e9, damping_ratio}).of_pair(size);
 }
 
 Real damping(Real damping_ratio) { return 2 * damping_ratio * std::sqrt(1.25 * 0.075 * kStiffness); }
@@ -72,7 +72,7 @@ TEST_CASE("Hertz's law is the same from both sides, to the bit, and gives nothin
 
 TEST_CASE("in single precision Hertz's law is the same to its digits") {
   const PairSizeOf<float> size{0.01f, 0.03f, 0.1f, 0.3f};
-  const auto single = HertzLaw(KelvinVoigt{0, 0, 1, false, 1e9, 0.2}).as<float>().of_pair(size);
+  const auto single = HertzLaw(NormalLawParameters{0, 0, 1, false, 1e9, 0.2}).as<float>().of_pair(size);
   const ContactForceOf<float> f = contact_force(single, 1e-4f, 0.5f);
   CHECK(near(f.force, contact_force(hertz(0.2), 1e-4, 0.5).force, {.relative = 1e-6}));
 }
@@ -107,9 +107,9 @@ TEST_CASE("over a step Hertz's force is continuous at touch, and its work is tha
       CAPTURE(share);
       const ContactStep c = step_between(-0.5 * kReach, share * kReach, 2);
       const StepContactForce f = step_contact_force(law, c);
-      const Real travel = c.overlap1 - c.overlap0;
+      const Real displacement = c.overlap1 - c.overlap0;
       const Real work = law.energy(c.overlap1) + step_dissipation(law, c);
-      CHECK(near(f.force * travel / 2, work, {.relative = kRoundOff}));
+      CHECK(near(f.force * displacement / 2, work, {.relative = kRoundOff}));
       ContactStep up = c, down = c;
       up.overlap1 *= 1 + 1e-6, down.overlap1 *= 1 - 1e-6;
       const Real slope = (step_contact_force(law, up).force - step_contact_force(law, down).force) /
@@ -126,10 +126,10 @@ TEST_CASE("the dissipation of a Hertz contact over a straight step is its loss a
     for (const Real overlap0 : {-kReach, 0.0, 0.2 * kReach, kReach})
       for (const Real overlap1 : {-kReach, 0.0, 0.3 * kReach, kReach}) {
         CAPTURE(law.damping_factor, law.tension, overlap0, overlap1);
-        const Real travel = overlap1 - overlap0, rate = travel / kStep;
+        const Real displacement = overlap1 - overlap0, rate = displacement / kStep;
         Real sum = 0;
         for (int k = 0; k < kParts; ++k) {
-          const Real d = overlap0 + (k + 0.5) / kParts * travel;
+          const Real d = overlap0 + (k + 0.5) / kParts * displacement;
           if (d > 0) sum += contact_force(law, d, rate).loss * kStep / kParts;
         }
         const Real dissipated = straight_dissipation(law, {overlap0, rate, overlap1, rate, kStep});
@@ -139,7 +139,7 @@ TEST_CASE("the dissipation of a Hertz contact over a straight step is its loss a
 }
 
 TEST_CASE("a pair that does not act has no force under Hertz's law") {
-  const auto nothing = HertzLaw(KelvinVoigt{}).of_pair(kSize);
+  const auto nothing = HertzLaw(NormalLawParameters{}).of_pair(kSize);
   CHECK(contact_force(nothing, kReach, Real(-1)).force == 0);
   for (const ContactStep& c : {step_between(-kReach, kReach, 1), step_between(kReach, -kReach, -1),
                                step_between(kReach, 0.5 * kReach, 1)}) {
@@ -149,13 +149,13 @@ TEST_CASE("a pair that does not act has no force under Hertz's law") {
 }
 
 TEST_CASE("which laws take which parameters, and what estimates see of them") {
-  const KelvinVoigt linear{1e4, 3}, power{1e4, 3, 1.5}, none{}, modulus{0, 0, 1, true, 1e9, 0.2};
+  const NormalLawParameters linear{1e4, 3}, power{1e4, 3, 1.5}, none{}, modulus{0, 0, 1, true, 1e9, 0.2};
   CHECK((LinearLaw::accepts(linear) && !HertzLaw::accepts(linear)));
   CHECK((PowerLaw::accepts(power) && !LinearLaw::accepts(power) && !HertzLaw::accepts(power)));
   CHECK((HertzLaw::accepts(modulus) && !LinearLaw::accepts(modulus) && !PowerLaw::accepts(modulus)));
   CHECK((HertzLaw::accepts(none) && LinearLaw::accepts(none)));
   CHECK((modulus.acts() && linear.acts() && !none.acts()));
-  const KelvinVoigt sized = modulus.of_size(kSize);
+  const NormalLawParameters sized = modulus.of_size(kSize);
   CHECK(near(sized.normal_stiffness, kStiffness, {.relative = kRoundOff}));
   CHECK((sized.exponent == 1.5 && sized.tension));
   CHECK(near(sized.normal_damping, damping(0.2) * std::pow(1e-4, 0.25), {.relative = kRoundOff}));

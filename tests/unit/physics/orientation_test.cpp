@@ -25,9 +25,9 @@ Real difference(Quaternion a, const Quaternion& b) {
 TEST_CASE("a quaternion rotates vectors, and products rotate one after the other") {
   const Real half = std::sqrt(0.5);
   const Quaternion about_z{half, 0, 0, half}, about_x{half, half, 0, 0};  // by 90 degrees
-  CHECK(near(turned(about_z, {1, 0, 0}), Vec3{0, 1, 0}, {.absolute = kRoundOff}));
-  CHECK(near(turned(about_x * about_z, {1, 0, 0}), Vec3{0, 0, 1}, {.absolute = kRoundOff}));
-  CHECK(turned({}, {1, 2, 3}) == Vec3{1, 2, 3});
+  CHECK(near(rotated(about_z, {1, 0, 0}), Vec3{0, 1, 0}, {.absolute = kRoundOff}));
+  CHECK(near(rotated(about_x * about_z, {1, 0, 0}), Vec3{0, 0, 1}, {.absolute = kRoundOff}));
+  CHECK(rotated({}, {1, 2, 3}) == Vec3{1, 2, 3});
 }
 
 TEST_CASE("an orientation follows a rotating angular velocity to second order, at length 1") {
@@ -40,7 +40,7 @@ TEST_CASE("an orientation follows a rotating angular velocity to second order, a
       const Real h = t / steps;
       for (int k = 0; k < steps; ++k) {
         const Real angle = c * (k + 0.5) * h;
-        q = turned_by(q, {b * std::cos(angle), b * std::sin(angle), c}, h);
+        q = rotated_by(q, {b * std::cos(angle), b * std::sin(angle), c}, h);
       }
       CHECK(near(dot(q, q), 1, {.absolute = kRoundOff}));
       return difference(q, exact);
@@ -55,7 +55,7 @@ TEST_CASE("an orientation follows a rotating angular velocity to second order, a
 
 TEST_CASE("a million steps leave the length at 1") {
   Quaternion q;
-  for (int k = 0; k < 1000000; ++k) q = turned_by(q, {0.3, -1.1, 0.7}, 0.01);
+  for (int k = 0; k < 1000000; ++k) q = rotated_by(q, {0.3, -1.1, 0.7}, 0.01);
   CHECK(near(dot(q, q), 1, {.absolute = kRoundOff}));
 }
 

@@ -37,14 +37,14 @@ inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped, Real
   const Vec3 along = random.vector();
   const int i = swapped, j = 1 - i;
   const auto partner = [&](int k) {
-    return TurningPartner{spin[k], radius[k], 0.4 * mass[k] * radius[k] * radius[k]};
+    return RotatingPartner{spin[k], radius[k], 0.4 * mass[k] * radius[k] * radius[k]};
   };
   RandomContact out{};
   const Vec3 relative = velocity[i] - velocity[j];
   const ContactGeometry geometry = sphere_pair(position[i] - position[j], radius[i] + radius[j]);
   out.pair = {{geometry, relative, {radius[i], radius[j], mass[i], mass[j]}},
               sphere_motion(geometry, h * relative, partner(i), partner(j), h)};
-  const Vec3 spring = across(swapped ? -along : along, out.pair.motion.normal0);
+  const Vec3 spring = tangential_part(swapped ? -along : along, out.pair.motion.normal0);
   out.spin_i = spin[i], out.spin_j = spin[j];
   out.history = {10 * spring, Real(0.1) * (swapped ? -along : along), true};
   return out;

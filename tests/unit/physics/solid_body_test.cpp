@@ -80,7 +80,7 @@ TEST_CASE("half a box is a box and its other half") {
 TEST_CASE("a rotated tensor") {
   // A quarter revolution about z takes x to y, and the products accordingly.
   const Mat3 quarter = rotation_matrix(exponential({0, 0, kPi / 2}));
-  check_near(turned_tensor(quarter, {1, 2, 3, 4, 5, 6}), {4, -2, -5, 1, 3, 6});
+  check_near(rotated_tensor(quarter, {1, 2, 3, 4, 5, 6}), {4, -2, -5, 1, 3, 6});
 }
 
 }  // namespace scree

@@ -17,10 +17,10 @@ constexpr Real kTruncation = 3e-8;     // of central differences over 1e-6, and 
 
 struct StepLaw {
   const char* name;
-  KelvinVoigt law;
-  StepContactForce (*over_step)(const KelvinVoigt&, const ContactStep&);
-  ContactForce (*at_instant)(const KelvinVoigt&, Real, Real);
-  Real (*energy)(const KelvinVoigt&, Real);
+  NormalLawParameters law;
+  StepContactForce (*over_step)(const NormalLawParameters&, const ContactStep&);
+  ContactForce (*at_instant)(const NormalLawParameters&, Real, Real);
+  Real (*energy)(const NormalLawParameters&, Real);
 
   // Elastic energy [J]; 0 without contact.
   Real stored(Real overlap) const { return overlap > 0 ? energy(law, overlap) : 0; }
@@ -34,9 +34,9 @@ template <class Law>
 StepLaw step_law(const char* name, Real stiffness, Real damping, Real exponent, bool tension) {
   return {name,
           {stiffness, damping, exponent, tension},
-          [](const KelvinVoigt& p, const ContactStep& c) { return step_contact_force(Law(p), c); },
-          [](const KelvinVoigt& p, Real d, Real d_dot) { return contact_force(Law(p), d, d_dot); },
-          [](const KelvinVoigt& p, Real d) { return Law(p).energy(d); }};
+          [](const NormalLawParameters& p, const ContactStep& c) { return step_contact_force(Law(p), c); },
+          [](const NormalLawParameters& p, Real d, Real d_dot) { return contact_force(Law(p), d, d_dot); },
+          [](const NormalLawParameters& p, Real d) { return Law(p).energy(d); }};
 }
 
 const StepLaw kLaws[] = {
@@ -218,7 +218,7 @@ TEST_CASE("derivatives of the step's force are not negative and exact") {
 
 TEST_CASE("a pair of materials without stiffness and damping has no force") {
   for (const bool tension : {false, true}) {
-    const KelvinVoigt nothing{0, 0, 1, tension};
+    const NormalLawParameters nothing{0, 0, 1, tension};
     for (const ContactStep& c : {kTouching[0], kReleasing[0], step_between(kReach, 0.5 * kReach, 0.1)}) {
       CAPTURE(tension, c.overlap0, c.overlap1);
       CHECK(step_contact_force(LinearLaw(nothing), c).force == 0);

@@ -103,12 +103,12 @@ TEST_CASE("the highest modes of the densest lattices of particles with friction"
       const Real moving = norm(lattice_load(dimension, slip, across, {}).force) / kSmall;
       const Real spinning = norm(lattice_load(dimension, slip, {}, about).torque_i) / kSmall;
       for (const Real share : {0.4, 0.5, 1.0}) {
-        const Real frequency = dense_rubbing_frequency(1, slip, 1, share, dimension);
+        const Real frequency = dense_friction_frequency(1, slip, 1, share, dimension);
         CHECK(near(frequency * frequency, std::max(moving, spinning / share), {.relative = kNearly}));
       }
     }
-  CHECK(dense_rubbing_frequency(2, 0, 1, 0.4, 3) == dense_frequency(2, 1, 3));
-  CHECK(dense_rubbing_frequency(6, 0, 1, 0.5, 2) == dense_frequency(6, 1, 2));
+  CHECK(dense_friction_frequency(2, 0, 1, 0.4, 3) == dense_frequency(2, 1, 3));
+  CHECK(dense_friction_frequency(6, 0, 1, 0.5, 2) == dense_frequency(6, 1, 2));
 }
 
 TEST_CASE("steps of particles that rotate are stable below their limit and not above") {
@@ -134,9 +134,9 @@ TEST_CASE("steps of particles that rotate are stable below their limit and not a
 
 TEST_CASE("the stiffness that friction adds to contacts") {
   constexpr Real kSphere = 0.4, kDisc = 0.5;  // I / (m R^2)
-  CHECK(near(wall_rubbing_frequency(7, 2, 1, kSphere), std::sqrt(7), {.relative = kRoundOff}));
-  CHECK(near(wall_rubbing_frequency(1, 1, 1, kSphere), std::sqrt(3.5), {.relative = kRoundOff}));
-  CHECK(near(wall_rubbing_frequency(1, 1, 1, kDisc), std::sqrt(3), {.relative = kRoundOff}));
+  CHECK(near(wall_friction_frequency(7, 2, 1, kSphere), std::sqrt(7), {.relative = kRoundOff}));
+  CHECK(near(wall_friction_frequency(1, 1, 1, kSphere), std::sqrt(3.5), {.relative = kRoundOff}));
+  CHECK(near(wall_friction_frequency(1, 1, 1, kDisc), std::sqrt(3), {.relative = kRoundOff}));
   constexpr PairSize kSize{0.02, 0.02, 1, 1};
   CHECK(typical_slip_stiffness({.friction = 0.3, .stiffness = 5e3}, kSize) == 5e3);
   CHECK(typical_slip_stiffness({.friction = 0, .stiffness = 5e3}, kSize) == 0);

@@ -54,7 +54,7 @@ TEST_CASE("over an implicit step no spring with slider gives energy, and the ene
     REQUIRE(out.losses.sliding >= -kRoundOff);
     REQUIRE(out.losses.unloading >= -kRoundOff);
     REQUIRE(norm(out.mean) <= s.slider.limit * (1 + kRoundOff));
-    slid += out.grip > 0;
+    slid += out.limit_slope > 0;
   }
   CHECK((slid > kCases / 10 && slid < 9 * kCases / 10));
 }
@@ -76,7 +76,7 @@ TEST_CASE("the derivatives of the mean force are those of differences") {
     RandomStep plus = s, minus = s;
     plus.displacement = s.displacement + kDifference * direction,
     minus.displacement = s.displacement - kDifference * direction;
-    if (step_of(plus).grip != step_of(minus).grip) continue;  // a kink between the two
+    if (step_of(plus).limit_slope != step_of(minus).limit_slope) continue;  // a kink between the two
     const Vec3 by_displacement = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
     const Vec3 derivative = at.stiffness * (direction - dot(at.direction, direction) * at.direction);
     CHECK(near(by_displacement, derivative, {.absolute = kTruncation}));
@@ -84,7 +84,7 @@ TEST_CASE("the derivatives of the mean force are those of differences") {
     plus.slider.limit += kDifference, minus.slider.limit -= kDifference;
     const Vec3 by_limit = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
     if (norm(s.old) < 2 * minus.slider.limit - s.end_limit)
-      CHECK(near(by_limit, at.grip * at.direction, {.absolute = kTruncation}));
+      CHECK(near(by_limit, at.limit_slope * at.direction, {.absolute = kTruncation}));
   }
 }
 

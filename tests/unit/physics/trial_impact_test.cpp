@@ -140,7 +140,7 @@ TEST_CASE("a trial impact of two spheres, damped after Hertz; spheres that stick
   const ContactLaw<HertzLaw> law{HertzLaw(1e9, std::sqrt(5.0) * damping_ratio_of(0.7, false), false)};
   CHECK(near(explicit_trials(law, impact, touch).with(1e-6).exact.restitution, 0.7, {.absolute = kExact}));
   const ContactLaw<JkrLaw> adhesive{{1e9, 1, 2e4}};
-  const Real formation = adhesive.normal.of_pair(size).making_loss();
+  const Real formation = adhesive.normal.of_pair(size).formation_loss();
   REQUIRE(formation > size.effective_mass() / 2);  // more than the kinetic energy
   CHECK(explicit_trials(adhesive, impact, touch).with(1e-5).mean.restitution == 0);
 }

@@ -1,5 +1,5 @@
 // The reference of energy errors, and warnings of energy errors of the time integration.
-#include "run/balance.hpp"
+#include "run/report/balance.hpp"
 
 #include <algorithm>
 #include <set>
@@ -147,7 +147,7 @@ TEST_CASE(
     "the energy exchanged is that of particles, ranges of bodies, springs and work, and what was lost") {
   BalanceState balance;
   MultibodyState bodies;
-  bodies.least_kinetic = 5000, bodies.most_kinetic = 5000.5;  // of a flywheel
+  bodies.min_kinetic = 5000, bodies.max_kinetic = 5000.5;  // of a flywheel
   Ledger ledger;
   ledger.gravitational = -1e9;
   add_row(balance, ledger, extremes_at(2, 100, bodies), bodies);

@@ -1,5 +1,5 @@
 // Bodies outside the domain are counted by their centres.
-#include "run/bodies_outside.hpp"
+#include "run/report/bodies_outside.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"

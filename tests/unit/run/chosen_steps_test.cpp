@@ -8,7 +8,7 @@
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_trials.hpp"
 #include "model/checks/limits.hpp"
-#include "run/report/step_trials.hpp"
+#include "run/report/rebound_check.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -48,22 +48,22 @@ std::string RandomDecks::resistance() {
 std::string RandomDecks::law(bool spheres, Real radius, Real mass, Real speed) {
   const std::string restitution = fmt::format("restitution = {}\n", between(0.05, 1));
   const Real stiffness = mass * speed * speed / (radius * radius) * of_size(100, 1e5);
-  const bool rubs = maybe(0.6);
+  const bool has_friction = maybe(0.6);
   if (!spheres || maybe(0.4)) {
     std::string text = fmt::format("stiffness = {}\n", stiffness);
     text += maybe(0.5)
                 ? restitution
                 : fmt::format("damping = {}\n", 2 * std::sqrt(stiffness * mass / 2) * between(0, 0.95));
     if (maybe(0.2)) text += fmt::format("attraction = {}\nattraction_range = {}\n", 5 * mass, 0.05 * radius);
-    return text + (rubs ? resistance() : "");
+    return text + (has_friction ? resistance() : "");
   }
   const Real work = 1e-3 * stiffness * radius;  // some overlaps of a tenth of a per cent
   if (maybe(0.3))
     return restitution + fmt::format("work_of_adhesion = {}\nadhesion = \"jkr\"\n", work) + resistance();
   if (maybe(0.3))
     return restitution + fmt::format("work_of_adhesion = {}\nadhesion = \"dmt\"\n", work) +
-           (rubs ? resistance() : "");
-  return restitution + (rubs ? resistance() : "");
+           (has_friction ? resistance() : "");
+  return restitution + (has_friction ? resistance() : "");
 }
 
 std::string RandomDecks::body(bool spheres, Real radius, Real mass) {
@@ -158,8 +158,9 @@ TEST_CASE("a step that is chosen is neither refused nor warned about, and keeps 
     for (const std::string& warning : one.warnings) CHECK_FALSE(contains(warning, "time.step"));
     CHECK(step_warning(one.model).empty());
     const Real h = one.model.time.step / one.model.integrator.substeps;
-    for (const StepTrial& trial : try_steps(one.model)) CHECK(trial.result.error() < kGoodRebound);
-    for (const PairLimit& limit : explicit_pairs(one.model)) CHECK(h <= kStableShare * limit.explicit_step);
+    for (const StepTrial& trial : try_steps(one.model)) CHECK(trial.result.error() < kReboundTolerance);
+    for (const PairLimit& limit : explicit_pairs(one.model))
+      CHECK(h <= kStableStepFraction * limit.explicit_step);
     CHECK(one.model.time.step <= body_step_limit(one.model).good_step());
     CHECK(suits_explicit(one.model, one.model.time.step));
     // No default step is much shorter than necessary.

@@ -1,11 +1,11 @@
 // The contacts in snapshots agree with other outputs for each particle, and leave no trace.
-#include "run/contact_network.hpp"
+#include "run/record/contact_network.hpp"
 
 #include <algorithm>
 
 #include "support/catch.hpp"
+#include "support/frictional_box.hpp"
 #include "support/near.hpp"
-#include "support/rubbing_box.hpp"
 
 namespace scree {
 namespace {
@@ -103,11 +103,11 @@ TEST_CASE("lines of contacts add up to forces on particles and walls, and each c
 }
 
 TEST_CASE("lines of frictional, rolling and adhesive contacts have their springs, and move nothing") {
-  for (const RubbingKind& kind : kRubbingKinds)
-    for (const BoxCase& c : kRubbingBoxes) {
+  for (const FrictionalBoxKind& kind : kFrictionalBoxKinds)
+    for (const BoxCase& c : kFrictionalBoxes) {
       CAPTURE(kind.name, c.name);
-      const Model model = kind.of(moving_rubbing_box(c, Leaving::drift));
-      RememberingBox run(model, {}, make_test_backend), box(model, {}, make_test_backend);
+      const Model model = kind.of(moving_frictional_box(c, OutsidePolicy::drift));
+      HistoryTestBox run(model, {}, make_test_backend), box(model, {}, make_test_backend);
       run.start(), run.take_steps(60);
       box.motion = run.motion, box.start(run.state());
       box.backend->particles().initial_forces();
@@ -125,7 +125,7 @@ TEST_CASE("lines of frictional, rolling and adhesive contacts have their springs
 }
 
 TEST_CASE("columns of contacts identify the end of each line") {
-  LoadedBox box(rubbing(random_box(kRubbingBoxes[5], 150, 17)), 0.2);
+  LoadedBox box(with_friction(random_box(kFrictionalBoxes[5], 150, 17)), 0.2);
   Model& model = box.model;
   model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, 0});
   const SurfaceSet surfaces(model);

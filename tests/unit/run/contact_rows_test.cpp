@@ -1,6 +1,6 @@
 // Contact histories return from a checkpoint bit for bit, enter the hash, and are refused where they are
 // inconsistent; without histories a checkpoint has none.
-#include "run/contact_rows.hpp"
+#include "run/state/contact_rows.hpp"
 
 #include "base/error.hpp"
 #include "dem/history/history_slots.hpp"
@@ -25,7 +25,7 @@ State state_with_history(int numbers) {
     fill_fields(state.particles.emplace_back(), id);
     state.particles.back().global_id = id;
   }
-  KeptContacts& contacts = state.contacts;
+  PackedHistory& contacts = state.contacts;
   contacts.numbers = numbers;
   Real next = 0.1;
   const auto add = [&](GlobalId partner, std::int8_t image) {
@@ -33,14 +33,14 @@ State state_with_history(int numbers) {
     for (int k = 0; k < numbers; ++k) values.push_back(k == 1 ? -0.0 : next /= 3);
     contacts.add(row_key(partner, image), values);
   };
-  add(2, kNoShift), add(kFirstSurfaceId + 5, 12), contacts.end_row();
+  add(2, kZeroShift), add(kFirstSurfaceId + 5, 12), contacts.end_row();
   contacts.end_row();
-  add(0, kNoShift), add(3, 0), add(3, 26), contacts.end_row();
+  add(0, kZeroShift), add(3, 0), add(3, 26), contacts.end_row();
   add(2, 26), contacts.end_row();
   return state;
 }
 
-std::string difference(const KeptContacts& a, const KeptContacts& b) {
+std::string difference(const PackedHistory& a, const PackedHistory& b) {
   if (a.numbers != b.numbers) return "numbers";
   if (a.offsets != b.offsets || a.keys != b.keys) return "contacts";
   return same_bits(a.values, b.values) ? "" : "values";
@@ -137,11 +137,11 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
     change(other.contacts);
     return refusal(other);
   };
-  CHECK(contains(with([](KeptContacts& c) { c.values[4] = std::nan(""); }), "is not finite"));
-  CHECK(contains(with([](KeptContacts& c) { std::swap(c.keys[2], c.keys[3]); }),
+  CHECK(contains(with([](PackedHistory& c) { c.values[4] = std::nan(""); }), "is not finite"));
+  CHECK(contains(with([](PackedHistory& c) { std::swap(c.keys[2], c.keys[3]); }),
                  "particle 2 are out of order"));
-  CHECK(contains(with([](KeptContacts& c) { c.keys[5] = row_key(kParticles); }), "with particle 4"));
-  CHECK(contains(with([](KeptContacts& c) { c.offsets.pop_back(); }), "another number of particles"));
+  CHECK(contains(with([](PackedHistory& c) { c.keys[5] = row_key(kParticles); }), "with particle 4"));
+  CHECK(contains(with([](PackedHistory& c) { c.offsets.pop_back(); }), "another number of particles"));
   const auto unpacked = [&](const char* name, std::int64_t value) -> std::string {
     Checkpoint changed = pack(state);
     auto& rows = changed.integer_rows.at(name);
@@ -164,12 +164,12 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
 }
 
 TEST_CASE("the histories of contacts with walls can be left out") {
-  KeptContacts all;
+  PackedHistory all;
   all.numbers = 1;
   const Real values[] = {1, 2, 3};
   all.add(row_key(5), {values, 1}), all.add(row_key(kFirstSurfaceId), {values + 1, 1}), all.end_row();
   all.add(row_key(kFirstSurfaceId + 3), {values + 2, 1}), all.end_row();
-  const KeptContacts left = all.without_surfaces();
+  const PackedHistory left = all.without_surfaces();
   CHECK(left.numbers == 1);
   CHECK(left.offsets == std::vector<std::int64_t>{0, 1, 1});
   CHECK(left.keys == std::vector<std::int64_t>{row_key(5)});

@@ -1,5 +1,5 @@
 // Fields of triangles in snapshots.
-#include "run/mesh_surfaces.hpp"
+#include "run/record/mesh_surfaces.hpp"
 
 #include <algorithm>
 
@@ -103,17 +103,17 @@ TEST_CASE("in 2D a segment has its load and its wear per length, however large t
     const std::vector<Index>& numbers = model.meshes[0].surface->original;
     const auto second = static_cast<Index>(std::ranges::find(numbers, 2) - numbers.begin());
     const std::vector<TriangleLoad> loads{{0, second, 10, {1, 0, 0}}};
-    const MeshSurfaces::Look look = surfaces.look(std::vector<BodyMotion>(SurfaceSet(model).carriers()),
-                                                  loads, run.complete_state().works);
-    REQUIRE(look.pressure.size() == 6);
+    const MeshSurfaces::Sample sample = surfaces.sample(std::vector<BodyMotion>(SurfaceSet(model).parents()),
+                                                        loads, run.complete_state().works);
+    REQUIRE(sample.pressure.size() == 6);
     Real slid = 0;
-    for (const Real work : look.sliding_work) slid += work;
+    for (const Real work : sample.sliding_work) slid += work;
     CHECK(slid > 0.05);
     for (std::size_t t = 0; t < 6; ++t) {
       const bool touched = t == 2 || t == 3;
-      CHECK(near(look.pressure[t], touched ? 50 : 0, {.absolute = 1e-12}));
-      CHECK(near(look.shear[t].x, touched ? 5 : 0, {.absolute = 1e-12}));
-      CHECK(near(look.wear_depth[t], touched ? 2e-9 / 0.1 * slid / 0.2 : 0, {.relative = 1e-12}));
+      CHECK(near(sample.pressure[t], touched ? 50 : 0, {.absolute = 1e-12}));
+      CHECK(near(sample.shear[t].x, touched ? 5 : 0, {.absolute = 1e-12}));
+      CHECK(near(sample.wear_depth[t], touched ? 2e-9 / 0.1 * slid / 0.2 : 0, {.relative = 1e-12}));
     }
   }
 }
@@ -125,28 +125,28 @@ TEST_CASE(
   run.run();
   const State& state = run.complete_state();
   const MeshSurfaces surfaces(model);
-  const MeshSurfaces::Look look =
-      surfaces.look(std::vector<BodyMotion>(SurfaceSet(model).carriers()), {}, state.works);
-  CHECK(look.pressure.empty());
-  CHECK(look.shear.empty());
+  const MeshSurfaces::Sample sample =
+      surfaces.sample(std::vector<BodyMotion>(SurfaceSet(model).parents()), {}, state.works);
+  CHECK(sample.pressure.empty());
+  CHECK(sample.shear.empty());
   const SeriesTriangles triangles = surfaces.triangles();
-  REQUIRE(std::ssize(look.impact_work) == triangles.count());
+  REQUIRE(std::ssize(sample.impact_work) == triangles.count());
   int touched = 0;
-  for (std::size_t t = 0; t < look.impact_work.size(); ++t) {
-    Vec3 corner[3], lowest = look.position[static_cast<std::size_t>(triangles.corners[3 * t])],
+  for (std::size_t t = 0; t < sample.impact_work.size(); ++t) {
+    Vec3 corner[3], lowest = sample.position[static_cast<std::size_t>(triangles.corners[3 * t])],
                     highest = lowest;
     for (std::size_t k = 0; k < 3; ++k) {
-      corner[k] = look.position[static_cast<std::size_t>(triangles.corners[3 * t + k])];
+      corner[k] = sample.position[static_cast<std::size_t>(triangles.corners[3 * t + k])];
       lowest = {std::min(lowest.x, corner[k].x), std::min(lowest.y, corner[k].y), 0};
       highest = {std::max(highest.x, corner[k].x), std::max(highest.y, corner[k].y), 0};
     }
     const Real area = norm(cross(corner[1] - corner[0], corner[2] - corner[0])) / 2;
-    CHECK(near(look.wear_depth[t] * area, 2e-12 / 0.1 * look.sliding_work[t], {.relative = 1e-12}));
-    if (look.impact_work[t] == 0) continue;
+    CHECK(near(sample.wear_depth[t] * area, 2e-12 / 0.1 * sample.sliding_work[t], {.relative = 1e-12}));
+    if (sample.impact_work[t] == 0) continue;
     ++touched;
     const Particle& ball = state.particles.at(0);
-    CHECK(near(look.impact_work[t] + look.sliding_work[t], ball.contact_loss, {.relative = 1e-12}));
-    CHECK(near(look.sliding_work[t], ball.friction_loss, {.relative = 1e-12}));
+    CHECK(near(sample.impact_work[t] + sample.sliding_work[t], ball.contact_loss, {.relative = 1e-12}));
+    CHECK(near(sample.sliding_work[t], ball.friction_loss, {.relative = 1e-12}));
     CHECK(ball.friction_loss > 0);
     CHECK(corner[0].z == 0.05);
     CHECK(corner[1].z == 0.05);

@@ -1,5 +1,5 @@
 // The progress line.
-#include "run/progress.hpp"
+#include "run/report/progress.hpp"
 
 #include <cmath>
 

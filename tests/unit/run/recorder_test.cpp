@@ -1,5 +1,5 @@
 // The files are the same whether snapshots are written at once or during later steps.
-#include "run/recorder.hpp"
+#include "run/record/recorder.hpp"
 
 #include <unistd.h>
 
@@ -66,7 +66,7 @@ class FailingReports : public Reports {
   ShapePack pack_shapes() override { return of_.pack_shapes(); }
   ContactLines contact_lines() override { return of_.contact_lines(); }
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }
-  std::vector<ContactSum> carrier_contacts() override { return of_.carrier_contacts(); }
+  std::vector<ContactSum> parent_contacts() override { return of_.parent_contacts(); }
   std::vector<ContactSum> surface_contacts() override { return of_.surface_contacts(); }
   std::vector<ContactSum> wall_contacts(std::span<const int> of) override { return of_.wall_contacts(of); }
   std::vector<TriangleLoad> triangle_loads() override { return of_.triangle_loads(); }
@@ -151,7 +151,7 @@ struct Recording {
   State state;
   StageTimers timers;
   B backend{model};
-  BodyLink link{model};
+  BodyCoupling link{model};
   CoupledStep step{model, backend, link, timers};
   std::unique_ptr<Recorder> recorder;
 };
@@ -309,7 +309,7 @@ shapes = [{ radius = 0.1 }, { radius = 0.07, offset = [0.0, 0.0, 2.0], collides 
   for (std::size_t i = 0; i < points.size() / 3; ++i) {
     CAPTURE(i);
     const Quaternion p{turns[4 * i], turns[4 * i + 1], turns[4 * i + 2], turns[4 * i + 3]};
-    CHECK(norm(vec(points, i) - vec(origins, i) - turned(p, offsets[i % 6])) < 1e-15);
+    CHECK(norm(vec(points, i) - vec(origins, i) - rotated(p, offsets[i % 6])) < 1e-15);
     if (i % 6 % 4 == 0) CHECK((p.w == 1 && vec(points, i) == Vec3{-0.5, 0, 0}));
   }
   CHECK(norm(vec(origins, 1) - Vec3{0.3, 0, 0}) < 1e-15);

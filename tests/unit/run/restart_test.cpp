@@ -1,6 +1,6 @@
 // Refusals of restarts: damaged checkpoints, datasets of wrong lengths, other decks; and restarts with
 // --allow-changes.
-#include "run/restart.hpp"
+#include "run/restart/restart.hpp"
 
 #include <bit>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // The state returns from its packed form bit for bit, and missing parts are reported.
-#include "run/state.hpp"
+#include "run/state/state.hpp"
 
 #include <cmath>
 #include <limits>
@@ -56,7 +56,7 @@ State awkward_state() {
   for (int k = 0; k < 30; ++k) s.works.push_back(k % 2 == 0 ? n.integer() : -n.integer());
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}},
                    n.real(),    n.real()};
-  s.bodies.least_kinetic = n.real(), s.bodies.most_kinetic = n.real();
+  s.bodies.min_kinetic = n.real(), s.bodies.max_kinetic = n.real();
   s.balance = {true, n.real(), n.real(), n.real(), n.real(), {}, {}};
   s.balance.extremes = {n.real(), n.real(), n.real(), n.real(), n.real()};
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
@@ -93,13 +93,13 @@ TEST_CASE("a checkpoint contains the state") {
   CHECK(same_bits(after.bodies.driver_work, before.bodies.driver_work));
   CHECK(differing_fields(after.particles, before.particles) == "");
   CHECK(same_bits(after.shapes.loss_power, before.shapes.loss_power));
-  CHECK(after.shapes.rubbing == before.shapes.rubbing);
+  CHECK(after.shapes.tangential == before.shapes.tangential);
   CHECK(after.shape_contacts == before.shape_contacts);
   CHECK(after.works == before.works);
   CHECK(after.carried_out.removed == before.carried_out.removed);
   CHECK(after.balance.open);
   CHECK(same_bits(after.balance.last.entries(), before.balance.last.entries()));
-  CHECK(same_bits(after.balance.extremes.least_work, before.balance.extremes.least_work));
+  CHECK(same_bits(after.balance.extremes.min_work, before.balance.extremes.min_work));
   CHECK(after.snapshots == before.snapshots);
 }
 
@@ -130,10 +130,10 @@ TEST_CASE(
   CHECK(state_hash(other, true) != state_hash(state, true));
   other = state, ++other.shape_contacts.keys[2];
   CHECK(state_hash(other, true) != state_hash(state, true));
-  other = state, other.shapes.rubbing.of[kRollingLoss] = 1;
+  other = state, other.shapes.tangential.of[kRollingLoss] = 1;
   CHECK(state_hash(other, true) != state_hash(state, true));
-  other.shapes.rubbing = {}, other.shape_contacts = {};
-  for (const char* name : {kShapeRubbing, kShapeHistory}) CHECK(!pack(other).reals.contains(name));
+  other.shapes.tangential = {}, other.shape_contacts = {};
+  for (const char* name : {kShapeFrictionLosses, kShapeHistory}) CHECK(!pack(other).reals.contains(name));
   for (const char* name : {kShapeContactsOf, kShapeContactsWith}) CHECK(!pack(other).integers.contains(name));
   CHECK(unpack(pack(other)).shape_contacts == ShapeContacts{});
   other = state, std::swap(other.shape_contacts.shapes[0], other.shape_contacts.shapes[1]);
@@ -279,7 +279,7 @@ TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it"
   const State state = awkward_state();
   const Checkpoint whole = pack(state);
   for (const auto& [name, values] : whole.reals) {
-    if (name == kShapeRubbing) continue;  // a state without them has no losses
+    if (name == kShapeFrictionLosses) continue;  // a state without them has no losses
     Checkpoint partial = whole;
     partial.path = "some.h5";
     partial.reals.erase(name);

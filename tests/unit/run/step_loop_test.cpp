@@ -1,5 +1,5 @@
 // Number of explicit steps that the loop takes at once.
-#include "run/step_loop.hpp"
+#include "run/loop/step_loop.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -110,7 +110,7 @@ struct SlowRun {
   const Model model = (petsc(), model_of(kDeck));
   const ScratchDirectory folder;
   SlowBackend backend;
-  BodyLink link{model};
+  BodyCoupling link{model};
   StageTimers timers;
   CoupledStep step{model, backend, link, timers};
   State state;

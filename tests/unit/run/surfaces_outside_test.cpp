@@ -1,5 +1,5 @@
 // Surfaces beyond open sides, and particles that escape there.
-#include "run/surfaces_outside.hpp"
+#include "run/report/surfaces_outside.hpp"
 
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -35,9 +35,9 @@ std::string escaping_at(Vec3 position, std::vector<std::string> overrides) {
   overrides.push_back(kDrift);
   const Model model = model_of(kDisc, overrides);
   const std::vector<BodyMotion> motion{start_motion(model.bodies.front())};
-  Leaver leaver{};
-  leaver.global_id = 7, leaver.position = position;
-  return SurfacesOutside(model).warning(std::span(&leaver, 1), motion, 0.5);
+  EscapedParticle escaped_particle{};
+  escaped_particle.global_id = 7, escaped_particle.position = position;
+  return SurfacesOutside(model).warning(std::span(&escaped_particle, 1), motion, 0.5);
 }
 
 }  // namespace

@@ -78,8 +78,8 @@ TEST_CASE("DMT attraction: nothing is dissipated where it appears and ends") {
   const auto errors_at = [&](Real parts) {
     JkrErrors errors;
     for (const auto& row : table.rows()) {
-      const AttractedLaw<HertzLaw> law{HertzLaw(4 * row["E_star"] / 3, 0, true), 0,
-                                       2 * std::numbers::pi_v<Real> * row["w"], 0};
+      const CohesiveLaw<HertzLaw> law{HertzLaw(4 * row["E_star"] / 3, 0, true), 0,
+                                      2 * std::numbers::pi_v<Real> * row["w"], 0};
       auto run = head_on(law, row, impact_time(row) / parts);
       const auto pair = law.of_pair(run.pair().size);
       CHECK(near(pair.attraction, row["Fc"], {.relative = 1e-13}));

@@ -15,7 +15,7 @@ struct Grain {
   Real radius, mass;
   Real inertia = moment_of_inertia(solid_inertia_factor(3), mass, radius);  // [kg m^2]
 
-  TurningPartner partner() const { return {spin, radius, inertia}; }
+  RotatingPartner partner() const { return {spin, radius, inertia}; }
   Real energy() const { return kinetic_energy(mass, velocity) + rotational_energy(inertia, spin); }
 };
 
@@ -62,11 +62,11 @@ struct PlaneRun {
     kick(law.load({state, rest}, outcome.history), h / 2);
   }
   void step() {
-    const Vec3 travel = h * grain.velocity;
-    grain.position += travel;
+    const Vec3 displacement = h * grain.velocity;
+    grain.position += displacement;
     const PairState state = pair();
     const ContactMotion motion =
-        face_motion(state.geometry, state.geometry.normal(), travel, grain.partner(), {}, h);
+        face_motion(state.geometry, state.geometry.normal(), displacement, grain.partner(), {}, h);
     closed = law.closed(state, outcome.history);
     outcome = law.load({state, motion}, outcome.history);
     sums.add(outcome, h);
@@ -102,10 +102,10 @@ struct PairRun {
             {i.radius, j.radius, i.mass, j.mass}};
   }
   void step() {
-    const Vec3 travel = h * (i.velocity - j.velocity);
+    const Vec3 displacement = h * (i.velocity - j.velocity);
     i.position += h * i.velocity, j.position += h * j.velocity;
     const PairState state = pair();
-    const ContactMotion motion = sphere_motion(state.geometry, travel, i.partner(), j.partner(), h);
+    const ContactMotion motion = sphere_motion(state.geometry, displacement, i.partner(), j.partner(), h);
     closed = law.closed(state, outcome.history);
     outcome = law.load({state, motion}, outcome.history);
     sums.add(outcome, h);

@@ -33,7 +33,7 @@ struct PairErrors {
 template <class Impact>
 void add_impact(const Impact& impact, Real parts, Real phase, PairErrors& errors) {
   auto run = pair_run(impact, parts, phase);
-  const Vec3 before = momentum(run), turning_before = total_angular_momentum(run);
+  const Vec3 before = momentum(run), angular_before = total_angular_momentum(run);
   const Real energy = run.i.energy() + run.j.energy();
   REQUIRE(run_impact(run, static_cast<int>(100 * parts)));
   errors.motion.add(difference(run.i, impact.i_after));
@@ -41,7 +41,7 @@ void add_impact(const Impact& impact, Real parts, Real phase, PairErrors& errors
   const Real lost = run.sums.normal + run.sums.friction.sum();
   errors.loss.add((energy - run.i.energy() - run.j.energy() - lost) / energy);
   CHECK(near(momentum(run), before, {.absolute = kConserved}));
-  CHECK(near(total_angular_momentum(run), turning_before, {.absolute = kConserved}));
+  CHECK(near(total_angular_momentum(run), angular_before, {.absolute = kConserved}));
 }
 
 template <class Impact, class Which>

@@ -108,7 +108,7 @@ Vec3 ball_force(const BodyMotion& top) {
 TEST_CASE("reactions in the plane do not see that an impact elsewhere changes the steps") {
   const Model model = model_of(planar_deck());
   SimulationRun run(model);
-  Largest multipliers, free, driven, drive, frictional, rub;
+  Largest multipliers, free, driven, drive, frictional, friction;
   run.run([&] {
     const std::vector<Real>&q = run.bodies().position, &v = run.bodies().velocity;
     const std::vector<Reaction> reactions = run.multibody().reactions(run.bodies(), run.time());
@@ -126,12 +126,13 @@ TEST_CASE("reactions in the plane do not see that an impact elsewhere changes th
     const Real effort = run.multibody().joint_efforts(run.bodies(), run.time())[0].effort;
     frictional.take(reactions[2].force, pin_force(q[8], v[8], pin_acceleration(q[8], effort)));
     if (run.time() > 0.01)  // it slides
-      rub.take({0, 0, effort}, {0, 0, std::copysign(kMu * kPin * norm(reactions[2].force), -v[8])});
+      friction.take({0, 0, effort}, {0, 0, std::copysign(kMu * kPin * norm(reactions[2].force), -v[8])});
   });
   CHECK(multipliers.share() > 0.2);  // of the steps: there is a significant oscillation
   for (const Largest& found : {free, frictional})
     CHECK(measured("reactions/adaptive", "", at_most(found.share(), 2e-5)));
-  for (const Largest& found : {driven, drive, rub})  // fixed by the driver's motion, or the reaction itself
+  for (const Largest& found :
+       {driven, drive, friction})  // fixed by the driver's motion, or the reaction itself
     CHECK(measured("reactions/driven", "", at_most(found.share(), 1e-12)));
 }
 

@@ -6,7 +6,7 @@
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/near.hpp"
-#include "verification/friction/meeting.hpp"
+#include "verification/friction/oblique_pair.hpp"
 
 namespace scree {
 

@@ -10,7 +10,7 @@
 #include "support/near.hpp"
 #include "support/reference_table.hpp"
 #include "verification/contact/errors.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 

@@ -8,7 +8,7 @@
 #include "support/models.hpp"
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 
@@ -76,7 +76,7 @@ Real largest(const std::vector<Vec3>& of) {
 Springs turned_back(Springs now, const Quaternion& turn) {
   const Quaternion back{turn.w, -turn.x, -turn.y, -turn.z};
   for (std::vector<Vec3>* all : {&now.forces, &now.moments})
-    for (Vec3& one : *all) one = turned(back, one);
+    for (Vec3& one : *all) one = rotated(back, one);
   return now;
 }
 
@@ -152,7 +152,7 @@ seed = 5
 // Springs by particle and partner; the partner's image depends on the frame.
 std::map<std::pair<GlobalId, GlobalId>, Vec3> springs_by_pair(const State& state) {
   std::map<std::pair<GlobalId, GlobalId>, Vec3> out;
-  const KeptContacts& contacts = state.contacts;
+  const PackedHistory& contacts = state.contacts;
   for (std::int64_t i = 0; i < contacts.particles(); ++i)
     for (std::int64_t k = contacts.offsets[static_cast<std::size_t>(i)];
          k < contacts.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
@@ -220,7 +220,7 @@ TEST_CASE("a clump that rotates rigidly rotates its springs with it") {
       after.push_back(turned_back(now, turn));
       for (const Particle& p : run.particles()) {
         const auto k = static_cast<std::size_t>(p.global_id);
-        CHECK(near(p.position, turned(turn, start.particles[k].position), {.absolute = 1e-3 * kRadius}));
+        CHECK(near(p.position, rotated(turn, start.particles[k].position), {.absolute = 1e-3 * kRadius}));
       }
     }
     const Real slow = change(after[0], before), fast = change(after[1], before);

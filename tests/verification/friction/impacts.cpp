@@ -6,7 +6,7 @@
 #include "support/measured.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/hertz_impacts.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 

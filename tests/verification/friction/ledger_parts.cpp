@@ -8,7 +8,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 
@@ -17,14 +17,15 @@ namespace {
 constexpr Real kNormal = 2e5, kTangential = 6e4, kRolling = 0.5;  // [N/m], [N/m], [N m]
 constexpr Real kHalf = 0.15;                                      // of the box [m]
 
-const std::string kRubbing = fmt::format(
+const std::string kFrictionKeys = fmt::format(
     "friction = 0.4\ntangential_stiffness = {}\nrolling_friction = 0.2\nrolling_stiffness = {}\n"
     "twisting_friction = 0.0\n",
     kTangential, kRolling);
-const std::string kTurning = "angular_velocity = [30.0, -20.0, 10.0]\n";
+const std::string kSpinKeys = "angular_velocity = [30.0, -20.0, 10.0]\n";
 
 // Spheres between walls; rubs, spins: keys of the pair and of the particles.
-Model box(const std::string& rubs, const std::string& spins, const std::vector<std::string>& settings = {}) {
+Model box(const std::string& friction_keys, const std::string& spins,
+          const std::vector<std::string>& settings = {}) {
   return model_of(fmt::format(R"(
 [space]
 dimension = 3
@@ -56,8 +57,8 @@ random_velocity = 2.0
 seed = 11
 {spins}
 )",
-                              fmt::arg("half", kHalf), fmt::arg("normal", kNormal), fmt::arg("rubs", rubs),
-                              fmt::arg("spins", spins)),
+                              fmt::arg("half", kHalf), fmt::arg("normal", kNormal),
+                              fmt::arg("rubs", friction_keys), fmt::arg("spins", spins)),
                   settings);
 }
 
@@ -76,7 +77,7 @@ Real wall_energy(const Particle& p) {
 }
 
 // contacts: those of the particles, with two entries for each pair of particles.
-Parts parts_of(const std::vector<Particle>& particles, const KeptContacts& contacts) {
+Parts parts_of(const std::vector<Particle>& particles, const PackedHistory& contacts) {
   Parts sum;
   for (const Particle& p : particles) {
     sum.translation += kinetic_energy(p.mass, p.velocity);
@@ -105,7 +106,7 @@ Vec3 orbital(const std::vector<Particle>& particles) {
 }  // namespace
 
 TEST_CASE("the ledger's parts of rotation and springs are those counted one by one, and add up") {
-  SimulationRun run(box(kRubbing, kTurning));
+  SimulationRun run(box(kFrictionKeys, kSpinKeys));
   Parts largest;
   for (int part = 0; part < 40; ++part) {
     for (int step = 0; step < 20; ++step) run.step();
@@ -130,7 +131,7 @@ TEST_CASE("the ledger's parts of rotation and springs are those counted one by o
 
 TEST_CASE("energy of frictional and rolling springs is dissipated or returned: the energies balance") {
   const auto error_at = [](const std::string& step) {
-    SimulationRun run(box(kRubbing, kTurning, {"time.step=" + step}));
+    SimulationRun run(box(kFrictionKeys, kSpinKeys, {"time.step=" + step}));
     run.run();
     CHECK(run.particle_ledger().contact_loss > 0.1 * run.exchanged());
     return std::abs(run.balance_error()) / run.exchanged();

@@ -16,12 +16,12 @@ namespace {
 constexpr Real kMass = 0.1, kRadius = 0.02, kSpeed = 1;
 
 // Dissipation since t = 0, that of escaped particles included [J].
-RubbingLosses losses_of(SimulationRun& run) {
-  RubbingLosses out = run.particle_ledger().rotation.losses;
+TangentialLosses losses_of(SimulationRun& run) {
+  TangentialLosses out = run.particle_ledger().rotation.losses;
   out.add(run.complete_state().carried_out.losses);
   return out;
 }
-Real sum_of(const RubbingLosses& losses) {
+Real sum_of(const TangentialLosses& losses) {
   return losses.of[kFrictionLoss] + losses.of[kRollingLoss] + losses.of[kTwistingLoss];
 }
 Real dissipated(SimulationRun& run) { return run.ledger().dissipated_contacts; }
@@ -36,7 +36,7 @@ Real sliding_error(Real step, const std::vector<std::string>& settings) {
   const Grain grain{.velocity = {kSpeed, 0, 0}, .radius = kRadius, .mass = kMass};
   SimulationRun run(resting_model(grain, 0.3, 1e5, 0.2, inclined_gravity(0), step, 0.3, settings));
   run.run();
-  const RubbingLosses losses = losses_of(run);
+  const TangentialLosses losses = losses_of(run);
   CHECK(near(losses.of[kFrictionLoss], dissipated(run), {.relative = 1e-12}));
   CHECK((losses.of[kRollingLoss] == 0 && losses.of[kTwistingLoss] == 0));
   return losses.of[kFrictionLoss] / (kMass * kSpeed * kSpeed / 7) - 1;
@@ -58,7 +58,7 @@ SimulationRun run_on_wall(const std::string& law, Vec3 velocity, Vec3 spin, Real
 }
 
 // Agitated spheres between walls that escape through one side. rubs: keys of the pair.
-Model escaping_model(const std::string& rubs, const std::vector<std::string>& settings) {
+Model escaping_model(const std::string& friction_keys, const std::vector<std::string>& settings) {
   return model_of(R"(
 [space]
 dimension = 3
@@ -80,7 +80,7 @@ history_interval = 2e-3
 [[contact.pairs]]
 stiffness = 2e5
 friction = 0.4
-)" + rubs + R"(
+)" + friction_keys + R"(
 [[particles]]
 name = "cloud"
 kind = "random"
@@ -110,7 +110,7 @@ TEST_CASE("a sphere that rolls until it rocks loses its energy to rolling, but f
                   {0.3, 0, 0}, {0, 0.3 / kRadius, 0}, 1e-5, 0.6);
   const Real start = energy_of(run.particles()[0]);
   run.run();
-  const RubbingLosses losses = losses_of(run);
+  const TangentialLosses losses = losses_of(run);
   CHECK(energy_of(run.particles()[0]) < 1e-9 * start);
   CHECK(near(sum_of(losses), dissipated(run), {.relative = 1e-12}));
   CHECK(keeps((losses.of[kRollingLoss] + losses.of[kFrictionLoss]) / start - 1,
@@ -124,7 +124,7 @@ TEST_CASE("a moment against the rate of rolling takes all of it") {
   SimulationRun run = run_on_wall("rolling_damping = 2e-4\n", {0.3, 0, 0}, {0, 0.3 / kRadius, 0}, 2e-5, 0.2);
   const Real start = energy_of(run.particles()[0]);
   run.run();
-  const RubbingLosses losses = losses_of(run);
+  const TangentialLosses losses = losses_of(run);
   CHECK(losses.of[kRollingLoss] > 0.2 * start);
   CHECK(near(losses.of[kRollingLoss], start - energy_of(run.particles()[0]), {.relative = 2e-3}));
 }
@@ -135,7 +135,7 @@ TEST_CASE("a sphere that spins about the vertical loses its energy to twisting a
       run_on_wall("tangential_damping_ratio = 0.3\ntwisting_friction = 0.5\n", {}, {0, 0, spin}, 1e-5, 2.6);
   const Real start = energy_of(run.particles()[0]);
   run.run();
-  const RubbingLosses losses = losses_of(run);
+  const TangentialLosses losses = losses_of(run);
   const Real swings = energy_of(run.particles()[0]) + run.particle_ledger().rotation.rolling_springs;
   CHECK(swings < 2e-3 * start);
   CHECK(keeps((losses.of[kTwistingLoss] + swings) / start - 1, {.promise = 1e-3, .measured = 2e-6}));
@@ -148,18 +148,19 @@ TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave,
   const std::vector<std::string> hht = {"integrator.particles=hht", "time.control=fixed"};
   const std::string rolling = "rolling_friction = 0.2\nrolling_damping = 1e-3\ntwisting_friction = 0.3\n";
   struct Case {
-    std::string rubs;
+    std::string friction_keys;
     std::vector<std::string> settings;
   };
-  for (const auto& [rubs, settings] : {Case{"tangential_damping_ratio = 0.2\n", {}},
-                                       Case{"tangential_damping_ratio = 0.2\n", hht}, Case{rolling, {}}})
+  for (const auto& [friction_keys, settings] :
+       {Case{"tangential_damping_ratio = 0.2\n", {}}, Case{"tangential_damping_ratio = 0.2\n", hht},
+        Case{rolling, {}}})
     for (const std::string damping : {"", "damping = 20.0\n"}) {
-      CAPTURE(rubs, damping, settings.size());
-      SimulationRun run(escaping_model(rubs + damping, settings));
-      RubbingLosses before{};
+      CAPTURE(friction_keys, damping, settings.size());
+      SimulationRun run(escaping_model(friction_keys + damping, settings));
+      TangentialLosses before{};
       Real grown_with_leavers = 0;
       run.run([&] {
-        const RubbingLosses now = losses_of(run);
+        const TangentialLosses now = losses_of(run);
         for (int kind = 0; kind < kLossKinds; ++kind) CHECK(now.of[kind] >= before.of[kind]);
         before = now;
         const Real all = dissipated(run);
@@ -173,7 +174,7 @@ TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave,
       CHECK(grown_with_leavers > 1e-3 * before.of[kFrictionLoss]);
       CHECK(before.of[kFrictionLoss] > 0.05 * run.exchanged());
       for (const LossKind kind : {kRollingLoss, kTwistingLoss})
-        CHECK((before.of[kind] > 1e-3 * run.exchanged()) == (rubs == rolling));
+        CHECK((before.of[kind] > 1e-3 * run.exchanged()) == (friction_keys == rolling));
       if (!damping.empty()) CHECK(sum_of(before) < 0.9 * dissipated(run));
     }
 }

@@ -18,7 +18,7 @@ constexpr Real kStiffness = 1e4, kDensity = 2500, kRadius = 0.01;
 
 // Spheres that fall and slide on a floor, half of their contacts sliding, undamped; sharpness: sqrt(2 K / m)
 // h.
-StepCounts counts_of(Real sharpness, Real friction) {
+StepCounts counts_of(Real phase_squared, Real friction) {
   const Real mass = kDensity * 4 / 3 * std::numbers::pi_v<Real> * kRadius * kRadius * kRadius;
   SimulationRun run(model_of(fmt::format(
       R"(
@@ -54,7 +54,7 @@ density = {density}
 random_velocity = 0.1
 seed = 3
 )",
-      fmt::arg("step", sharpness / std::sqrt(2 * kStiffness / mass)), fmt::arg("stiffness", kStiffness),
+      fmt::arg("step", phase_squared / std::sqrt(2 * kStiffness / mass)), fmt::arg("stiffness", kStiffness),
       fmt::arg("radius", kRadius), fmt::arg("density", kDensity),
       fmt::arg("friction", friction > 0 ? fmt::format("friction = {}", friction) : std::string()))));
   run.run();
@@ -69,27 +69,29 @@ Real per_step(std::int64_t count, const StepCounts& counts) {
 
 TEST_CASE("Newton iterations of a pack with friction") {
   struct Expected {
-    Real sharpness, frictionless, frictional;  // iterations per step, without friction and with it
+    Real phase_squared, frictionless, frictional;  // iterations per step, without friction and with it
     bool freezes;
   };
   for (const Expected& e : {Expected{0.63, 5.0, 4.5, false}, Expected{1.2, 6.0, 5.4, false},
                             Expected{1.9, 6.9, 6.5, false}, Expected{6.3, 11.7, 44, true}}) {
-    const StepCounts frictionless = counts_of(e.sharpness, 0), frictional = counts_of(e.sharpness, 0.5);
+    const StepCounts frictionless = counts_of(e.phase_squared, 0),
+                     frictional = counts_of(e.phase_squared, 0.5);
     const Real newton[2] = {per_step(frictionless.newton_iterations, frictionless),
                             per_step(frictional.newton_iterations, frictional)};
     INFO(fmt::format(
         "sqrt(2K/m) h = {}: {:.1f} Newton iterations per step without friction, {:.1f} with it; {:.0f} "
         "and {:.0f} products; limits frozen in {} of {} steps, {} steps rejected",
-        e.sharpness, newton[0], newton[1], per_step(frictionless.linear_iterations, frictionless),
-        per_step(frictional.linear_iterations, frictional), frictional.frozen_steps, frictional.steps,
+        e.phase_squared, newton[0], newton[1], per_step(frictionless.linear_iterations, frictionless),
+        per_step(frictional.linear_iterations, frictional), frictional.lagged_steps, frictional.steps,
         frictional.rejected_newton));
-    const std::string sharpness = fmt::format("{}", e.sharpness);
-    CHECK(measured("newton/" + sharpness + ", slick", "", at_most(newton[0], 1.1 * e.frictionless)));
-    CHECK(measured("newton/" + sharpness + ", rubbing", "", at_most(newton[1], 1.1 * e.frictional)));
-    note("newton/" + sharpness + ", products", "", per_step(frictional.linear_iterations, frictional));
-    note("newton/" + sharpness + ", frozen", "%", per_step(100 * frictional.frozen_steps, frictional));
-    note("newton/" + sharpness + ", rejected", "%", per_step(100 * frictional.rejected_newton, frictional));
-    CHECK((frictional.frozen_steps > 0) == e.freezes);
+    const std::string phase_squared = fmt::format("{}", e.phase_squared);
+    CHECK(measured("newton/" + phase_squared + ", slick", "", at_most(newton[0], 1.1 * e.frictionless)));
+    CHECK(measured("newton/" + phase_squared + ", rubbing", "", at_most(newton[1], 1.1 * e.frictional)));
+    note("newton/" + phase_squared + ", products", "", per_step(frictional.linear_iterations, frictional));
+    note("newton/" + phase_squared + ", frozen", "%", per_step(100 * frictional.lagged_steps, frictional));
+    note("newton/" + phase_squared + ", rejected", "%",
+         per_step(100 * frictional.rejected_newton, frictional));
+    CHECK((frictional.lagged_steps > 0) == e.freezes);
   }
 }
 

@@ -11,7 +11,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 

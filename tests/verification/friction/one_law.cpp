@@ -8,7 +8,7 @@
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/hertz_impacts.hpp"
-#include "verification/friction/meeting.hpp"
+#include "verification/friction/oblique_pair.hpp"
 
 namespace scree {
 
@@ -24,10 +24,11 @@ struct Law {
 };
 
 std::vector<Law> laws_of(Real ratio, Real friction) {
-  const std::string rubs =
+  const std::string friction_keys =
       fmt::format("restitution = 0.8\nfriction = {}\ntangential_damping_ratio = {}\n", friction, ratio);
   const Real linear = std::numbers::pi_v<Real> / std::sqrt(Real(1e6));
-  return {{"stiffness = 1e6\n" + rubs, "", linear}, {rubs, hertz_materials(1e8, 0.3), 2.2e-3}};
+  return {{"stiffness = 1e6\n" + friction_keys, "", linear},
+          {friction_keys, hertz_materials(1e8, 0.3), 2.2e-3}};
 }
 
 // Spheres of 1 kg at several angles to the normal of a wall, without spin and with spins about all axes:

@@ -4,7 +4,7 @@
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/pair_impacts.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 
@@ -21,7 +21,7 @@ struct PairErrors {
   Errors motion;  // relative to the surfaces' speed of approach, some 1 m/s
   Errors loss;    // accounted dissipation against the table's, over the kinetic energy
   // Changes of the momentum, some 1 kg m/s, and of the angular momentum, some 1e-2 kg m^2/s.
-  Errors momentum, turning;
+  Errors momentum, angular;
 };
 
 GrainDeck deck_of(const LinearPairImpact& impact, Real h) {
@@ -71,7 +71,7 @@ void add_impact(const Impact& impact, Real parts, Real phase, PairErrors& errors
   errors.motion.add(difference(particles[1], impact.j_after));
   errors.loss.add((after.contact_loss - impact.loss) / before.kinetic);
   errors.momentum.add(norm(after.momentum - before.momentum));
-  errors.turning.add(norm(after.angular_momentum - before.angular_momentum));
+  errors.angular.add(norm(after.angular_momentum - before.angular_momentum));
 }
 
 template <class Impact, class Which>
@@ -83,7 +83,7 @@ PairErrors pair_errors(Real parts, const Which& which, const std::vector<std::st
       for (const Real phase : kPhases) add_impact(Impact(row), parts, phase, errors, settings);
   if (settings.empty()) {
     CHECK(errors.momentum.worst() < kConserved);
-    CHECK(errors.turning.worst() < 1e-2 * kConserved);
+    CHECK(errors.angular.worst() < 1e-2 * kConserved);
   } else {
     CHECK(errors.momentum.worst() < kSolved);
   }
@@ -130,9 +130,9 @@ TEST_CASE("two free spheres in implicit steps, which keep angular momentum to se
       CHECK(keeps(coarse.motion.worst(), {.promise = 2e-3, .measured = damped ? 1.0e-3 : 5.6e-4}));
       CHECK(keeps(fine.motion.worst(), {.promise = 1e-3, .measured = 2.3e-4}));
       CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = damped ? 3.9e-5 : 4.6e-6}));
-      CHECK(keeps(fine.turning.worst(), {.promise = 1e-7, .measured = damped ? 1.3e-8 : 2e-9}));
+      CHECK(keeps(fine.angular.worst(), {.promise = 1e-7, .measured = damped ? 1.3e-8 : 2e-9}));
       CHECK(order_between(coarse.motion, fine.motion) > 0.9);
-      CHECK(order_between(coarse.turning, fine.turning) > 1.9);
+      CHECK(order_between(coarse.angular, fine.angular) > 1.9);
     }
     const auto mindlin = [&](Real parts) {
       return pair_errors<MindlinPairImpact>(

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "verification/contact/on_plane.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/particle_decks.hpp"
 
 namespace scree {
 

@@ -54,7 +54,7 @@ Model model_on(const Floor& floor, const std::string& body, Real slope, Real end
       return Vec3{12 * v.x - 6, 12 * v.y - 6, 0};
     });
     model.meshes[0].surface = std::make_shared<const SurfaceMesh>(
-        build_surface_mesh(turned(flat, floor.turn), kFeatureAngle, true));
+        build_surface_mesh(rotated(flat, floor.turn), kFeatureAngle, true));
   }
   return model;
 }

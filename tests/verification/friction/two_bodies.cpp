@@ -11,7 +11,7 @@
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
-#include "verification/friction/meeting.hpp"
+#include "verification/friction/oblique_pair.hpp"
 
 namespace scree {
 

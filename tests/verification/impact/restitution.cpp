@@ -31,7 +31,7 @@ Impact floor_impact(Model model, Real expected_duration, int steps_in_contact) {
   model.particles.velocity[0] = {0, -kSpeed, 0};
   model.time.step = model.time.max_step = h;
   model.time.end = 1.3 * expected_duration;
-  const KelvinVoigt& law = model.contact.law(0, 0);
+  const NormalLawParameters& law = model.contact.law(0, 0);
   const auto measure = [&](Real overlap, Real rate) {
     if (law.tension || overlap <= 0) return overlap;
     return law.normal_stiffness * std::pow(overlap, law.exponent) + law.normal_damping * rate;

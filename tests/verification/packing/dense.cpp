@@ -85,7 +85,7 @@ Real unbalanced_share(const SimulationRun& run, const Model& model) {
 Model settled(const Model& loose, Real fall, int bursts) {
   constexpr Real kBurst = 6e-3, kSettlingStep = 1e-4, kSettlingDamping = 700;  // [s], [s], [N s/m]
   Model model = loose;
-  for (KelvinVoigt& law : model.contact.laws) law.normal_damping = kSettlingDamping;
+  for (NormalLawParameters& law : model.contact.laws) law.normal_damping = kSettlingDamping;
   model.integrator.particles = ParticleIntegrator::velocity_verlet;
   model.time.step = model.time.max_step = kSettlingStep;
   model.output.history_interval = model.output.snapshot_interval = fall;
@@ -112,7 +112,7 @@ void check_rests(const std::string& what, const Model& settled_model, Real dampi
   constexpr Real kPhysical =
       1e-3;  // relative to the energy of a fall by the radius: settling energy per particle
   Model model = settled_model;
-  for (KelvinVoigt& law : model.contact.laws) law.normal_damping = damping;
+  for (NormalLawParameters& law : model.contact.laws) law.normal_damping = damping;
   model.integrator.hht_alpha = hht_alpha;
   model.time.step = model.time.max_step = kStep;
   model.time.end = kSteps * kStep;

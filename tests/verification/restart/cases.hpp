@@ -117,7 +117,7 @@ stiffness = 1e5
 
 // Bodies that roll and slide on a floor, on a plate of triangles and on each other, around the periodic
 // axis: their contact histories must survive.
-inline const std::string kRubbingShapes = R"(
+inline const std::string kFrictionalShapes = R"(
 gravity = [1.5, -9.8066, 0.3]
 [output]
 history_interval = 0.01
@@ -254,7 +254,7 @@ inline std::vector<RestartCase> restart_cases() {
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "ballistic"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
-    cases.push_back({"rubbing shapes" + how, model_of(kRubbingShapes, with({})), false});
+    cases.push_back({"rubbing shapes" + how, model_of(kFrictionalShapes, with({})), false});
     cases.push_back({"crates" + how, model_of(kCrates, with({})), false});
     // Long runs, and so fast that the list limits adaptive steps.
     if (way == kWays.front() || way == kWays.back()) {

@@ -97,7 +97,7 @@ TEST_CASE("a run continues bit for bit from its start, where contacts rotate spa
     overrides.insert(overrides.end(), {"time.end=0.01", "output.history_interval=0.002",
                                        "bodies.block.body_angular_velocity=[3.0, 1.0, -2.0]",
                                        "bodies.block.center_of_mass=[0.01, 0.0, 0.005]"});
-    const Model model = model_of(kRubbingShapes, overrides);
+    const Model model = model_of(kFrictionalShapes, overrides);
     check_same(whole_run(model), interrupted_run(model, 0));
   }
 }

@@ -30,12 +30,12 @@ struct DeckFrame {
   Quaternion axes;
   Vec3 center;
 
-  Vec3 point(Vec3 own) const { return center + turned(axes, own); }
+  Vec3 point(Vec3 own) const { return center + rotated(axes, own); }
 };
 
 std::string body_keys(const Body& body, const DeckFrame& frame) {
   const Quaternion p = body.orientation * conjugate(frame.axes);
-  const Vec3 arm = turned(p, frame.center), spin = turned(body.orientation, body.spin);
+  const Vec3 arm = rotated(p, frame.center), spin = rotated(body.orientation, body.spin);
   const Sym3& j = body.inertia_tensor;
   return fmt::format(
       "[[bodies]]\nname = \"{}\"\nkind = \"spatial\"\nmass = {}\ninertia_tensor = [{}, {}, {}, 0, 0, 0]\n"
@@ -83,7 +83,7 @@ TEST_CASE("a slider-crank by frames and markers moves as by points and axes") {
       CHECK(norm(a[k].velocity - b[k].velocity) < kSameMotion);
       CHECK(norm(rotation_vector(conjugate(a[k].orientation) * b[k].orientation * frames[k].axes)) <
             kSameMotion);
-      CHECK(norm(turned(frames[k].axes, a[k].spin) - b[k].spin) < 10 * kSameMotion);
+      CHECK(norm(rotated(frames[k].axes, a[k].spin) - b[k].spin) < 10 * kSameMotion);
     }
     const std::vector<Reaction> f = one.multibody.reactions(one.state, one.time),
                                 g = two.multibody.reactions(two.state, two.time);
@@ -101,11 +101,11 @@ TEST_CASE("reactions along the axes of the joint's first marker") {
   MultibodyRun run(slider_crank_in_space(-0.1), 1e-13);
   run.steps(100, 1e-3);
   const std::vector<Reaction> reactions = run.multibody.reactions(run.state, run.time);
-  const Vec3 hinge = turned(conjugate(reactions[0].frame), reactions[0].torque);
+  const Vec3 hinge = rotated(conjugate(reactions[0].frame), reactions[0].torque);
   CHECK(std::abs(hinge.z) < 1e-10);
   CHECK(norm(hinge) > 1e-3);
   // The cross transmits a torque about the axis normal to both its arms alone: the first is x of its marker.
-  const Vec3 cross = turned(conjugate(reactions[2].frame), reactions[2].torque);
+  const Vec3 cross = rotated(conjugate(reactions[2].frame), reactions[2].torque);
   CHECK(std::abs(cross.x) < 1e-10);
   CHECK(norm(cross) > 1e-6);
 }

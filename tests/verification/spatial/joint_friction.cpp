@@ -214,11 +214,11 @@ TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances it
   const auto rise = [&](Real t, Real push = 0) {
     return (kTorque - kFade * t - (kLever + kPitch) * (kLoad * 9.81 + push)) / divisor;
   };
-  const auto rub = [&](Real t, Real push = 0) {
+  const auto friction_effort = [&](Real t, Real push = 0) {
     return kLever * (kLoad * (9.81 + kPitch * rise(t, push)) + push);
   };
   MultibodyRun run(model);
-  wind(run, rub(0));
+  wind(run, friction_effort(0));
   const Real start = energy(run);
   Real first = 0;  // the error of the start, which is constant
   for (int i = 0; i < 200; ++i) {
@@ -229,7 +229,7 @@ TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances it
     if (i == 0) first = error;
     REQUIRE(std::abs(first) < 1e-3);
     REQUIRE(near(error, first, {.absolute = 1e-8}));
-    REQUIRE(near(samples[1].effort, -rub(t), {.relative = 1e-9}));
+    REQUIRE(near(samples[1].effort, -friction_effort(t), {.relative = 1e-9}));
   }
   CHECK(run.state.dissipated > 4e5);
   CHECK(near(energy(run), start, {.absolute = 1e-12 * run.state.driver_work}));
@@ -241,6 +241,7 @@ TEST_CASE("a heavy jack on a self-locking thread rises uniformly and balances it
   for (int i = 0; i < 4; ++i) run.multibody.correct({std::vector<BodyWrench>(1), {}});
   run.multibody.accept(run.state, push);
   const Real t = run.time + 2e-3;
-  CHECK(near(run.multibody.joint_efforts(run.state, t)[1].effort, -rub(t, kPush), {.relative = 1e-9}));
-  CHECK(rub(t, kPush) > rub(t) + 50);
+  CHECK(near(run.multibody.joint_efforts(run.state, t)[1].effort, -friction_effort(t, kPush),
+             {.relative = 1e-9}));
+  CHECK(friction_effort(t, kPush) > friction_effort(t) + 50);
 }

@@ -55,7 +55,7 @@ Model on_triangles(const Grain& grain, const Mat3& turn, int n) {
                          "= \"floor\"\nmesh = \"floor\"\n");
   const TriangleMesh flat = mapped(jittered_grid(n, 3), [](Vec3 v) { return Vec3{v.x - 0.5, v.y - 0.5, 0}; });
   model.meshes[0].surface =
-      std::make_shared<const SurfaceMesh>(build_surface_mesh(turned(flat, turn), kFeatureAngle, true));
+      std::make_shared<const SurfaceMesh>(build_surface_mesh(rotated(flat, turn), kFeatureAngle, true));
   return model;
 }
 

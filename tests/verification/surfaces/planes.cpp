@@ -15,7 +15,7 @@
 #include "support/simulation_run.hpp"
 #include "support/state_bits.hpp"
 #include "support/test_meshes.hpp"
-#include "verification/surfaces/grains.hpp"
+#include "verification/surfaces/particles.hpp"
 
 namespace scree {
 
@@ -84,15 +84,15 @@ TEST_CASE(
   const std::string powder =
       "[[materials]]\nname = \"powder\"\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n[[contact.pairs]]\n"
       "restitution = 0.6\n";
-  const std::string rubs = "friction = 0.4\ntangential_damping_ratio = 0.1\n";
+  const std::string friction_keys = "friction = 0.4\ntangential_damping_ratio = 0.1\n";
   const std::string pull = "[[contact.pairs]]\nstiffness = 1e4\nrestitution = 0.6\nattraction = 0.3\n";
   const std::vector<std::string> laws = {
       powder + "work_of_adhesion = 20\n",
-      powder + "work_of_adhesion = 5\nrolling_friction = 0.2\ntwisting_friction = 0.2\n" + rubs,
-      powder + "work_of_adhesion = 5\nadhesion = \"dmt\"\n" + rubs,
+      powder + "work_of_adhesion = 5\nrolling_friction = 0.2\ntwisting_friction = 0.2\n" + friction_keys,
+      powder + "work_of_adhesion = 5\nadhesion = \"dmt\"\n" + friction_keys,
       pull,
       pull + "attraction_range = 1e-3\n",
-      pull + "attraction_range = 1e-3\n" + rubs};
+      pull + "attraction_range = 1e-3\n" + friction_keys};
   const std::vector<std::pair<std::string, TriangleMesh>> cut = triangulations();
   for (const std::string& law : laws) {
     CAPTURE(law);
@@ -148,11 +148,11 @@ TEST_CASE("on a tilted plane of triangles particles move as on the analytic one"
     SimulationRun plane(
         model_of(deck + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal)));
     Model tilted = model_of(deck + kMesh, {"contact.max_start_overlap=1.0"});
-    tilted = with_floor(tilted, turned(mapped(jittered_grid(30, 3),
-                                              [](Vec3 v) {
-                                                return Vec3{4 * v.x - 2, 4 * v.y - 2, 0};
-                                              }),
-                                       a));
+    tilted = with_floor(tilted, rotated(mapped(jittered_grid(30, 3),
+                                               [](Vec3 v) {
+                                                 return Vec3{4 * v.x - 2, 4 * v.y - 2, 0};
+                                               }),
+                                        a));
     SimulationRun mesh(tilted);
     plane.run(), mesh.run();
     CAPTURE(angle);

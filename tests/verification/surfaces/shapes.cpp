@@ -89,7 +89,7 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
     const Vec3 start_position = Vec3{0, 0, kRadius + kGap} - arm;
     SimulationRun run(model_of(setup("", method) + sphere({}, {}) + box(start_position, {0, 0, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
-    const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
+    const Vec3 before = momentum_of(motion()), angular_before = angular_momentum_of(motion());
     run.run();
     REQUIRE(run.particle_ledger().contacts == 0);
     const std::vector<BodyMotion> after = motion();
@@ -100,7 +100,7 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
     CHECK(near(after[1].velocity, {0, 0, impulse / kBoxMass - kSpeed}, {.absolute = 5e-3 * kSpeed}));
     CHECK(near(global_spin(after[1]), impulse * turned, {.relative = 5e-3}));
     CHECK(keeps(norm(momentum_of(after) - before), {.promise = 1e-9, .measured = 5e-14}));
-    CHECK(keeps(norm(angular_momentum_of(after) - turning_before), {.promise = 1e-8, .measured = 1.8e-10}));
+    CHECK(keeps(norm(angular_momentum_of(after) - angular_before), {.promise = 1e-8, .measured = 1.8e-10}));
   }
 }
 
@@ -113,14 +113,14 @@ TEST_CASE(
     SimulationRun run(model_of(setup("friction = 0.4\n", method) + sphere({}, {}) +
                                box(start_position, {0.5, -0.2, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
-    const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
+    const Vec3 before = momentum_of(motion()), angular_before = angular_momentum_of(motion());
     run.run();
     REQUIRE(run.particle_ledger().contacts == 0);
     CHECK(norm(global_spin(motion()[0])) > 1);
     CHECK(run.particle_ledger().rotation.losses.of[kFrictionLoss] > 1e-3);
     CHECK(keeps(norm(momentum_of(motion()) - before), {.promise = 1e-9, .measured = 5e-14}));
     CHECK(
-        keeps(norm(angular_momentum_of(motion()) - turning_before), {.promise = 1e-8, .measured = 1.8e-10}));
+        keeps(norm(angular_momentum_of(motion()) - angular_before), {.promise = 1e-8, .measured = 1.8e-10}));
     CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-2, .measured = 4e-4}));
   }
 }

@@ -22,7 +22,7 @@ struct PlateDeck {
   std::string pair;       // keys
   std::string thickness;  // of the box [m]
   std::string start = "positions = [[0.01, 0.02, 0.08]]\nvelocity = [1.0, 0.0, -27.0]\n";
-  std::string carrier = "[[walls]]\nname = \"plate\"\nmesh = \"plate\"\n";
+  std::string parent = "[[walls]]\nname = \"plate\"\nmesh = \"plate\"\n";
 
   Model model(const std::vector<std::string>& settings) const {
     return model_of(
@@ -31,7 +31,7 @@ struct PlateDeck {
                     "[[contact.pairs]]\n{}[[meshes]]\nname = \"plate\"\nkind = \"box\"\n"
                     "size = [0.4, 0.4, {}]\n{}[[particles]]\nkind = \"list\"\nradius = 0.05\n"
                     "mass = {}\n{}[output]\nhistory_interval = 1e-3\n",
-                    pair, thickness, carrier, kMass, start),
+                    pair, thickness, parent, kMass, start),
         settings);
   }
 };
@@ -91,7 +91,7 @@ TEST_CASE("a sphere inside of a closed box changes over from its top to its side
 
 TEST_CASE("a sphere goes through the thin plate of a free body, and both keep their momentum") {
   PlateDeck deck{"stiffness = 3e3\nrestitution = 0.9\n", "0.02"};
-  deck.carrier =
+  deck.parent =
       "[[bodies]]\nname = \"carrier\"\nkind = \"spatial\"\nposition = [0.0, 0.0, 0.0]\nsolids = [{ kind = "
       "\"mesh\", mesh = "
       "\"plate\", density = 300.0 }]\nmeshes = [{ mesh = \"plate\" }]\n";

@@ -12,14 +12,14 @@ namespace {
 const std::string kPipe =
     "[[meshes]]\nname = \"drum\"\nkind = \"pipe\"\nradius = 0.9\ninner_radius = 0.8\nlength = 1\nsegments = "
     "48\nz_axis = [0, 1, 0]\n";
-const std::string kTurning = "{ kind = \"step\", end_value = 1.5, start = 0, end = 0.4 }";
+const std::string kDriverMotion = "{ kind = \"step\", end_value = 1.5, start = 0, end = 0.4 }";
 
 // A sphere that lies in the lower part of a pipe about the y axis.
 WallDeck in_drum(const std::string& method) {
   WallDeck deck;
   deck.wall =
       "mesh = \"drum\"\n" +
-      motions("{ type = \"rotation\", axis = [0, 1, 0], point = [0, 0, 0], angle = " + kTurning + " }");
+      motions("{ type = \"rotation\", axis = [0, 1, 0], point = [0, 0, 0], angle = " + kDriverMotion + " }");
   deck.contact = "stiffness = 1e4\ndamping = 20\nfriction = 0.5\n", deck.gravity = "[0, 0, -9.81]";
   deck.step = 1e-4, deck.end = 0.4, deck.particles = method;
   deck.grain = "positions = [[0, 0.01, -0.695]]\n", deck.rest = kPipe;
@@ -34,7 +34,7 @@ WallDeck in_driven_body(const std::string& method) {
       "[[joints]]\nname = \"axle\"\ntype = \"revolute\"\nbodies = [\"ground\", \"drum\"]\n"
       "point = [0, 0, 0]\naxis = [0, 1, 0]\n"
       "[[drivers]]\nname = \"motor\"\njoint = \"axle\"\nmotion = " +
-      kTurning + "\n";
+      kDriverMotion + "\n";
   return deck;
 }
 

@@ -36,9 +36,9 @@ TEST_CASE("velocity and spin of a wall are the rates of where it is, with motion
   // The pose by hand: rotated, moved, rotated.
   const Vec3 axis = (1 / std::sqrt(5.0)) * Vec3{1, 2, 0}, first{0.3, 0, 0.2}, last{1, 1, 0};
   const Real angle = 0.8 * std::sin(2 * M_PI * 0.7 * t);
-  Vec3 p = first + turned(exponential(angle * axis), place - first);
+  Vec3 p = first + rotated(exponential(angle * axis), place - first);
   p += 0.4 * t * (1 / std::sqrt(2.0)) * Vec3{0, 1, 1};
-  p = last + turned(exponential({0, 0, -2 * t}), p - last);
+  p = last + rotated(exponential({0, 0, -2 * t}), p - last);
   CHECK(near(now.position, p, {.absolute = 1e-14}));
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("conveyors with cohesion are supported in explicit steps alone") {
   CHECK(model_error(deck.text()).find("needs integrator.particles = \"velocity-verlet\"") !=
         std::string::npos);
   deck.particles = "velocity-verlet";
-  CHECK(deck.model().attracts());
+  CHECK(deck.model().is_cohesive());
 }
 
 TEST_CASE("in 2D walls rotate about z, and an axis is refused") {

@@ -1,0 +1,103 @@
+// Connects the ranks with rank 0's multibody subsystem: motion is broadcast, wrenches are reduced.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/loaded_bodies.hpp"
+#include "coupling/wall_motion.hpp"
+#include "dem/backend/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "model/data/model.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+class BodyCoupling {
+ public:
+  // Rank 0 creates the Multibody object, if the model has bodies. Exceptions of rank 0 are thrown on every
+  // rank, here and below.
+  explicit BodyCoupling(const Model& model, const Ranks& ranks = {});
+
+  bool has_bodies() const { return bodies_ > 0; }
+  // Whether there are surfaces with a pose of their own: on bodies, or walls other than static planes.
+  bool has_parents() const { return !motion_.empty(); }
+  // Whether walls move, or do work as conveyors.
+  bool has_driven_walls() const { return walls_.move() || walls_.run(); }
+  bool parents_move() const { return has_bodies() || walls_.move(); }
+  Multibody* multibody() { return multibody_.get(); }  // null on ranks other than 0
+  const Multibody* multibody() const { return multibody_.get(); }
+  const Ranks& ranks() const { return ranks_; }
+
+  // The functions of Multibody, executed on rank 0; collective, and without effect in a model without bodies.
+  void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
+  std::vector<std::string> start_warnings();                // result on rank 0 alone
+  void solve_acceleration(MultibodyState& bodies, Real t);  // uses end_wrench()
+  // end: end of the step, t + h up to round-off [s].
+  void predict(const MultibodyState& bodies, Real t, Real h, Real end);
+  IterationNorms correct();             // uses the step's wrench; returns the norms on every rank
+  Real error() const;                   // on every rank
+  void accept(MultibodyState& bodies);  // uses end_wrench()
+  // Adds the work of walls on particles over a step or substep from t to `end` [s]. wrench: the contact
+  // wrenches that the step was solved with; those at its start are in `bodies`, where end_wrench() of the
+  // walls replaces them.
+  void account_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench);
+  const std::vector<BodyWrench>& step_wrench() const { return step_wrench_.wrench; }
+  void check_reactions();
+  // On every rank.
+  std::string trouble();
+  std::string dead_point();
+
+  // Rank 0 -> all: motion at the current iterate of the open step; sets the surface poses of the list.
+  void broadcast_motion(RankList& list);
+  // Rank 0 -> all: motion tau [s] after `state` by rank 0's prediction, and that of walls at time t [s]; sets
+  // the surface poses of the list.
+  void broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t);
+  // All -> rank 0: contact wrench and contact stiffness per body. Zero on other ranks.
+  void reduce_wrench(ImplicitStep& step);
+  void reduce_end_wrench(ExplicitRun& run);          // All -> rank 0: end_wrench() alone
+  void reduce_end_wrench(RankParticles& particles);  // All -> rank 0: end_wrench() at the start of a run
+  // Replaces the step's wrench by the one whose trapezoidal impulse equals the sum of the impulses over
+  // `substeps` equal substeps: twice the mean force less the force at the start. sum: of the forces at the
+  // ends of the substeps, with half the weight for the first and the last.
+  void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
+                       int substeps);
+  // Whether the contacts found by the last reduce_end_wrench(run) are stiff for a step of the bodies of
+  // length h [s] (LoadedBodies). Collective.
+  bool is_loaded(Real h);
+  // The calls of a step of loaded bodies, in this order. open_loaded() follows predict(). follow_load()
+  // follows each correct(): with `found`, reduce_end_wrench(run) has evaluated the contacts at the corrected
+  // position; otherwise the wrenches are extrapolated by their slopes. average_accelerations() follows
+  // accept().
+  void open_loaded(Real h);
+  void follow_load(bool found);
+  void average_accelerations(MultibodyState& bodies);
+  std::string load_warning() const { return loaded_.warning(); }  // on rank 0
+
+  // Entries for the bodies, then for the placed walls.
+  void take_wrench(MultibodyState& state) const;  // takes over end_wrench()
+  const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
+  std::vector<BodyWrench> wrench_of_bodies() const;
+  const std::vector<BodyMotion>& motion() const { return motion_; }
+
+ private:
+  std::string of_root(const std::function<std::string()>& tell);
+  void broadcast(RankList& list, Real t);
+  void set_poses(const std::vector<BodyMotion>& bodies);
+
+  Ranks ranks_;
+  std::size_t bodies_;
+  WallMotions walls_;
+  Real end_ = 0;  // end of the open step [s]
+  std::unique_ptr<Multibody> multibody_;
+  std::vector<BodyMotion> motion_;                                  // of the bodies, then of the placed walls
+  std::vector<BodyMotion> of_bodies_, walls_before_, walls_after_;  // scratch
+  ContactWrenches step_wrench_;
+  std::vector<BodyWrench> end_wrench_;
+  std::vector<std::int64_t> contacts_;  // number of particle contacts in end_wrench(), of an explicit step
+  LoadedBodies loaded_;
+};
+
+}  // namespace scree

@@ -1,0 +1,8 @@
+#include "dem/laws/contact_kernels_impl.hpp"
+
+namespace scree {
+
+template std::unique_ptr<ContactKernels> cpu_kernels(
+    const std::vector<ContactLaw<LinearRestitutionLaw, LinearSlider>>&, int);
+
+}  // namespace scree

@@ -1,0 +1,165 @@
+// The safe displacement of a cached contact: how far a sphere may move on a mesh before a narrow-phase query
+// can find anything but the face that it is over. Host and device.
+#pragma once
+
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/mesh_tree.hpp"
+#include "mesh/row_kinds.hpp"
+
+namespace scree {
+
+// A cached contact. While the centre is within `room` of `from`, it is over this triangle, and a query would
+// find the contact with it only; triangle -1: a query would find none.
+struct CachedContact {
+  Vec3 from;             // in the frame of the mesh [m]
+  Real safe_distance;    // [m]
+  Index triangle, part;  // part: that of the triangle
+
+  SCREE_HD bool holds(Vec3 c) const {
+    const Vec3 moved = c - from;
+    return dot(moved, moved) < safe_distance * safe_distance;
+  }
+};
+inline constexpr CachedContact kNoCachedContact{{}, 0, -1, -1};
+
+namespace mesh_detail {
+
+SCREE_HD Real distance_to(const MeshView& mesh, const MeshTriangle& triangle, Vec3 c) {
+  const Vec3* const v = mesh.vertices;
+  return std::sqrt(squared_distance(v[triangle.vertex[0]], v[triangle.vertex[1]], v[triangle.vertex[2]], c));
+}
+
+// Bound of the distance errors due to round-off and to vertices off their plane, with a margin.
+SCREE_HD Real uncertainty(const MeshView& mesh) { return 2 * mesh.flatness + 4 * mesh.round_off; }
+
+}  // namespace mesh_detail
+
+// The row of a sphere whose contacts are searched within `reach` of its centre c. All lanes of the team get
+// the same result.
+template <class LaneGroup>
+struct CachedContactRow {
+  const MeshView& mesh;
+  RowKind kind;
+  const Index* triangles;
+  Index count;
+  Vec3 c;
+  Real search_range;
+  LaneGroup team{};
+
+  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `reach` or, on a
+  // smooth row, farther away than the plane of t.
+  SCREE_HD CachedContact over(Index t) const {
+    const MeshTriangle& triangle = mesh.triangles[t];
+    const MeshPart& part = mesh.parts[triangle.part];
+    const Real height = dot(c - part.point, part.normal), distance = std::abs(height);
+    if (height < 0 && !mesh.sheet) return kNoCachedContact;
+    const Vec3 up = height < 0 ? opposite(part.normal) : part.normal;
+    const Below below{part.point,
+                      up,
+                      distance,
+                      {edge_of(triangle, part.normal, 0), edge_of(triangle, part.normal, 1),
+                       edge_of(triangle, part.normal, 2)}};
+    Real safe_distance = distance;
+    for (const Edge& edge : below.edges) shrink(safe_distance, edge.inside);
+    for (Index i = team.first(); i < count && safe_distance > 0; i += team.stride()) {
+      const MeshTriangle& other = mesh.triangles[triangles[i]];
+      // In the same plane it is the same contact.
+      if (triangles[i] == t || (other.part == triangle.part && other.features == 0)) continue;
+      shrink(safe_distance, permitted_by(other, below, safe_distance));
+    }
+    return cached(team.reduce(safe_distance, [](Real a, Real b) { return b < a ? b : a; }), t);
+  }
+
+  // Safe displacement beyond the reach of all triangles, or over the nearest one, where that is larger.
+  SCREE_HD CachedContact clear() const {
+    NearestTriangle nearest{kInfinity, -1};
+    for (Index i = team.first(); i < count; i += team.stride()) {
+      const Real distance = mesh_detail::distance_to(mesh, mesh.triangles[triangles[i]], c);
+      nearest = NearestTriangle::of(nearest, {distance, triangles[i]});
+    }
+    nearest = team.reduce(nearest, NearestTriangle::of);
+    const CachedContact off = cached(nearest.distance - search_range, -1);
+    if (nearest.triangle < 0 || off.safe_distance > kLongLasting * search_range) return off;
+    const CachedContact on = over(static_cast<Index>(nearest.triangle));
+    return on.safe_distance > off.safe_distance ? on : off;
+  }
+
+ private:
+  static constexpr Real kLongLasting = 0.1;  // fraction of the reach
+  struct NearestTriangle {
+    Real distance;
+    std::int64_t triangle;
+
+    SCREE_HD static NearestTriangle of(const NearestTriangle& a, const NearestTriangle& b) {
+      return b.distance < a.distance || (b.distance == a.distance && b.triangle < a.triangle) ? b : a;
+    }
+  };
+  SCREE_HD static void shrink(Real& safe_distance, Real to) {
+    if (!(safe_distance < to)) safe_distance = to;
+  }
+  SCREE_HD CachedContact cached(Real safe_distance, Index t) const {
+    const Real sure = safe_distance - mesh_detail::uncertainty(mesh);
+    return {c, sure > 0 ? sure : 0, t, t < 0 ? -1 : mesh.triangles[t].part};
+  }
+  // An edge of the triangle that c is over: a vertex, the direction in the plane from the edge to the
+  // inside, and the distance of c from the edge inwards [m].
+  struct Edge {
+    Vec3 from, inward;
+    Real inside;
+  };
+  // The triangle that c is over, relative to c.
+  struct Below {
+    Vec3 point, up;  // point of its plane; unit normal towards c
+    Real distance;   // of c from the plane [m]
+    Edge edges[3];
+  };
+  SCREE_HD Edge edge_of(const MeshTriangle& triangle, Vec3 normal, int k) const {
+    const Vec3 from = mesh.vertices[triangle.vertex[k]],
+               e = mesh.vertices[triangle.vertex[k < 2 ? k + 1 : 0]] - from;
+    const Vec3 inward = (1 / std::sqrt(dot(e, e))) * cross(normal, e);
+    return {from, inward, dot(c - from, inward)};
+  }
+  // The displacement that another triangle permits; or at least `enough`, if it permits that.
+  SCREE_HD Real permitted_by(const MeshTriangle& other, const Below& below, Real enough) const {
+    Real farther = 0, same_side = kInfinity;
+    if (kind == RowKind::smooth) {
+      if (mesh.sheet) {
+        const MeshPart& part = mesh.parts[other.part];
+        const Real height = dot(c - part.point, part.normal);
+        same_side = dot(part.normal, below.up) < 0 ? -height : height;
+      }
+      farther = permitted_beyond_edge(other, below);
+      if (!(farther < enough) && !(same_side < enough)) return farther;
+    }
+    const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - search_range;
+    if (kind == RowKind::any) return beyond_reach;
+    const Real by_distance = Real(0.5) * (away - below.distance);
+    if (farther < by_distance) farther = by_distance;
+    shrink(farther, same_side);
+    return farther > beyond_reach ? farther : beyond_reach;
+  }
+  // Displacement of c for which a triangle beyond an edge stays farther away than the plane below; 0: it is
+  // beyond no edge. Derived in src/mesh/README.md, "Cached narrow-phase queries".
+  SCREE_HD Real permitted_beyond_edge(const MeshTriangle& other, const Below& below) const {
+    const Real u = mesh_detail::uncertainty(mesh);
+    const Vec3 corners[] = {mesh.vertices[other.vertex[0]], mesh.vertices[other.vertex[1]],
+                            mesh.vertices[other.vertex[2]]};
+    Real most = 0;
+    for (const Edge& edge : below.edges) {
+      Real slope = 0;
+      bool is_penetrated = true;
+      for (const Vec3& v : corners) {
+        const Real out = -dot(v - edge.from, edge.inward), up = dot(v - below.point, below.up);
+        is_penetrated = is_penetrated && out > -u && (up < u || up < out);
+        if (is_penetrated && up > slope * out && !(up < u)) slope = up / out;
+      }
+      if (!is_penetrated) continue;
+      const Real safe_distance = (edge.inside - u - slope * below.distance) / (1 + slope);
+      if (most < safe_distance) most = safe_distance;
+    }
+    most -= 2 * std::sqrt(2 * u * below.distance);
+    return most > 0 ? most : 0;
+  }
+};
+
+}  // namespace scree
