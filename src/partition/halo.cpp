@@ -7,16 +7,6 @@
 
 namespace scree {
 
-std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width) {
-  const HaloPlan plan({}, {}, subdomain, width);
-  std::vector<Ghost> ghosts;
-  for (Index i = 0; i < as_index(position.size()); ++i)
-    plan.for_each_target(xyz(position[as_size(i)]), [&](const HaloTarget& t) {
-      ghosts.push_back({i, t.image, {}, t.shift});
-    });
-  return ghosts;
-}
-
 void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                     std::span<const Vec4> position, Real width) {
   plan_ = HaloPlan(ranks, decomposition, subdomain, width);

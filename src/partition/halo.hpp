@@ -51,9 +51,6 @@ struct HaloPositionItem {
   }
 };
 
-// The images across periodic sides within `width` [m] of the domain, for originals at `position`.
-std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width);
-
 // The ghosts of a rank, and their updates. Ghosts follow the owned items: first the images of this rank's own
 // particles, then the ghosts from each neighbour, contiguous per neighbour.
 class Halo {

@@ -44,10 +44,6 @@ SCREE_HD Real interaction_range_of(const Pair& pair) {
   else
     return 0;
 }
-template <class NormalLaw>
-SCREE_HD Real pair_interaction_range(const NormalLaw& law, const PairSize& size) {
-  return interaction_range_of(law.of_pair(size));
-}
 
 template <class NormalLaw>
 inline constexpr bool kMayBeCohesive = requires(const NormalLaw& law, const PairSize& size) {

@@ -13,11 +13,6 @@
 
 namespace scree {
 
-// c of a damping ratio [N s/m^((n+1)/2)]; stiffness K [N/m^n].
-inline Real contact_damping(Real damping_ratio, Real reduced_mass, Real stiffness, Real exponent) {
-  return 2 * damping_ratio * std::sqrt(reduced_mass * stiffness * (exponent + 1) / 2);
-}
-
 // Duration in tau of a contact whose force is cut at zero, in units of the inverse undamped frequency: 2
 // acos(zeta) / sqrt(1 - zeta^2), and its analytic continuation beyond critical damping.
 inline Real cut_contact_time(Real damping_ratio) {
@@ -26,16 +21,8 @@ inline Real cut_contact_time(Real damping_ratio) {
   return 2 * (below > 0 ? std::atan2(s, damping_ratio) : std::asinh(s)) / s;
 }
 
-// Coefficient of restitution of a damping ratio >= 0. tension: the force may be tensile until the overlap is
-// zero; else it is cut at zero, before that. With tension there is no rebound at or above critical damping.
-inline Real restitution_of(Real damping_ratio, bool tension) {
-  if (!tension) return std::exp(-damping_ratio * cut_contact_time(damping_ratio));
-  if (damping_ratio >= 1) return 0;
-  return std::exp(-std::numbers::pi_v<Real> * damping_ratio /
-                  std::sqrt((1 - damping_ratio) * (1 + damping_ratio)));
-}
-
-// Damping ratio of a coefficient of restitution in (0, 1].
+// Damping ratio of a coefficient of restitution in (0, 1]. tension: the force may be tensile until the overlap
+// is zero; else it is cut at zero, before that.
 inline Real damping_ratio_of(Real restitution, bool tension) {
   const Real decay = -std::log(restitution);
   if (tension) return decay / std::hypot(std::numbers::pi_v<Real>, decay);

@@ -74,11 +74,6 @@ SCREE_HD Vec3 verlet_displacement(Real h, Vec3 v, Vec3 a0) { return h * v + (h *
 // Predicted velocity at the end of the step, to second order in h, before the force there is known.
 SCREE_HD Vec3 verlet_predicted_velocity(Real h, Vec3 v, Vec3 a0) { return v + h * a0; }
 
-// Displacement of the step that led to a predicted velocity.
-SCREE_HD Vec3 verlet_last_displacement(Real h, Vec3 predicted, Vec3 a0) {
-  return h * predicted - (h * h / 2) * a0;
-}
-
 // Velocity at the end of the step from the predicted one.
 SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) {
   return predicted + (h / 2) * (a1 - a0);

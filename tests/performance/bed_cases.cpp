@@ -11,6 +11,7 @@
 #include "dem/particles/particle_store.hpp"
 #include "model/builder/particle_file.hpp"
 #include "physics/step_limits.hpp"
+#include "support/particle_columns.hpp"
 
 namespace scree {
 namespace {

@@ -13,6 +13,7 @@
 #include "dem/reports/output_fields.hpp"
 #include "dem/reports/triangle_works.hpp"
 #include "dem/search/neighbor_list.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/choose_law.hpp"
 #include "partition/halo.hpp"
 
@@ -132,9 +133,11 @@ Sizes sizes_of(const Model& model) {
   if (periodic || !equal || sizes.on_bodies) store.load(initial_records(model.particles, subdomain));
   ItemLayout layout;
   layout.owned = layout.active = layout.items = store.owned;
-  if (periodic)
-    sizes.ghosts =
-        static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
+  if (periodic) {
+    const HaloPlan halo({}, {}, subdomain, builder.cutoff(skin));
+    for (const Vec4& p : store.position)
+      halo.for_each_target(xyz(p), [&](const HaloTarget&) { ++sizes.ghosts; });
+  }
   sizes.items = sizes.particles + sizes.ghosts;
   sizes.cells = kCellBlockMargin * static_cast<double>(builder.grid(skin, particles).count());
   sizes.slots = slots_per_particle(model) * sizes.particles;

@@ -336,9 +336,4 @@ ParticleColumns ParticleFile::read(IdRange rows) const {
   return columns;
 }
 
-ParticleColumns read_particle_file(const std::string& path, int dimension) {
-  const ParticleFile file(path, dimension);
-  return file.read({0, file.count()});
-}
-
 }  // namespace scree

@@ -34,7 +34,4 @@ class ParticleFile {
   std::int64_t count_ = 0;
 };
 
-// All rows of a file.
-ParticleColumns read_particle_file(const std::string& path, int dimension);
-
 }  // namespace scree

@@ -3,6 +3,7 @@
 #include "model/builder/particle_file.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
+#include "support/particle_columns.hpp"
 #include "unit/dem/random_box.hpp"
 
 namespace scree {

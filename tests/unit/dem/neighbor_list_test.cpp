@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "dem/explicit/paired_rows.hpp"
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 
@@ -28,8 +30,10 @@ struct Items {
     store.load(records);
     layout.owned = kParticles, layout.active = kParticles - kDrifting;
     const Real width = builder.cutoff(kSkin);
-    ghosts =
-        periodic_images(subdomain, {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
+    Halo halo;
+    halo.exchange(Ranks(), {}, subdomain, {store.position.data(), static_cast<std::size_t>(layout.active)},
+                  width);
+    ghosts = halo.own();
     add_ghosts();
     layout.items = static_cast<Index>(store.position.size());
   }

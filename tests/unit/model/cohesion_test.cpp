@@ -11,6 +11,7 @@
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
+#include "support/restitution.hpp"
 
 namespace scree {
 

@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
+#include "support/restitution.hpp"
 
 namespace scree {
 

@@ -5,11 +5,13 @@
 #include <numbers>
 
 #include "model/checks/limits.hpp"
+#include "physics/normal_laws.hpp"
 #include "physics/plausible.hpp"
 #include "physics/restitution.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
+#include "support/restitution.hpp"
 
 namespace scree {
 

@@ -8,6 +8,7 @@
 
 #include "support/catch.hpp"
 #include "support/models.hpp"
+#include "support/particle_columns.hpp"
 
 namespace scree {
 

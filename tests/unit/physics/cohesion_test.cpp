@@ -68,7 +68,7 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
   const ContactLaw<JkrLaw> law{{1e7, 0, 0.05}};
   static_assert(decltype(law)::kHistory == 1);
   const PairSize size{1e-4, kInfinity, 2e-9, kInfinity};
-  const Real reach = pair_interaction_range(law.normal, size);
+  const Real reach = interaction_range_of(law.normal.of_pair(size));
   CHECK(reach > 0);
   const auto at = [&](Real overlap, bool touched) {
     const ContactGeometry geometry{overlap, size.radius_i - overlap, {0, 0, 1}, 1};

@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/reference_table.hpp"
+#include "support/restitution.hpp"
 
 namespace scree {
 

@@ -6,8 +6,11 @@
 #include <numbers>
 #include <string>
 
+#include "physics/normal_laws.hpp"
 #include "physics/restitution.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/reference_table.hpp"
+#include "support/restitution.hpp"
 #include "verification/contact/leapfrog.hpp"
 
 namespace scree {

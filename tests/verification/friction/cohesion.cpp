@@ -9,6 +9,7 @@
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/reference_table.hpp"
+#include "support/restitution.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/friction/particle_decks.hpp"
 

@@ -4,6 +4,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
+#include "support/restitution.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/hertz_impacts.hpp"
 #include "verification/friction/particle_decks.hpp"

@@ -2,6 +2,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
+#include "support/restitution.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/pair_impacts.hpp"
 #include "verification/friction/particle_decks.hpp"
