@@ -1,11 +1,13 @@
 #include "coupling/coupled_step.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "base/error.hpp"
+#include "deck/choices.hpp"
 #include "model/checks/limits.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/touching.hpp"
@@ -179,7 +181,8 @@ std::vector<EscapedParticle> CoupledStep::check_inside() const {
         l.position.x, l.position.y, l.position.z,
         l.lost ? "beyond a side that is a wall: its overlap with the wall exceeded its radius; increase the "
                  "stiffness of the contact or shorten the step"
-               : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
+               : fmt::format("and {} (allowed: {})", setting("space.leaving", policy),
+                             fmt::join(words_of<OutsidePolicy>(), ", "))));
   }
   return escaped_particles;
 }

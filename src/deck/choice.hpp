@@ -56,6 +56,11 @@ std::string word_of(Value value) {
     if (word.value == value) return std::string(word.text);
   throw std::logic_error("deck: no word for value " + std::to_string(static_cast<int>(value)));
 }
+// A choice as a deck has it, for messages: key = "word".
+template <class Value>
+std::string setting(const std::string& key, Value value) {
+  return key + " = \"" + word_of(value) + '"';
+}
 
 // Throws std::logic_error where no value has this word.
 template <class Value>

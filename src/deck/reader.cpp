@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/input_file.hpp"
 #include "base/printable.hpp"
+#include "deck/choices.hpp"
 #include "deck/source_text.hpp"
 #include "deck/suggestion.hpp"
 
@@ -238,7 +239,7 @@ DeckTable Reader::read_quantity(const toml::node& node, const Context& context) 
     return read_table(*node.as_table(), *key.table, context.path, context.location, key.unit);
   number(node, node, context);
   toml::table constant;
-  constant.insert("kind", "constant");
+  constant.insert("kind", word_of(TimeFunctionKind::constant));
   constant.insert("value", node);
   return read_table(constant, *key.table, context.path, context.location, key.unit);
 }

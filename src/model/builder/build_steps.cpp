@@ -61,11 +61,12 @@ std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Mod
   for (const char* key : {"tolerance", "max_step"})
     if (time.gives(key)) return with(ParticleIntegrator::hht, fmt::format("time.{}", key));
   if (time.gives("control") && model.time.control == StepControl::adaptive)
-    return with(ParticleIntegrator::hht, "time.control = \"adaptive\"");
+    return with(ParticleIntegrator::hht, setting("time.control", model.time.control));
   if (method.gives("contact_events")) return with(ParticleIntegrator::hht, "integrator.contact_events");
   if (model.integrator.substeps > 1) return with(ParticleIntegrator::velocity_verlet, "integrator.substeps");
   if (model.integrator.precision == Precision::mixed)
-    return with(ParticleIntegrator::velocity_verlet, "integrator.precision = \"mixed\"");
+    return with(ParticleIntegrator::velocity_verlet,
+                setting("integrator.precision", model.integrator.precision));
   return std::nullopt;
 }
 
@@ -140,14 +141,16 @@ void check_integrator(const DeckTable& deck, const Model& model) {
   if (integrator.particles == ParticleIntegrator::velocity_verlet) {
     if (model.time.control == StepControl::adaptive)
       method.fail("particles",
-                  "time.control = \"adaptive\" needs \"hht\": the explicit method has no error estimate");
+                  fmt::format("{} needs \"{}\": the explicit method has no error estimate",
+                              setting("time.control", model.time.control), word_of(ParticleIntegrator::hht)));
     return;
   }
-  if (integrator.substeps > 1)
-    method.fail("substeps", "must be 1, unless integrator.particles = \"velocity-verlet\"");
+  const std::string explicit_steps = setting("integrator.particles", ParticleIntegrator::velocity_verlet);
+  if (integrator.substeps > 1) method.fail("substeps", "must be 1, unless " + explicit_steps);
   if (integrator.precision == Precision::mixed)
-    method.fail("precision", "must be \"double\", unless integrator.particles = \"velocity-verlet\"");
-  const char* const needs = "needs integrator.particles = \"velocity-verlet\"";
+    method.fail("precision",
+                fmt::format("must be \"{}\", unless {}", word_of(Precision::full), explicit_steps));
+  const std::string needs = "needs " + explicit_steps;
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
     for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
       if (pair.has(key) && pair.real(key) > 0)
@@ -178,8 +181,8 @@ Real step_of(const DeckTable& table, const Model& model, const Share& share,
   if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
     return chosen_step(model, share, chosen);
   if (model.time.control == StepControl::fixed)
-    table.fail("step",
-               "missing; with control = \"fixed\" and implicit steps it must be a number above 0 [s]");
+    table.fail("step", fmt::format("missing; with {} and implicit steps it must be a number above 0 [s]",
+                                   setting("control", model.time.control)));
   return std::min(first_step(model), model.time.max_step);
 }
 

@@ -63,7 +63,7 @@ std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
                            model.contact.material_names[static_cast<std::size_t>(b)]);
     }
   if (model.integrator.particles == ParticleIntegrator::velocity_verlet && !meets && only.empty())
-    only = "integrator.particles = \"velocity-verlet\"";
+    only = setting("integrator.particles", model.integrator.particles);
   return only.empty() ? "" : "the deck has no particles, and yet " + only + "; was the file cut off?";
 }
 

@@ -208,7 +208,7 @@ std::string time_lines(const Model& model, const std::vector<StepTrial>& trials,
   const std::string particles =
       integrator.particles == ParticleIntegrator::hht
           ? "HHT, too"
-          : "velocity-verlet, " + counted(integrator.substeps, "substep", "substeps");
+          : word_of(integrator.particles) + ", " + counted(integrator.substeps, "substep", "substeps");
   return lines +
          fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n", integrator.hht_alpha,
                      particles) +

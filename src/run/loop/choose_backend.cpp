@@ -30,10 +30,11 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
                    bytes_of_shapes(size) + bytes_of_meshes(model, ranks.is_root());
   check_memory(size, all - bytes_of_model(model), "running it on the CPU", RankShare(ranks));
   if (model.integrator.precision == Precision::mixed)
-    log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
+    log.info(setting("integrator.precision", model.integrator.precision) +
+             " is for a GPU: the CPU computes in " + word_of(Precision::full));
   if (model.parallel.transport != Transport::automatic)
-    log.info(fmt::format("parallel.transport = \"{}\" is for GPUs: ranks on the CPU exchange halos by MPI",
-                         word_of(model.parallel.transport)));
+    log.info(setting("parallel.transport", model.parallel.transport) +
+             " is for GPUs: ranks on the CPU exchange halos by MPI");
   return make_cpu_backend(model, ranks);
 }
 
@@ -58,9 +59,9 @@ std::unique_ptr<Backend> choose_backend(const Model& model, const Ranks& ranks, 
     if (choice == BackendChoice::cuda)
       throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
     if (model.parallel.transport != Transport::automatic && !ranks.alone())
-      throw InputError(
-          fmt::format("parallel.transport = \"{}\" is for GPUs: {}; allowed here: \"auto\", or --backend cpu",
-                      word_of(model.parallel.transport), error.what()));
+      throw InputError(fmt::format("{} is for GPUs: {}; allowed here: \"{}\", or --backend {}",
+                                   setting("parallel.transport", model.parallel.transport), error.what(),
+                                   word_of(Transport::automatic), word_of(BackendChoice::cpu)));
     return make_cpu(model, ranks, error.what(), log);
   }
 }

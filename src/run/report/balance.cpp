@@ -90,7 +90,7 @@ std::string remedy(const Model& model, std::optional<Real> impacts) {
                : "shorten time.step";
   return model.time.control == StepControl::adaptive
              ? "lower time.tolerance, or bring integrator.hht_alpha nearer to 0"
-             : "shorten time.step, or set time.control = \"adaptive\"";
+             : "shorten time.step, or set " + setting("time.control", StepControl::adaptive);
 }
 
 }  // namespace
