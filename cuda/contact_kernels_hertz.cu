@@ -1,4 +1,5 @@
 #include "contact_kernels_impl.cuh"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

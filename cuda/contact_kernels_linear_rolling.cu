@@ -1,4 +1,7 @@
 #include "contact_kernels_impl.cuh"
+#include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 

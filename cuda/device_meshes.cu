@@ -5,6 +5,7 @@
 #include "device_meshes.cuh"
 #include "for_each.cuh"
 #include "lane_team.cuh"
+#include "mesh/surface_mesh.hpp"
 #include "staging.cuh"
 
 namespace scree {

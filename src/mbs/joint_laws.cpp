@@ -9,6 +9,7 @@
 
 #include "mbs/integral.hpp"
 #include "model/derived/scalar_function.hpp"
+#include "physics/normal_laws.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {

@@ -6,9 +6,9 @@
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
 #include "physics/contact_motion.hpp"
-#include "physics/normal_laws.hpp"
-#include "physics/rolling_laws.hpp"
-#include "physics/tangential_laws.hpp"
+#include "physics/contact_parts.hpp"
+#include "physics/normal_contact.hpp"
+#include "physics/spring_slider.hpp"
 #include "physics/tangential_losses.hpp"
 
 namespace scree {

@@ -6,45 +6,20 @@
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/contact_parameters.hpp"
 
 namespace scree {
 
-// Parameters of the normal law of a pair of materials in the deck: F = K d^n + C d_dot (Jung, Jun, Sohn,
-// 2013, Eqs. 18-24), or Hertz's law with the modulus E* in place of K and n. A damping ratio in place of C
-// gives the damper of physics/restitution.hpp, whose restitution depends on neither speed nor mass.
-struct NormalLawParameters {
-  Real normal_stiffness = 0;  // K [N/m^n]
-  Real normal_damping = 0;    // C [N s/m]
-  Real exponent = 1;          // n [-]
-  bool tension = false;  // true: Eq. 18 as printed, F may be tensile before separation; false: F is cut at
-                         // zero
-  Real effective_modulus = 0;  // E* [Pa]
-  Real damping_ratio = 0;      // zeta [-]
-  // Adhesion and cohesion (physics/cohesion.hpp).
-  Real adhesion_work = 0;  // w [J/m^2]
-  bool jkr = false;        // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
-  Real attraction = 0;     // constant cohesive force [N]
-  Real range = 0;          // distance beyond touch over which it decreases to zero [m]
-
-  // Whether particles of these materials interact.
-  bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
-  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0; }
-  NormalLawParameters without_cohesion() const {
-    return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
-  }
-  // Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
-  bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
-  NormalLawParameters of_size(const PairSize& size) const;
-};
-
 // Every law below has
-//   Law(const NormalLawParameters&)   its parameters from those of the deck; accepts() says whether it
-//   applies tension                   as in NormalLawParameters as<T>()                   the law with
-//   numbers of type T of_pair(size)             the law for partners of these sizes, with functions of the
-//   overlap d > 0: elastic(d), slope(d)      elastic force [N] and its derivative [N/m] energy(d) elastic
-//   energy [J] damping(d)                damping coefficient [N s/m] mean_damping(d0, d1)      mean of
-//   damping(d) between two overlaps, which may be 0 cut(d0, damper_force)     overlap at which the force of a
-//   contact that separates at constant rate from d0
+//   Law(const NormalLawParameters&)   its parameters from those of the deck; accepts() says whether it applies
+//   tension                   as in NormalLawParameters
+//   as<T>()                   the law with numbers of type T
+//   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:
+//   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
+//   energy(d)                 elastic energy [J]
+//   damping(d)                damping coefficient [N s/m]
+//   mean_damping(d0, d1)      mean of damping(d) between two overlaps, which may be 0
+//   cut(d0, damper_force)     overlap at which the force of a contact that separates at constant rate from d0
 //                             is cut [m]: the elastic force has decreased to the damper's, which is
 //                             `damper_force` [N] at d0
 
@@ -228,13 +203,14 @@ struct HertzLawOf {
 };
 using HertzLaw = HertzLawOf<Real>;
 
-inline NormalLawParameters NormalLawParameters::of_size(const PairSize& size) const {
-  if (!depends_on_size()) return *this;
+// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
+inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
+  if (!law.depends_on_size()) return law;
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
-  if (effective_modulus == 0)
-    return {normal_stiffness, PowerLaw(*this).of_pair(size).damping(overlap), exponent, tension};
-  const auto pair = HertzLaw(*this).of_pair(size);
-  return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), tension};
+  if (law.effective_modulus == 0)
+    return {law.normal_stiffness, PowerLaw(law).of_pair(size).damping(overlap), law.exponent, law.tension};
+  const auto pair = HertzLaw(law).of_pair(size);
+  return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), law.tension};
 }
 
 }  // namespace scree

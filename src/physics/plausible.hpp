@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/types.hpp"
-#include "physics/normal_laws.hpp"
+#include "physics/contact_parameters.hpp"
 
 namespace scree {
 

@@ -5,39 +5,17 @@
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/contact_parameters.hpp"
+#include "physics/contact_parts.hpp"
 #include "physics/spring_slider.hpp"
 #include "physics/tangential_laws.hpp"
 
 namespace scree {
 
-// Parameters of the rolling and twisting resistance of a pair of materials in the deck.
-struct RollingParameters {
-  Real friction = 0;           // mu_r of `ElasticPlasticRolling` [-]
-  Real stiffness_factor = 0;   // of its spring [-]; 0: the stiffness is given
-  Real stiffness = 0;          // k_r [N m]
-  Real damping_ratio = 0;      // zeta of its dashpot [-]
-  Real damping = 0;            // C of `ViscousRolling` [N m s]
-  Real twisting_friction = 0;  // mu of `MarshallTwisting` [-]
-};
-
-// Input of a rolling law: a contact over a step.
-struct RollingContact {
-  const PairSize& size;
-  const ContactMotion& motion;
-  const NormalContact& normal;
-  const SpringSlider& friction;  // of the tangential law; all zero without friction
-};
-
 // Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old), the step of
 // the tangential moment from the previous one, rotated with the contact; and rolling_at(contact, spring,
 // rate), the moment at an instant. Every twisting law has twisting(contact, old) and twisting_at() for the
 // normal moment.
-
-// No rolling resistance.
-struct FreeRolling {
-  static constexpr bool acts = false;
-  static constexpr int kHistory = 0;
-};
 
 // Effective inertia of rolling about the contact: 1/I_r = sum 1/(I + m R^2) [kg m^2].
 SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
@@ -139,11 +117,6 @@ struct EitherRolling {
   SCREE_HD Vec3 rolling_at(const RollingContact& c, Vec3 spring_moment, Vec3 rate) const {
     return spring.rolling_at(c, spring_moment, rate) + viscous.rolling_at(c, spring_moment, rate);
   }
-};
-
-// Step of the rolling and twisting moments; losses: of rolling.
-struct RollingStep : SpringStep {
-  SpringLosses twisting;
 };
 
 // A rolling and a twisting law with one moment vector in the history.

@@ -32,7 +32,7 @@ SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
 // radius.
 inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
-  const NormalLawParameters law = of.of_size(size);
+  const NormalLawParameters law = law_of_size(of, size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
   if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);

@@ -7,18 +7,12 @@
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/contact_parameters.hpp"
+#include "physics/contact_parts.hpp"
 #include "physics/normal_contact.hpp"
 #include "physics/spring_slider.hpp"
 
 namespace scree {
-
-// Friction parameters of a pair of materials in the deck.
-struct Friction {
-  Real friction = 0;       // mu [-]
-  Real stiffness = 0;      // k_t of `LinearSlider` [N/m]
-  Real shear_modulus = 0;  // G* of `MindlinSlider` [Pa]
-  Real damping_ratio = 0;  // zeta of the tangential dashpot [-]
-};
 
 // Every law below has
 //   acts, kHistory                 whether it is to be evaluated; how many numbers of history it has
@@ -46,12 +40,6 @@ SCREE_HD Real slip_dashpot(Real damping_ratio, const PairSize& size, const Conta
 SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const ContactMotion& c) {
   return friction * normal.friction_load * reciprocal(c.lever_arm_ratio);
 }
-
-// No tangential force.
-struct Frictionless {
-  static constexpr bool acts = false;
-  static constexpr int kHistory = 0;
-};
 
 // T' = k_t c while |T| < mu F_n, c the slip rate; dashpot 2 zeta sqrt(m_t k_t). Cundall and Strack,
 // Geotechnique 29 (1979).

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/contact_law.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

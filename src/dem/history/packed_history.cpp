@@ -7,6 +7,7 @@
 #include "dem/history/history_slots.hpp"
 #include "dem/history/shape_contacts.hpp"
 #include "dem/surfaces/surfaces.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace scree {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "base/box.hpp"
 #include "base/mat3.hpp"
+#include "mesh/surface_mesh.hpp"
 
 namespace scree {
 namespace {

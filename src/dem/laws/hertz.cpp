@@ -1,4 +1,5 @@
 #include "dem/laws/contact_kernels_impl.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

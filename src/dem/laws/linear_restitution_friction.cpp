@@ -1,4 +1,6 @@
 #include "dem/laws/contact_kernels_impl.hpp"
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/surface_mesh.hpp"
+
 namespace scree {
 
 bool has_open_surfaces(const Model& model) {

@@ -8,6 +8,7 @@
 #include "base/spatial_velocity.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "mesh/mesh_view.hpp"
 #include "model/data/body_exchange.hpp"
 #include "model/data/model.hpp"
 #include "partition/halo_plan.hpp"

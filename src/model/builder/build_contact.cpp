@@ -14,6 +14,7 @@
 #include "model/derived/touching.hpp"
 #include "physics/cohesion.hpp"
 #include "physics/restitution.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 

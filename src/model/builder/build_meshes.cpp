@@ -15,6 +15,7 @@
 #include "mesh/mesh_repair.hpp"
 #include "mesh/refine.hpp"
 #include "mesh/shell_crossings.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "mesh/surface_numbers.hpp"
 #include "mesh/weld.hpp"
 #include "model/builder/build_parts.hpp"

@@ -11,6 +11,7 @@
 #include "mesh/convex_hull.hpp"
 #include "mesh/inside.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/connections.hpp"
 
 namespace scree {

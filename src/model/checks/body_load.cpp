@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/surface_mesh.hpp"
 #include "model/checks/limits.hpp"
 #include "model/derived/connections.hpp"
 #include "physics/step_limits.hpp"
@@ -19,7 +20,7 @@ void add_contact(const Model& model, int particles, int surface, Real radius, Re
   const NormalLawParameters& law = model.contact.law(particles, surface);
   const PairSize size{radius, surface_radius, mass, kInfinity};
   body.stiffness = std::max(body.stiffness, typical_stiffness(law, size));
-  body.damping = std::max(body.damping, law.of_size(size).normal_damping);
+  body.damping = std::max(body.damping, law_of_size(law, size).normal_damping);
   if (!model.rotates()) return;
   const Friction& friction = model.contact.friction_of(particles, surface);
   const Real slip_stiffness = typical_slip_stiffness(friction, size);

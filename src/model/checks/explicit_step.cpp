@@ -13,6 +13,7 @@
 #include "model/checks/impact_trials.hpp"
 #include "model/checks/limits.hpp"
 #include "model/derived/mesh_corners.hpp"
+#include "physics/step_limits.hpp"
 
 namespace scree {
 

@@ -125,7 +125,7 @@ template <class Use>
 auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
   const Partners two = lightest_partners(field.model, field.uses, limit);
   const NormalLawParameters law =
-      field.model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
+      law_of_size(field.model.contact.law(limit.material[0], limit.material[1]), two.size());
   Setup setup{two, trial_speed(field.speeds.of(limit), law, two), 0};
   setup.touch = impact_time(law, two.mass(), setup.speed);
   return field.laws.with(pair_of(field, limit), [&]<class Law>(const Law& one) {

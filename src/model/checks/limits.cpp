@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/hull_corners.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/connections.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/touching.hpp"
@@ -198,7 +200,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                         &second = uses[static_cast<std::size_t>(b)];
       const PairSize size = smallest_partners(first, second);
       if (smallest_reduced_mass(size) == kInfinity) continue;  // both have infinite mass
-      const NormalLawParameters sized = law.of_size(size);
+      const NormalLawParameters sized = law_of_size(law, size);
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;
       const Friction friction = model.rotates() ? model.contact.friction_of(a, b) : Friction{};

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "model/data/model.hpp"
-#include "physics/step_limits.hpp"
+#include "physics/contact_geometry.hpp"
+#include "physics/contact_parameters.hpp"
 
 namespace scree {
 
@@ -65,8 +66,8 @@ struct BodyStepLimit {
   Real good_frequency = 0;  // highest frequency; a good step keeps its phase below kGoodBodyPhase [rad/s]
   bool is_exact = true;     // false: estimated, for exponents other than 1
 
-  Real most_step() const { return frequency > 0 ? most_phase / frequency : kInfinity; }                // [s]
-  Real good_step() const { return good_frequency > 0 ? kGoodBodyPhase / good_frequency : kInfinity; }  // [s]
+  Real most_step() const { return frequency > 0 ? most_phase / frequency : kInfinity; }  // [s]
+  Real good_step() const;                                                                // [s]
 };
 BodyStepLimit body_step_limit(const Model& model);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/host_memory.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/data/model.hpp"
 #include "model/derived/shape_positions.hpp"
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mesh/facets.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/checks/limits.hpp"
 #include "model/checks/loose_meshes.hpp"
 #include "model/checks/plausibility.hpp"

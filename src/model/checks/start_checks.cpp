@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/rotation.hpp"
+#include "mesh/hull_corners.hpp"
 #include "model/checks/deck_checks.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"

@@ -58,6 +58,10 @@ MassesOnContact masses_on_contact(const Model& model, const std::vector<Material
 
 }  // namespace
 
+Real BodyStepLimit::good_step() const {
+  return good_frequency > 0 ? kGoodBodyPhase / good_frequency : kInfinity;
+}
+
 // Bodies take the contact force at the end of their step while the particles take substeps: the scheme is
 // staggered, and stable only for steps that are short relative to the oscillation of a body on its contacts.
 // For exponents other than 1 the limit is an estimate.
@@ -80,7 +84,7 @@ BodyStepLimit body_step_limit(const Model& model) {
       limit.good_frequency = std::max(limit.good_frequency, frequency);
       if (frequency / allowed > limit.frequency / limit.most_phase)
         limit.frequency = frequency, limit.most_phase = allowed,
-        limit.is_exact = law.of_size(size).exponent == 1;
+        limit.is_exact = law_of_size(law, size).exponent == 1;
     }
   }
   return limit;

@@ -11,16 +11,15 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
-#include "mesh/hull_corners.hpp"
-#include "mesh/surface_mesh.hpp"
 #include "model/data/bodies.hpp"
 #include "model/data/joint_forces.hpp"
 #include "model/data/particles.hpp"
-#include "physics/normal_laws.hpp"
-#include "physics/rolling_laws.hpp"
-#include "physics/tangential_laws.hpp"
+#include "physics/contact_parameters.hpp"
 
 namespace scree {
+
+struct HullCorners;  // mesh/hull_corners.hpp
+struct SurfaceMesh;  // mesh/surface_mesh.hpp
 
 enum Side { kXMin, kXMax, kYMin, kYMax, kZMin, kZMax, kSides };
 inline constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min",

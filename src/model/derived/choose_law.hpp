@@ -10,6 +10,9 @@
 #include "model/data/model.hpp"
 #include "physics/cohesion.hpp"
 #include "physics/contact_law.hpp"
+#include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 

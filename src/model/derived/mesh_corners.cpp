@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "base/mat3.hpp"
+#include "mesh/hull_corners.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/connections.hpp"
 #include "physics/step_limits.hpp"
 
@@ -177,7 +179,7 @@ CornerOscillation fastest_on_corners(const Model& model, bool held) {
           frequency = std::max(
               frequency, contact_frequency(typical_slip_stiffness(friction, size), 1 / masses.frictional));
         }
-        if (frequency > fastest.frequency) fastest = {frequency, law.of_size(size).exponent == 1};
+        if (frequency > fastest.frequency) fastest = {frequency, law_of_size(law, size).exponent == 1};
       }
     }
   return fastest;

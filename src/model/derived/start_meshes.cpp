@@ -6,6 +6,7 @@
 #include "base/mat3.hpp"
 #include "mesh/inside.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/connections.hpp"
 
 namespace scree {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/rotation.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/joint_coordinates.hpp"
 #include "model/derived/scalar_function.hpp"
 #include "physics/spatial_rotation.hpp"

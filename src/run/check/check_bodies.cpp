@@ -7,6 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/mat3.hpp"
+#include "mesh/hull_corners.hpp"
 #include "model/checks/memory.hpp"
 #include "model/data/body_layout.hpp"
 #include "model/derived/connections.hpp"

@@ -9,6 +9,7 @@
 
 #include "mesh/mesh_mass.hpp"
 #include "mesh/mesh_shells.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/checks/memory.hpp"
 #include "model/checks/mesh_plausibility.hpp"
 

@@ -5,6 +5,7 @@
 #include "base/index.hpp"
 #include "base/mat3.hpp"
 #include "dem/reports/triangle_works.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {

@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "coupling/wall_motion.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/derived/space_box.hpp"
 #include "model/derived/start_meshes.hpp"
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/normal_laws.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

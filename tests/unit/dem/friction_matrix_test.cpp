@@ -4,6 +4,8 @@
 
 #include "dem/implicit/friction_items.hpp"
 #include "model/derived/random.hpp"
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "mesh/surface_mesh.hpp"
 #include "model/checks/mesh_plausibility.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

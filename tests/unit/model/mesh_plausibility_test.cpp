@@ -9,6 +9,7 @@
 #include <random>
 
 #include "mesh/mesh_tree.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

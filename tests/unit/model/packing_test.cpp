@@ -1,5 +1,6 @@
 // The probability of a free random position, by which random groups are checked, against positions tried.
 #include "model/derived/generators.hpp"
+#include "physics/normal_laws.hpp"
 #include "physics/plausible.hpp"
 #include "physics/random_packing.hpp"
 #include "support/catch.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/contact_losses.hpp"
+#include "physics/normal_laws.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "physics/normal_laws.hpp"
 #include "physics/particle_mass.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

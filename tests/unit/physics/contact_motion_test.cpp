@@ -1,7 +1,10 @@
 // Contact kinematics and the transport of histories: symmetry, lengths, rigid rotations, momentum.
 #include "physics/contact_motion.hpp"
 
+#include "physics/normal_laws.hpp"
 #include "physics/orientation.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "random_contact.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

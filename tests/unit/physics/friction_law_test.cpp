@@ -3,6 +3,8 @@
 
 #include "physics/cohesion.hpp"
 #include "physics/contact_law.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "random_contact.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

@@ -155,7 +155,7 @@ TEST_CASE("which laws take which parameters, and what estimates see of them") {
   CHECK((HertzLaw::accepts(modulus) && !LinearLaw::accepts(modulus) && !PowerLaw::accepts(modulus)));
   CHECK((HertzLaw::accepts(none) && LinearLaw::accepts(none)));
   CHECK((modulus.acts() && linear.acts() && !none.acts()));
-  const NormalLawParameters sized = modulus.of_size(kSize);
+  const NormalLawParameters sized = law_of_size(modulus, kSize);
   CHECK(near(sized.normal_stiffness, kStiffness, {.relative = kRoundOff}));
   CHECK((sized.exponent == 1.5 && sized.tension));
   CHECK(near(sized.normal_damping, damping(0.2) * std::pow(1e-4, 0.25), {.relative = kRoundOff}));

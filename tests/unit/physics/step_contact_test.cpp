@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "physics/normal_laws.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 

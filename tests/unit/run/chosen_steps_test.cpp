@@ -8,6 +8,7 @@
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_trials.hpp"
 #include "model/checks/limits.hpp"
+#include "physics/step_limits.hpp"
 #include "run/report/rebound_check.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

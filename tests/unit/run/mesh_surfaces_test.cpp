@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesh/surface_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

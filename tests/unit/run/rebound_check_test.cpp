@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "physics/friction_trial.hpp"
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

@@ -1,4 +1,6 @@
 // Chung and Ooi, tests 7 and 8: impacts of pairs of spinning spheres.
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

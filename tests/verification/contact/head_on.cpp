@@ -1,5 +1,7 @@
 // Head-on impacts: restitution, largest overlap and force, duration, of every law whose restitution is
 // independent of speed.
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "verification/contact/errors.hpp"

@@ -1,6 +1,8 @@
 // Impacts of a sphere on a rigid plane under the laws of Hertz and Mindlin: rows of the tables.
 #pragma once
 
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "verification/contact/plane_impacts.hpp"
 
 namespace scree {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

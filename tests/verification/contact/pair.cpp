@@ -1,4 +1,7 @@
 // Oblique impact of two free spinning spheres of unequal sizes.
+#include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

@@ -1,6 +1,9 @@
 // Rolling and twisting resistance of a sphere on a plane.
 #include <algorithm>
 
+#include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
