@@ -65,7 +65,7 @@ void CudaBodies::take_loads(Real h) {
 void CudaBodies::accumulate_load_works(Real h) {
   if (!items_.surfaces.works().exist()) return;
   items_.surfaces.accumulate_load_works({stream_}, *items_.kernels, h);
-  booked_.record(stream_), booked_.hold(items_.stream);
+  works_accumulated_.record(stream_), works_accumulated_.hold(items_.stream);
 }
 
 void CudaBodies::find_loads_concurrently(const SurfaceQuery& query) {

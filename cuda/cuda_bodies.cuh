@@ -50,7 +50,7 @@ class CudaBodies {
   CudaItems& items_;
   HostSurfaces side_;
   Stream stream_{Priority::urgent};
-  Event loads_found_, booked_;
+  Event loads_found_, works_accumulated_;
   DeviceArray<Vec3> step_, step_rotation_;
 };
 

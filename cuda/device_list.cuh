@@ -168,7 +168,7 @@ struct ListInput {
 
 class DeviceList {
  public:
-  // remembers: whether contacts have a history. slots: initial capacity per particle.
+  // has_history: whether contacts have a history. slots: initial capacity per particle.
   DeviceList(bool has_history, double slots);
 
   // Fills the list. Waits for the device once, to learn whether the capacity sufficed, and repeats with more

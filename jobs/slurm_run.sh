@@ -118,7 +118,7 @@ run=$!
 wait "$run" || true
 while kill -0 "$run" 2>/dev/null; do wait "$run" || true; done # a signal ends a wait, not the run
 status=0
-wait "$run" || status=$? # of the run: bash remembers it
+wait "$run" || status=$? # status of the run, which bash still has
 if "$warned" && ((status == 128 + $(kill -l USR1))); then
   say "the signal came before the run could hear it; there is no new checkpoint"
   status=$stopped_by_signal

@@ -58,7 +58,7 @@ class PartFinder {
     for (const Index e : topology_.edges_of[t]) {
       const MeshEdge& edge = topology_.edges[e];
       if (!topology_.joins_two(edge)) continue;
-      const Index other = topology_.tangential_part(edge, t);
+      const Index other = topology_.across(edge, t);
       if (part_of_[other] >= 0 || !lies_in(part, other)) continue;
       part_of_[other] = id;
       members.push_back(other);
@@ -84,8 +84,7 @@ class PartFinder {
     for (const Index t : members)
       for (int k = 0; k < 3; ++k) {
         const MeshEdge& edge = topology_.edges[topology_.edges_of[t][k]];
-        if (topology_.joins_two(edge) && part_of_[topology_.tangential_part(edge, t)] == part_of_[t])
-          continue;
+        if (topology_.joins_two(edge) && part_of_[topology_.across(edge, t)] == part_of_[t]) continue;
         const auto& triangle = topology_.mesh.triangles[t];
         area += cross(topology_.mesh.vertices[triangle[k]] - point,
                       topology_.mesh.vertices[triangle[(k + 1) % 3]] - point);

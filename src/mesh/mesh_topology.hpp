@@ -48,7 +48,7 @@ struct MeshTopology {
     return edge.uses == 2 && uses[edge.first_use].reversed != uses[edge.first_use + 1].reversed;
   }
   // The triangle across an edge for which joins_two().
-  Index tangential_part(const MeshEdge& edge, Index triangle) const {
+  Index across(const MeshEdge& edge, Index triangle) const {
     const Index first = uses[edge.first_use].triangle;
     return first != triangle ? first : uses[edge.first_use + 1].triangle;
   }

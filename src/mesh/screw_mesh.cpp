@@ -76,7 +76,7 @@ class Screw {
   }
   // Vertices across the flight at radius(r), 0 <= r < parts_.radial_segments: new ones between those of the
   // faces.
-  Ring tangential_part(const Layer& layer, Index r) {
+  Ring across(const Layer& layer, Index r) {
     const Index last = parts_.radial_segments - 1;
     Ring ring{r == 0 ? layer.core.back() : layer.first_face[r - 1]};
     for (Index k = 1; k < parts_.sector_segments; ++k) {
@@ -89,10 +89,10 @@ class Screw {
   }
   // The flight's cut and the core's end, seen from +z (up) or -z.
   void end(const Layer& layer, bool up) {
-    const Ring foot = tangential_part(layer, 0);
+    const Ring foot = across(layer, 0);
     Ring low = foot;
     for (Index r = 1; r <= parts_.radial_segments; ++r) {
-      const Ring high = r < parts_.radial_segments ? tangential_part(layer, r) : layer.rim;
+      const Ring high = r < parts_.radial_segments ? across(layer, r) : layer.rim;
       up ? builder_.strip(high, low, false) : builder_.strip(low, high, false);
       low = high;
     }

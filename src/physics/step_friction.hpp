@@ -14,7 +14,7 @@ namespace scree {
 struct FrictionStep {
   ContactStep step;
   ContactMotion motion;   // with the mean spins
-  Real lever_arm_ratio0;  // `ContactMotion::leverage` at the start
+  Real lever_arm_ratio0;  // `ContactMotion::lever_arm_ratio` at the start
   Vec3 slip_rate0,
       slip_rate1;  // tangential velocity of i relative to j at both ends [m/s]; for laws with a dashpot
   PairSize size;
@@ -24,8 +24,8 @@ struct FrictionStep {
                       // normal force
 };
 
-// Friction force T over an implicit step (dem/README.md): -leverage T acts on i, and normal x T times the
-// arms is the torque on both.
+// Friction force T over an implicit step (dem/README.md): -lever_arm_ratio T acts on i, and normal x T times
+// the arms is the torque on both.
 struct StepFriction {
   Vec3 start, step,
       end;     // force at the start, force that the step is solved with, force at the end [N]; tangential at

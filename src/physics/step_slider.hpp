@@ -7,8 +7,8 @@
 namespace scree {
 
 // Mean force over a step, and its derivatives with respect to the displacement w at the end of the step and
-// to the limit L: dM = stiffness (dw - (direction . dw) direction) + grip dL direction; direction is zero
-// while the spring sticks. The first part is symmetric and positive; the second comes from a limit that
+// to the limit L: dM = stiffness (dw - (direction . dw) direction) + limit_slope dL direction; direction is
+// zero while the spring sticks. The first part is symmetric and positive; the second comes from a limit that
 // changes with the normal force and makes the Newton matrix unsymmetric. The derivative of scaling the old
 // force to the limit is neglected.
 struct StepSpring {

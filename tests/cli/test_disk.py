@@ -109,9 +109,9 @@ class DiskTest(CommandLineTest):
         self.assertLess(found[1], 40e6)  # six rows of 40,000 columns
 
     def test_contacts_that_are_remembered_make_a_range(self):
-        rubbing = GAS.replace("stiffness = 1e6", "stiffness = 1e6\nfriction = 0.5").replace("hht", "velocity-verlet")
-        rubbing = self.write("friction.toml", rubbing)
-        found, said, report = self.sizes(rubbing, "time.end=0.02", "output.contacts=true")
+        frictional = GAS.replace("stiffness = 1e6", "stiffness = 1e6\nfriction = 0.5").replace("hht", "velocity-verlet")
+        frictional = self.write("friction.toml", frictional)
+        found, said, report = self.sizes(frictional, "time.end=0.02", "output.contacts=true")
         dense = named(report, r"\ncheckpoints .* each; ")
         self.assertTrue(0.8 * said[0] <= found[0] <= 1.2 * dense)
         with_contacts = said[2] + named(report, r"\nsnapshots .*with contacts ")

@@ -52,8 +52,8 @@ class FieldsTest(CommandLineTest):
         warning = self.expect(DONE, "check", self.deck, *fields).stderr
         self.assertIn("output.fields: angular_velocity, orientation will be the same in all snapshots: no particle "
                       "rotates because no pair in contact.pairs has friction", warning)
-        rubs = ("--set", "contact.pairs.0.friction=0.3")
-        self.assertNotIn("output.fields", self.expect(DONE, "check", self.deck, *fields, *rubs).stderr)
+        friction = ("--set", "contact.pairs.0.friction=0.3")
+        self.assertNotIn("output.fields", self.expect(DONE, "check", self.deck, *fields, *friction).stderr)
 
     def test_a_restart_with_other_fields_wants_another_folder(self):
         half = ("--set", "time.end=0.2")

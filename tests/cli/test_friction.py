@@ -7,7 +7,7 @@ import unittest
 from test_cli import BAD_INPUT, DECK, DONE, EXPLICIT, CommandLineTest
 
 # Spheres that fall onto a rough floor and onto each other.
-RUBBING = """gravity = [2.0, 0.0, -9.8]
+FRICTIONAL = """gravity = [2.0, 0.0, -9.8]
 [space]
 dimension = 3
 min = [0.0, 0.0, 0.0]
@@ -35,7 +35,7 @@ angular_velocity = [0.0, 5.0, 1.0]
 [output]
 history_csv = true
 """
-SMOOTH = re.sub(r"(?m)^(friction|angular_velocity) = .*\n", "", RUBBING)
+SMOOTH = re.sub(r"(?m)^(friction|angular_velocity) = .*\n", "", FRICTIONAL)
 HERTZ = """stiffness = 1e5
 damping = 10.0
 """, """restitution = 0.8
@@ -57,7 +57,7 @@ shapes = [{ radius = 0.05 }]
 class FrictionTest(CommandLineTest):
     def setUp(self):
         super().setUp()
-        self.deck = self.write("deck.toml", RUBBING)
+        self.deck = self.write("deck.toml", FRICTIONAL)
 
     def refused(self, text):
         """The message, which names the file, and the line of the deck that it names."""
@@ -67,34 +67,35 @@ class FrictionTest(CommandLineTest):
 
     def test_refusals_name_file_key_and_remedy(self):
         friction = "friction = 0.5\n"
-        hertz = RUBBING.replace(*HERTZ) + GLASS
+        hertz = FRICTIONAL.replace(*HERTZ) + GLASS
         pairs = "[[contact.pairs]]"
         # The deck; the line that is named; what the message says.
         cases = (
-            (RUBBING.replace(friction, "friction = -0.5\n"), friction, "contact.pairs.0.friction = -0.5", "at least 0"),
-            (RUBBING.replace(friction, "tangential_stiffness = 2e4\n"), "tangential_stiffness",
+            (FRICTIONAL.replace(friction, "friction = -0.5\n"), friction, "contact.pairs.0.friction = -0.5",
+             "at least 0"),
+            (FRICTIONAL.replace(friction, "tangential_stiffness = 2e4\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness", "needs friction"),
-            (RUBBING.replace(friction, "tangential_damping_ratio = 0.1\n"), "tangential_damping_ratio",
+            (FRICTIONAL.replace(friction, "tangential_damping_ratio = 0.1\n"), "tangential_damping_ratio",
              "contact.pairs.0.tangential_damping_ratio", "needs friction"),
-            (RUBBING.replace(friction, friction + "tangential_stiffness = 0.0\n"), "tangential_stiffness",
+            (FRICTIONAL.replace(friction, friction + "tangential_stiffness = 0.0\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness = 0", "above 0"),
-            (RUBBING.replace(friction, friction + "tangential_damping_ratio = -0.1\n"), "tangential_damping_ratio",
+            (FRICTIONAL.replace(friction, friction + "tangential_damping_ratio = -0.1\n"), "tangential_damping_ratio",
              "contact.pairs.0.tangential_damping_ratio", "at least 0"),
-            (RUBBING.replace(friction, friction + "exponent = 1.5\n"), pairs,
+            (FRICTIONAL.replace(friction, friction + "exponent = 1.5\n"), pairs,
              "contact.pairs.0.tangential_stiffness: missing", "only where exponent = 1"),
             (hertz.replace(friction, friction + "tangential_stiffness = 2e4\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
-            (RUBBING.replace('"velocity-verlet"', '"hht"').replace(friction, friction + "rolling_friction = 0.1\n"),
+            (FRICTIONAL.replace('"velocity-verlet"', '"hht"').replace(friction, friction + "rolling_friction = 0.1\n"),
              "rolling_friction", "contact.pairs.0.rolling_friction", "implicit steps support only friction"),
-            (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 1e-4",
+            (FRICTIONAL + BALL.replace("0.005", "1e-7"), "step", "time.step = 1e-4",
              "a body on a contact oscillates with"),
-            (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",
+            (FRICTIONAL.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",
              "no particle rotates: no pair in contact.pairs has friction"),
-            (RUBBING.replace("[0.0, 5.0, 1.0]", "[5.0]"), "angular_velocity", "particles.grains.angular_velocity",
+            (FRICTIONAL.replace("[0.0, 5.0, 1.0]", "[5.0]"), "angular_velocity", "particles.grains.angular_velocity",
              "must have 3 entries"))
         for text, line, *parts in cases:
             with self.subTest(parts=parts):
-                self.assertNotEqual(text, RUBBING)
+                self.assertNotEqual(text, FRICTIONAL)
                 message, named = self.refused(text)
                 self.assertIn(line.split("=")[0].strip(), named)
                 for part in parts:
@@ -109,31 +110,31 @@ class FrictionTest(CommandLineTest):
             self.assertEqual("must have 1 entry, about z" in message, code == BAD_INPUT)
 
     def test_decks_with_friction_go_with_hertz_and_bodies(self):
-        self.expect(DONE, "check", self.write("hertz.toml", RUBBING.replace(*HERTZ) + GLASS))
-        self.expect(DONE, "check", self.write("body.toml", RUBBING + BALL.replace("shapes", "# shapes")))
-        self.expect(DONE, "run", self.write("ball.toml", RUBBING + BALL), "--output", self.folder / "ball")
+        self.expect(DONE, "check", self.write("hertz.toml", FRICTIONAL.replace(*HERTZ) + GLASS))
+        self.expect(DONE, "check", self.write("body.toml", FRICTIONAL + BALL.replace("shapes", "# shapes")))
+        self.expect(DONE, "run", self.write("ball.toml", FRICTIONAL + BALL), "--output", self.folder / "ball")
         self.expect(DONE, "check", self.deck, "--set", "contact.pairs.0.friction=0.0")
 
     def test_check_counts_rotation_and_what_contacts_remember(self):
-        rolling = RUBBING.replace("friction = 0.5\n", "friction = 0.5\nrolling_friction = 0.2\n")
-        for text, memory in ((SMOOTH, 960), (RUBBING, 2032), (rolling, 2936)):
+        rolling = FRICTIONAL.replace("friction = 0.5\n", "friction = 0.5\nrolling_friction = 0.2\n")
+        for text, memory in ((SMOOTH, 960), (FRICTIONAL, 2032), (rolling, 2936)):
             with self.subTest(memory=memory):
                 report = self.expect(DONE, "check", self.write("counted.toml", text)).stdout
-                remembers = r"; \S+ kB if particles are densely packed" if text != SMOOTH else ""
-                self.assertRegex(report, rf"\ncheckpoints    one at the end, about \S+ kB each{remembers}\n")
+                history = r"; \S+ kB if particles are densely packed" if text != SMOOTH else ""
+                self.assertRegex(report, rf"\ncheckpoints    one at the end, about \S+ kB each{history}\n")
                 self.assertIn(f"(estimate: {memory} B per particle", report)
 
     def test_the_history_has_columns_of_rotation_where_particles_rotate(self):
-        self.run_deck(DONE, "rubbing")
+        self.run_deck(DONE, "frictional")
         self.deck = self.write("deck.toml", SMOOTH)
         self.run_deck(DONE, "smooth")
-        rubbing, smooth = (self.history(name)[0].split(",") for name in ("rubbing", "smooth"))
-        self.assertEqual([name for name in rubbing if name not in smooth],
+        frictional, smooth = (self.history(name)[0].split(",") for name in ("frictional", "smooth"))
+        self.assertEqual([name for name in frictional if name not in smooth],
                          ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]",
                           "rotation/loss_friction [J]"])
-        self.assertEqual([name for name in smooth if name not in rubbing], [])
+        self.assertEqual([name for name in smooth if name not in frictional], [])
 
-    def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):
+    def test_check_reports_friction_and_its_effect_on_the_step(self):
         def limit(*words):
             text = self.expect(DONE, "check", self.deck, *words).stdout
             self.assertIn("friction 0.5, k_t = ", text)
@@ -163,7 +164,8 @@ class FrictionTest(CommandLineTest):
 
     def test_friction_may_come_and_go_at_a_restart_that_allows_changes(self):
         half = ("--set", "time.end=0.1")
-        for first, second in ((RUBBING, SMOOTH), (SMOOTH, RUBBING), (RUBBING, RUBBING.replace("0.5", "0.1"))):
+        less = FRICTIONAL.replace("0.5", "0.1")
+        for first, second in ((FRICTIONAL, SMOOTH), (SMOOTH, FRICTIONAL), (FRICTIONAL, less)):
             with self.subTest(second=second):
                 self.deck = self.write("deck.toml", first)
                 self.run_deck(DONE, "first", *half)

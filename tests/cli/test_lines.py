@@ -72,7 +72,7 @@ class LinesTest(CommandLineTest):
             apart += np.count_nonzero((lines["overlap"][:] < 0) & (lines["normal_force"][:] < 0))
         self.assertGreater(touched, 5)
         self.assertEqual(kinds, {0, 1, 2})
-        self.assertGreater(apart, 0)  # held by their necks
+        self.assertGreater(apart, 0)  # held by adhesion
 
     def test_forces_of_contacts_add_up_to_those_of_particles(self):
         deck = RANKS / "frictional_bodies.toml"

@@ -120,11 +120,11 @@ class ChangesTest(CommandLineTest):
                 self.expect(DONE, *words, self.folder / "other", "--restart", checkpoint, "--allow-changes", "--set",
                             "meshes.funnel.segments=12", "--set", "time.end=0.22")
 
-    def test_a_grain_past_a_sheet_keeps_its_side_where_the_law_remembers_something_else(self):
+    def test_a_particle_that_penetrated_an_open_surface_keeps_its_side_where_the_law_has_another_history(self):
         deck = self.write("sheet.toml", SHEET)
 
         def height(output, *words):
-            """Of the grain at the end, over the sheet."""
+            """Height of the particle above the open surface at the end."""
             self.expect(DONE, "run", deck, "--overwrite", "--output", self.folder / output, *words)
             head, *_, last = self.history(output)
             return float(last.split(",")[head.split(",").index("particles/0/z [m]")])
@@ -138,7 +138,7 @@ class ChangesTest(CommandLineTest):
                     restart = ("--restart", self.folder / "out/checkpoint_end.h5", "--allow-changes")
                     self.assertGreater(height("other", *words, *after, "--set", "time.end=0.2", *restart), 0.05)
 
-    def test_a_shape_past_a_sheet_keeps_its_side_where_particles_attract_each_other(self):
+    def test_a_shape_that_penetrated_an_open_surface_keeps_its_side_where_particles_attract_each_other(self):
         ball = ('[[bodies]]\nname = "ball"\nkind = "spatial"\nposition = [0, 0, 0.06]\nvelocity = [0, 0, -2]\n'
                 'mass = 0.01\ninertia_tensor = [1e-5, 1e-5, 1e-5, 0, 0, 0]\nshapes = [{ radius = 0.05 }]\n')
         deck = self.write("ball.toml", SHEET.replace("[[0, 0, 0.06]]", "[[0.8, 0.8, 0.8]]").replace(

@@ -24,8 +24,8 @@ def main():
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + mesh_bed.PLANE)
         milliseconds, lists = mesh_bed.milliseconds(record, arguments.steps), record["counts"]["list_builds"]
         case = f"{arguments.backend}, side {arguments.side}, speed {arguments.speed}, skin {skin}"
-        measured.note(f"flying_bed/{case}/step", float(milliseconds), "ms", record=record)
-        measured.note(f"flying_bed/{case}/steps per list", arguments.steps / lists, "", record=record)
+        measured.note(f"agitated_bed/{case}/step", float(milliseconds), "ms", record=record)
+        measured.note(f"agitated_bed/{case}/steps per list", arguments.steps / lists, "", record=record)
         print(f"skin {skin} radii: {milliseconds} ms a step in all but output, {lists} lists, "
               f"state {record['run']['state_hash'][:16]}", flush=True)
 

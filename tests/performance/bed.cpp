@@ -261,7 +261,7 @@ ExitCode run(int count, char** values) {
       ->check(CLI::IsMember({"verlet", "hht"}));
   app.add_option("--particles", options.particles,
                  "sizes, multiples of 10000 (default: 10000 100000 1000000)");
-  app.add_option("--friction", options.friction, "coefficient of friction; 0: nothing rubs or rotates")
+  app.add_option("--friction", options.friction, "coefficient of friction; 0: no friction and no rotation")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--rebuild", options.rebuild, "explicit steps per list rebuild; 0: the backend decides")
       ->check(CLI::NonNegativeNumber);

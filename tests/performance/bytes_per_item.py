@@ -16,8 +16,8 @@ control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 """
-RUBS = "friction = 0.4\n"  # further keys of the pair
-ROLLS = RUBS + "rolling_friction = 0.2\n"
+FRICTION = "friction = 0.4\n"  # further keys of the pair
+ROLLS = FRICTION + "rolling_friction = 0.2\n"
 PARTICLES = """
 [space]
 dimension = 3
@@ -122,13 +122,13 @@ def main():
         print(f"link: {(folder / 'out/links.vtkhdf').stat().st_size / 2 / 9999:.0f} B in a snapshot")
         # The others touch six each, which remember three and six numbers.
         for what, integrator, keys in (("explicit", "velocity-verlet", ""), ("implicit", "hht", ""),
-                                       ("explicit, rubbing", "velocity-verlet", RUBS),
+                                       ("explicit, frictional", "velocity-verlet", FRICTION),
                                        ("explicit, rolling", "velocity-verlet", ROLLS)):
             most = run(scree, folder, keys + PARTICLES, "--set", f"integrator.particles={integrator}")
             print(f"{what}: {(most - empty) / 1e6:.0f} B of memory per particle")
             print_files(folder, "particles.vtkhdf", f"particle, {what}", 1e6)
         contacts = 3 * 99 * 100 * 100
-        for what, keys in (("smooth", ""), ("rubbing", RUBS)):
+        for what, keys in (("smooth", ""), ("frictional", FRICTION)):
             words = ("--set", "integrator.particles=velocity-verlet", "--set", "output.contacts=true")
             without, most = (run(scree, folder, keys + PARTICLES, *few) for few in (words[:2], words))
             size = (folder / "out/contacts.vtkhdf").stat().st_size

@@ -13,8 +13,8 @@ from mesh_bed import measured
 COLUMNS, ROWS = 5, 4
 SIZE = (0.4, 0.02, 0.4)  # of a blade [m]
 MESH = '[[meshes]]\nname = "blade"\nkind = "box"\nsize = {size}\nrefine = {edge}\n'
-FLYING = """[[particles]]
-name = "flying"
+AGITATED = """[[particles]]
+name = "agitated"
 kind = "lattice"
 origin = [0.5, 0.5, {z}]
 spacing = [1.0, 1.0, 1.0]
@@ -51,7 +51,7 @@ def main():
     arguments = parser.parse_args()
     deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps, skin=arguments.skin) + mesh_bed.PLANE
     width, top = mesh_bed.SPACING * arguments.side, mesh_bed.LAYER * (arguments.side - 1) + 0.02
-    for name, extra in (("bed", ""), ("flying", FLYING.format(z=top + 0.3)),
+    for name, extra in (("bed", ""), ("agitated", AGITATED.format(z=top + 0.3)),
                         ("blades", blades(width, top, arguments.edge))):
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + extra)
         size = f"{arguments.backend}, side {arguments.side}, edge {arguments.edge}, skin {arguments.skin}"

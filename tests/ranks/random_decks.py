@@ -45,8 +45,8 @@ class DeckMaker:
         self.axes = 3 if self.spatial else 2
         self.law = self.chance.choice(("linear", "linear", "power", "hertz"))
         self.features.append(self.law)
-        self.rubs = self.choose("friction", 0.7)
-        self.rolls = self.explicit and self.rubs and self.choose("rolling", 0.4)
+        self.has_friction = self.choose("friction", 0.7)
+        self.rolls = self.explicit and self.has_friction and self.choose("rolling", 0.4)
         self.attracts = self.explicit and self.law != "power" and self.choose("attraction", 0.3)
         self.deck = {"title": f"deck {seed}", "gravity": self.gravity(), "space": self.space(), "time": self.time(),
                      "integrator": self.integrator(), "materials": self.materials()}
@@ -119,14 +119,14 @@ class DeckMaker:
                 pair |= {"stiffness": 40 * stiffness, "exponent": 1.5, "damping": self.chance.choice((0.0, 2.0))}
             else:
                 pair |= {"restitution": self.chance.uniform(0.4, 1.0)}
-            rubs = self.rubs and (names != ["slick", "slick"] or self.chance.random() < 0.5)
-            if rubs:
+            has_friction = self.has_friction and (names != ["slick", "slick"] or self.chance.random() < 0.5)
+            if has_friction:
                 pair |= {"friction": self.chance.uniform(0.1, 0.8)}
                 if self.law == "power":
                     pair |= {"tangential_stiffness": 0.8 * stiffness}
                 else:
                     pair |= {"tangential_damping_ratio": self.chance.choice((0.0, 0.2))}
-            if rubs and self.rolls:
+            if has_friction and self.rolls:
                 pair |= {"rolling_friction": self.chance.uniform(0.05, 0.3), "rolling_damping_ratio": 0.2}
             if self.attracts:
                 pair |= self.chance.choice(({}, {"work_of_adhesion": 0.5 if self.law == "hertz" else 0.0,
@@ -146,7 +146,7 @@ class DeckMaker:
                  "density": DENSITY, "material": self.chance.choice(("rough", "slick")),
                  "random_velocity": self.chance.uniform(0.1, 1.5), "seed": self.chance.randrange(1000),
                  "radius": self.chance.choice((RADIUS, {"kind": "uniform", "min": 0.6 * RADIUS, "max": RADIUS}))}
-        if self.rubs and self.spatial and self.chance.random() < 0.5:
+        if self.has_friction and self.spatial and self.chance.random() < 0.5:
             group |= {"angular_velocity": [self.chance.uniform(-30, 30) for _ in range(3)]}
         return group
 

@@ -42,7 +42,7 @@ radius = 0.1
 mass = 1.0
 
 [[particles]]
-name = "flying"
+name = "agitated"
 kind = "lattice"
 origin = [1.0, 1.0, 0.5]
 spacing = [1.0, 1.0, 1.0]
@@ -57,7 +57,7 @@ checkpoint_interval = 1.0
 """
 
 
-# Spheres that rub. Each rank makes some layers of them and is given others, for the space is cut across its length.
+# Spheres with friction. Each rank generates some layers and receives others, because the domain is cut across its length.
 LONG_BED = """[space]
 dimension = 3
 min = [0.0, 0.0, 0.0]

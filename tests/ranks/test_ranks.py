@@ -11,9 +11,9 @@ NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05"
        'output.history_contacts=["net", "net.9"]']
 FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
           '"image", "force", "contacts", "stress", "group"]')
-# Spheres that fall, slide, stick, roll, part and leave; some of them do not rub on each other.
-RUBBING = [HERE / "friction.toml", "parallel.imbalance=0.05"]
-RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
+# Spheres that fall, slide, stick, roll, part and leave; some of them have no friction with each other.
+FRICTION = [HERE / "friction.toml", "parallel.imbalance=0.05"]
+FRICTION_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
 FIXED = ["time.control=fixed"]
 # Motors, gears, a screw, a spring, a stop, friction, a bushing and a loop of hinges, all of them at work.
 ELEMENTS = [HERE / "spatial_elements.toml", "parallel.imbalance=0.0"]
@@ -39,14 +39,14 @@ MAIN_CASES = {
     "dam break, explicit": ([*DAM, *EXPLICIT, "time.end=0.24", "integrator.substeps=3"], (1, 2, 3, 4, 8)),
     "periodic gas, implicit": ([*GAS, *LINES, *IMPLICIT], (1, 2, 3, 4, 8)),
     "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
-    "rubbing": ([*RUBBING, "time.end=0.08"], (1, 2, 3, 4, 8)),
-    "rubbing after Hertz and Mindlin": ([HERE / "friction_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
+    "friction": ([*FRICTION, "time.end=0.08"], (1, 2, 3, 4, 8)),
+    "friction after Hertz and Mindlin": ([HERE / "friction_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (1, 2, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
-    # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
-    "rubbing on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
+    # Bodies among them that turn and go through a side, driven, and some in friction with them.
+    "friction on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (1, 2, 3, 4)),
     "meshes, a light plate under heavy spheres": ([HERE / "loaded_plate.toml", "parallel.imbalance=0.0",
                                                    "time.end=0.08"], (1, 2, 4)),
@@ -55,11 +55,11 @@ MAIN_CASES = {
     "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (1, 2, 3, 4)),
     "meshes at rest and their works": ([*AT_REST, *WORKS], (1, 2, 3, 4)),
     "meshes, soft sheets": ([*SHEETS, "time.end=0.08"], (1, 2, 4)),
-    "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
-    "rubbing after Hertz and Mindlin, implicit": ([HERE / "friction_hertz.toml", *IMPLICIT, *FIXED,
+    "friction, implicit": ([*FRICTION, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
+    "friction after Hertz and Mindlin, implicit": ([HERE / "friction_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
                                                   (1, 2, 3, 4)),
-    "rubbing on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
+    "friction on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
                                      "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
 }
 CASES = {
@@ -75,9 +75,9 @@ CASES = {
                                     "parallel.imbalance=0.0", "time.step=8e-5"], (1, 2, 4)),
     "meshes and their works, implicit": ([*MESHES, *WORKS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                           "time.end=0.08"], (1, 2, 4)),
-    "sheets that rub": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 3)),
-    "sheets that rub, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1", "contact.pairs.0.friction=0.4",
-                                   "time.end=0.08"], (1, 4)),
+    "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 3)),
+    "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
+                                              "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
 }
@@ -160,8 +160,8 @@ class FilesTest(RanksTest):
 
     @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
     def test_every_number_of_ranks_writes_the_same_spins(self):
-        deck, *settings = [*RUBBING, "time.end=0.04", "output.snapshot_interval=0.01",
-                           f"output.fields={RUBBING_FIELDS}"]
+        deck, *settings = [*FRICTION, "time.end=0.04", "output.snapshot_interval=0.01",
+                           f"output.fields={FRICTION_FIELDS}"]
         for ranks in (1, 2, 3):
             self.run_deck(DONE, ranks, deck, f"spins {ranks}", settings)
             for name in ("particles.vtkhdf", "history.h5", "checkpoint_end.h5"):
@@ -191,7 +191,7 @@ class FilesTest(RanksTest):
         self.assertEqual(ends("stop", "N m")[1], 0)
         self.assertLess(ends("stop", "N m")[0], -1)
         self.assertEqual(ends("dry", "N m"), (-0.05, 0.05))  # slides both ways
-        self.assertGreater(ends("rub", "N m")[1], 0.1)
+        self.assertGreater(ends("friction", "N m")[1], 0.1)
         self.assertGreater(max(columns["coordinates/axle/angle [rad]"]), math.pi)  # counted
         self.assertGreater(max(columns["bushings/rubber/fy [N]"]), 10)
         self.assertLess(min(columns["reactions/mesh/torque_z [N m]"]), -0.1)
@@ -217,8 +217,8 @@ class FilesTest(RanksTest):
         self.assertGreater(record["counts"]["rebalances"], 0)
         self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
 
-    def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
-        cases = {deck: [] for deck in ("rubbing", "rubbing_hertz", "rolling", "rubbing_bodies", "spatial_elements",
+    def test_lists_built_often_and_seldom_give_the_bits_of_frictional_particles(self):
+        cases = {deck: [] for deck in ("friction", "friction_hertz", "rolling", "frictional_bodies", "spatial_elements",
                                     "meshes", "mesh_walls", "sticky_meshes")}
         size = {"sticky_meshes": 0.02}  # of a deck's lengths
         cases["meshes"] = [*WORKS, "contact.pairs.1.wear_coefficient=3e-12"]

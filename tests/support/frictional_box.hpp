@@ -130,7 +130,7 @@ struct FrictionalBoxKind {
   int (*unmirrored)(const std::vector<Particle>&, const PackedHistory&);
 };
 inline const FrictionalBoxKind kFrictionalBoxKinds[] = {
-    {"rubbing", [](Model model) { return model; }, unmirrored<3>},
+    {"friction", [](Model model) { return model; }, unmirrored<3>},
     {"rolling", rolling, unmirrored<6, 6>},
     {"sticky", sticky, unmirrored_sticky}};
 

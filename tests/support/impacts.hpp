@@ -38,7 +38,7 @@ mass = 1.0
                      stiffness, damping, !tension, exponent);
 }
 
-// A linear Kelvin-Voigt impact in closed form (tests/reference/README.md): restitution and duration.
+// A linear spring-dashpot impact in closed form (tests/reference/README.md): restitution and duration.
 struct ClosedImpact {
   Real ratio;      // z = C / (2 sqrt(K m*)), below 1
   Real frequency;  // w = sqrt(K / m*) [1/s]

@@ -3,8 +3,8 @@ input/choosing.md.
 
     .venv/bin/python tests/verification/reactions_in_adaptive_steps.py build/release/scree
 
-A pendulum swings beside a disc that bounces, on a pin that does not rub or does. The reaction at its pivot is compared
-to the one that follows from its place and speed, and from the friction that the history tells; a line per choice of
+A pendulum swings beside a disc that bounces, on a pin without or with friction. The reaction at its pivot is compared
+to the one that follows from its position, its speed and the friction in the history; a line per choice of
 steps, "STEPS: up to ERROR N of LARGEST N". The last lines say how far the angle with friction is off at most from that
 in short fixed steps, with the disc and without it."""
 
@@ -24,15 +24,16 @@ FINE = {"control": "fixed", "step": 1e-4}
 CHOICES = {"adaptive": {}, "fixed, step 1e-4": FINE}
 
 
-def deck(steps, rubs=False, disc=True):
+def deck(steps, has_friction=False, disc=True):
     found = scree.Deck(title="a pendulum beside a bouncing disc", gravity=[0.0, -GRAVITY],
                        space={"dimension": 2, "min": [-1.0, -1.0], "max": [3.0, 1.0], "y_min": "wall"},
                        time={"end": 1.0} | steps, output={"history_bodies": ["bob"]})
     found.add("contact.pairs", stiffness=1e5, restitution=0.7)
     found.add("bodies", name="bob", position=[ARM, 0.0], mass=MASS, inertia=INERTIA)
     found.add("joints", name="pivot", type="revolute", bodies=["ground", "bob"], point=[0.0, 0.0])
-    if rubs:
-        found.add("joint_frictions", name="rub", joint="pivot", friction_coefficient=0.3, radius=0.03, stiffness=1e4)
+    if has_friction:
+        found.add("joint_frictions", name="friction", joint="pivot", friction_coefficient=0.3, radius=0.03,
+                  stiffness=1e4)
     if disc:
         found.add("particles", name="far", kind="list", positions=[[2.0, -0.5]], radius=0.02, mass=0.01)
     return found
@@ -47,7 +48,7 @@ def history(program, *of_deck):
 def errors(columns):
     """Errors of the reaction, and its magnitudes [N]: [rows]."""
     x, y, speed = (columns[f"bodies/bob/{name}"] for name in ("x", "y", "angular_velocity"))
-    turn = (columns.get("efforts/rub/effort", 0) - MASS * GRAVITY * x) / (INERTIA + MASS * ARM**2)  # acceleration
+    turn = (columns.get("efforts/friction/effort", 0) - MASS * GRAVITY * x) / (INERTIA + MASS * ARM**2)  # acceleration
     exact = MASS * np.array([-turn * y - speed**2 * x, turn * x - speed**2 * y + GRAVITY])
     found = np.array([columns[f"reactions/pivot/{name}"] for name in ("fx", "fy")])
     return np.linalg.norm(found - exact, axis=0), np.linalg.norm(exact, axis=0)
@@ -57,15 +58,15 @@ def main():
     if len(sys.argv) != 2:
         sys.exit("usage: reactions_in_adaptive_steps.py SCREE")
     program = sys.argv[1]
-    for rubs in (False, True):
+    for has_friction in (False, True):
         for name, steps in CHOICES.items():
-            error, size = errors(history(program, steps, rubs)[1])
-            print(f"{'rubbing, ' if rubs else ''}{name}: up to {error.max():.2g} N of {size.max():.3g} N")
+            error, size = errors(history(program, steps, has_friction)[1])
+            print(f"{'friction, ' if has_friction else ''}{name}: up to {error.max():.2g} N of {size.max():.3g} N")
     times, fine = history(program, FINE, True)
     for disc in (True, False):
         at, found = history(program, {}, True, disc)
         angle = np.interp(at, times, fine["bodies/bob/angle"])
-        print(f"rubbing, adaptive, {'with' if disc else 'without'} the disc: the angle is off by up to "
+        print(f"friction, adaptive, {'with' if disc else 'without'} the disc: the angle is off by up to "
               f"{np.abs(found['bodies/bob/angle'] - angle).max():.2g} rad of {np.abs(angle).max():.3g} rad")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Both backends give the same bits, run by run: the paper's cases 5.1 to 5.3, spheres that rub on each other and on
+# Both backends give the same bits, run by run: the paper's cases 5.1 to 5.3, spheres with friction on each other and on
 # bodies, in the plane and in space, or are half-way through sheets, and runs that one backend begins and the other
 # continues from its checkpoint.
 # Compares the histories, whose digits stand for all bits, and the hashes of the last states.
@@ -71,8 +71,8 @@ same paper/valley --set time.end=0.8 --set time.step=1e-4
 same paper/net_9 --set time.end=0.5 --set time.step=1e-4
 same paper/net_400 --set time.end=0.7 --set time.step=5e-4 "${net[@]}"
 same paper/net_400 --set time.end=0.7 --set time.step=1e-4 "${explicit[@]}" "${net[@]}"
-for deck in rubbing rubbing_hertz rubbing_bodies spatial_bodies spatial_elements sheets; do same ../tests/ranks/$deck; done
-for deck in rubbing rubbing_hertz; do
+for deck in friction friction_hertz frictional_bodies spatial_bodies spatial_elements open_surfaces; do same ../tests/ranks/$deck; done
+for deck in friction friction_hertz; do
   same ../tests/ranks/$deck --set integrator.particles=hht --set time.control=fixed --set time.step=8e-5
 done
 for deck in spatial_bodies spatial_elements sheets; do
@@ -83,4 +83,4 @@ continued paper/net_400 0.5 0.5625 --set time.step=1e-3
 continued paper/net_400 0.5 0.5625 --set time.step=1e-4 "${explicit[@]}"
 continued examples/heap_900 0.0625 0.125 --set "output.history_contacts=['x_min','y_min']"
 continued examples/gas_periodic 0.03125 0.0625
-for deck in rubbing rubbing_hertz rubbing_bodies spatial_elements sheets; do continued ../tests/ranks/$deck 0.04296875 0.08203125; done
+for deck in friction friction_hertz frictional_bodies spatial_elements open_surfaces; do continued ../tests/ranks/$deck 0.04296875 0.08203125; done

@@ -75,7 +75,7 @@ class ContactKernels {
   virtual void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                            Real* contact_loss, Real* integrator_loss) const = 0;
   // Implicit steps with friction, for laws with `kFrictionOnly`: contacts of n entries with surfaces on
-  // bodies, system, energy accounting, and the friction limits at an iterate. rubs: per entry.
+  // bodies, system, energy accounting, and the friction limits at an iterate. friction_steps: per entry.
   virtual void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
                                       const SurfacePose* start_surface_poses,
                                       SurfaceFriction* friction_steps) const = 0;

@@ -146,8 +146,8 @@ struct SurfaceFrictionItem {
   }
 };
 
-// Right-hand side for the bodies' correction, see `SurfaceShiftItem`. rubs, surfaces, numbers: of the
-// entries.
+// Right-hand side for the bodies' correction, see `SurfaceShiftItem`. friction_steps, surfaces, numbers: of
+// the entries.
 struct FrictionShiftItem {
   FrictionMatrix matrix;
   const Index *surface_offsets, *surfaces;

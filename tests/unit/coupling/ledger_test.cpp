@@ -9,7 +9,7 @@ namespace scree {
 
 namespace {
 
-const std::vector<EscapedParticle> kLeavers = {
+const std::vector<EscapedParticle> kEscaping = {
     {3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, {{0.25, 0.125, 0.0625}}, 2},
     {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, {{0.125, 0, 0}}, 0}};
 
@@ -18,8 +18,8 @@ const std::vector<EscapedParticle> kLeavers = {
 TEST_CASE("removed particles take all their energy along, ballistic ones the energy of their contacts") {
   CarriedOut removed, drifting;
   for (int twice = 0; twice < 2; ++twice) {
-    account_escaped(kLeavers, OutsidePolicy::remove, removed);
-    account_escaped(kLeavers, OutsidePolicy::drift, drifting);
+    account_escaped(kEscaping, OutsidePolicy::remove, removed);
+    account_escaped(kEscaping, OutsidePolicy::drift, drifting);
   }
   CHECK((removed.left == 4 && removed.removed == 4));
   CHECK((removed.energy == 16 && removed.contact_loss == 1.5 && removed.integrator_loss == 0.25));
@@ -38,7 +38,7 @@ TEST_CASE("removing a particle leaves the balance as it was") {
   CHECK((with.mechanical() == 25 && with.accounted() == 30));
 
   CarriedOut carried;
-  account_escaped(kLeavers, OutsidePolicy::remove, carried);
+  account_escaped(kEscaping, OutsidePolicy::remove, carried);
   ParticleLedger after = before;
   after.kinetic -= 6, after.contact_elastic -= 2, after.contact_loss -= carried.contact_loss;
   after.integrator_loss -= carried.integrator_loss;
@@ -72,7 +72,7 @@ TEST_CASE("inside the domain the ledger is that of a run which removes the balli
   drifting.integrator_loss = 1 + 0.5, drifting.inside = removed.inside;
   const auto ledger = [](const ParticleLedger& particles, OutsidePolicy policy) {
     CarriedOut carried_out;
-    account_escaped(kLeavers, policy, carried_out);
+    account_escaped(kEscaping, policy, carried_out);
     return inside_ledger(make_ledger(particles, carried_out, nullptr, {}, 0), particles, carried_out);
   };
   const Ledger one = ledger(removed, OutsidePolicy::remove), other = ledger(drifting, OutsidePolicy::drift);

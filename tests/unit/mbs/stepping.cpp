@@ -163,7 +163,7 @@ TEST_CASE("reports of a state depend on the state alone, and leave no trace in t
   slide.body[0] = 0, slide.body[1] = 1, slide.point[0] = {0.3, 0, 0}, slide.axis = {1, 0, 0};
   model.joints = {ground_pin("pivot", 0, {0, 0, 0}, {-0.5, 0, 0}), slide};
   JointFriction friction;
-  friction.name = "rub", friction.joint = 1, friction.lever = 0.4, friction.stiffness = 1e4;
+  friction.name = "friction", friction.joint = 1, friction.lever = 0.4, friction.stiffness = 1e4;
   model.joint_frictions = {friction};
   const ContactWrenches push{{BodyWrench{}, BodyWrench{{0.5, -2, 0}, {0, 0, 0.1}}}, {}};
   MultibodyRun plain(model), queried(model);

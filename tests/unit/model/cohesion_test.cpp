@@ -49,22 +49,22 @@ std::string linear(const std::string& keys) { return kBare + kGrains + pair_of("
 }  // namespace
 
 TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with JKR or DMT") {
-  const Model neck = model_of(hertz("work_of_adhesion = 0.5\nrestitution = 0.6\n"));
-  const NormalLawParameters& law = neck.contact.law(0, 0);
+  const Model jkr = model_of(hertz("work_of_adhesion = 0.5\nrestitution = 0.6\n"));
+  const NormalLawParameters& law = jkr.contact.law(0, 0);
   CHECK((law.adhesion_work == 0.5 && law.jkr));
   CHECK(near(restitution_of(law.damping_ratio, true), 0.6, {.relative = kRoundOff}));
-  CHECK(neck.rotates());  // a JKR contact rotates with its partners
+  CHECK(jkr.rotates());  // a JKR contact rotates with its partners
   // The largest interaction range is that of a sphere on a plane; the search range is a quarter larger.
   const Real on_plane = JkrLaw(law).of_pair({0.02, kInfinity, 1, 1}).interaction_range();
-  CHECK(near(neck.contact.interaction_range, 1.25 * on_plane, {.relative = 1e-8}));
-  CHECK(neck.contact.interaction_range > JkrLaw(law).of_pair({0.02, 0.02, 1, 1}).interaction_range());
+  CHECK(near(jkr.contact.interaction_range, 1.25 * on_plane, {.relative = 1e-8}));
+  CHECK(jkr.contact.interaction_range > JkrLaw(law).of_pair({0.02, 0.02, 1, 1}).interaction_range());
   const NormalLawParameters same = model_of(hertz("surface_energy = 0.25\n")).contact.law(0, 0);
   CHECK((same.adhesion_work == 0.5 && same.jkr));
   const Model dmt = model_of(hertz("work_of_adhesion = 0.5\nadhesion = \"dmt\"\n"));
   CHECK((!dmt.contact.law(0, 0).jkr && dmt.contact.interaction_range == 0 && !dmt.rotates()));
   CHECK(!model_of(hertz("work_of_adhesion = 0.0\n")).contact.law(0, 0).is_cohesive());
   // A JKR contact is stiffer than one without cohesion.
-  CHECK(pair_limits(neck)[0].explicit_step <
+  CHECK(pair_limits(jkr)[0].explicit_step <
         pair_limits(model_of(hertz("friction = 0.0\n")))[0].explicit_step);
 }
 

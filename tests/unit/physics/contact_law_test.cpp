@@ -59,7 +59,7 @@ TEST_CASE("overlap and normal of a sphere and a plane") {
   CHECK(o.rate({3, -2, 1}) == 2);
 }
 
-TEST_CASE("the sizes of a pair: a plane is flat and does not give way") {
+TEST_CASE("the sizes of a pair: a plane is flat and is rigid") {
   constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   CHECK(PairSize{2, 2, 3, 6}.effective_radius() == 1);
   CHECK(PairSize{2, 2, 3, 6}.effective_mass() == 2);

@@ -51,7 +51,7 @@ TEST_CASE("the history of a law, and its order in files") {
   CHECK((jkr.spring == Vec3{} && jkr.moment == Vec3{} && jkr.touched));
 }
 
-TEST_CASE("a contact that opens forgets, and a force that is cut holds nothing") {
+TEST_CASE("a contact that opens loses its history, and a force that is cut holds nothing") {
   RandomNumbers random;
   RandomContact c = contact_of(random, 0.05, false);
   const ContactLaw<LinearLaw, LinearSlider, Both> law{

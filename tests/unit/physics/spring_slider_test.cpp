@@ -18,7 +18,7 @@ struct RandomStep {
   Real h = 0.1;
 };
 
-// Steps of all kinds: sticking and sliding, stiffening and softening, with and without dashpot.
+// Steps of all kinds: sticking and sliding, with rising and falling stiffness, with and without dashpot.
 RandomStep random_step(RandomNumbers& random) {
   RandomStep out;
   const Real k = 2 + random(), limit = 1.5 + random();

@@ -11,7 +11,7 @@ Janssen: m_app = m_sat (1 - exp(-m/m_sat)), m the mass of the filling, m_app wha
 the one number that is fitted, to all fillings together; from it follows K = (m/h) W / (2 mu_w m_sat), the
 pressure on the walls over the vertical stress, h the height of the filling.
 
-Checked are the balance of forces, that the walls are rubbed at Coulomb's limit, the shape of the law, its
+Checked are the balance of forces, that the walls are frictional at Coulomb's limit, the shape of the law, its
 saturation, and K. Bands: forces and friction from mechanics; that columns whose walls move follow the law is
 Ovarlez, Fond and Clement 2003 (Phys. Rev. E 67, 060302; from memory), the 8 % of m_sat allowed to the mean of
 three samples are this script's own: one sample lies some 10 % from the next, as the law's K is that of its

@@ -117,11 +117,12 @@ constexpr const char* kRevolute =
 // With the force at the predicted position alone the first, the third and the fifth of these become
 // unstable.
 TEST_CASE("particles in a light bin have their weight at its revolute joint") {
-  for (const Load& load : {Load{"40 grains of 0.5 kg", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
-                           Load{"40 grains that rub", kRevolute, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
-                           Load{"40 grains of 10 kg", kRevolute, 40, 3, 0.015, 10, 0.3, 1.2e-4, 1, 2},
-                           Load{"100 grains", "type = \"fixed\"", 100, 4, 0.012, 0.2, 0.3, 1e-4, 1, 1},
-                           Load{"10 substeps", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 10, 1.2}}) {
+  for (const Load& load :
+       {Load{"40 grains of 0.5 kg", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 1, 1.5},
+        Load{"40 particles with friction", kRevolute, 40, 3, 0.015, 0.5, 0.4, 1e-4, 1, 1.5},
+        Load{"40 grains of 10 kg", kRevolute, 40, 3, 0.015, 10, 0.3, 1.2e-4, 1, 2},
+        Load{"100 grains", "type = \"fixed\"", 100, 4, 0.012, 0.2, 0.3, 1e-4, 1, 1},
+        Load{"10 substeps", kRevolute, 40, 3, 0.015, 0.5, 0, 1.2e-4, 10, 1.2}}) {
     CAPTURE(load.name);
     SimulationRun run(model_of(head(load.step, load.end, load.substeps, load.friction) +
                                bin(load.joint, 0.3) +

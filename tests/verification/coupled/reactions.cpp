@@ -47,10 +47,10 @@ std::string planar_arm(const std::string& name, int place) {
 // that it slides also in the shortest step, in which the load within the steps rises after an impact.
 std::string planar_deck() {
   return start_of_deck(2, "[0, -9.81]", "min = [-1, -1]\nmax = [6, 1]\n", "y_min") + planar_arm("free", 0) +
-         planar_arm("driven", 2) + planar_arm("rubbing", 4) +
+         planar_arm("driven", 2) + planar_arm("frictional", 4) +
          "[[drivers]]\nname = \"drive\"\njoint = \"driven pin\"\nmotion = { kind = \"sine\", amplitude = "
          "0.6, "
-         "frequency = 1.2 }\n[[joint_frictions]]\nname = \"rub\"\njoint = \"rubbing "
+         "frequency = 1.2 }\n[[joint_frictions]]\nname = \"friction\"\njoint = \"frictional "
          "pin\"\nfriction_coefficient "
          "= 0.3\nradius = 0.05\nstiffness = 1e6\n" +
          ball("[5.8, -0.7]");

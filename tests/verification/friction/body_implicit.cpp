@@ -44,7 +44,8 @@ TEST_CASE("in implicit steps a free body's disc and a particle part as two parti
       for (const Real error :
            {difference(run.particles().at(0), after.at(0), 0.05),
             norm(Vec3{v[0], v[1], 0} - after[1].velocity), Real(0.05) * (v[2] - after[1].angular_velocity.z)})
-        CHECK(measured("rubbing_body/velocity", "m/s", keeps(error, {.promise = 1e-8, .measured = 1e-12})));
+        CHECK(
+            measured("frictional_body/velocity", "m/s", keeps(error, {.promise = 1e-8, .measured = 1e-12})));
     }
 }
 

@@ -98,7 +98,7 @@ TEST_CASE("the energies of a gas with friction balance") {
     for (const auto& [materials, law] :
          {std::pair{std::string(), damped}, {kSoft, std::string("restitution = 0.8\nfriction = 0.4\n")}})
       for (const Real step : {5e-5, 4e-4})
-        CHECK(measured("rubbing_gas/balance", "",
+        CHECK(measured("frictional_gas/balance", "",
                        keeps(error_at(step, materials, law), {.promise = 1e-12, .measured = 1e-14})));
   }
   SECTION("linear spring and slider") {

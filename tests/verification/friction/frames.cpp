@@ -28,7 +28,7 @@ const std::vector<AdhesiveLaw>& adhesive_laws() {
       "friction = 0.5\ntangential_damping_ratio = 0.3\nrolling_friction = 0.2\nrolling_damping_ratio = 0.3\n";
   static const std::vector<AdhesiveLaw> laws{
       {"linear", "stiffness = 1e5\nrestitution = 0.3\nattraction = 50.0\n" + rolls, "", 0.01},
-      {"neck", "restitution = 0.3\nwork_of_adhesion = 200.0\n" + rolls, hertz_materials(2e7, 0.3), 0.01}};
+      {"jkr", "restitution = 0.3\nwork_of_adhesion = 200.0\n" + rolls, hertz_materials(2e7, 0.3), 0.01}};
   return laws;
 }
 

@@ -23,7 +23,7 @@ const std::string kFrictionKeys = fmt::format(
     kTangential, kRolling);
 const std::string kSpinKeys = "angular_velocity = [30.0, -20.0, 10.0]\n";
 
-// Spheres between walls; rubs, spins: keys of the pair and of the particles.
+// Spheres between walls; friction_keys, spins: keys of the pair and of the particles.
 Model box(const std::string& friction_keys, const std::string& spins,
           const std::vector<std::string>& settings = {}) {
   return model_of(fmt::format(R"(
@@ -44,7 +44,7 @@ step = 2e-5
 particles = "velocity-verlet"
 [[contact.pairs]]
 stiffness = {normal}
-{rubs}
+{friction_keys}
 [[particles]]
 name = "box"
 kind = "random"
@@ -58,7 +58,7 @@ seed = 11
 {spins}
 )",
                               fmt::arg("half", kHalf), fmt::arg("normal", kNormal),
-                              fmt::arg("rubs", friction_keys), fmt::arg("spins", spins)),
+                              fmt::arg("friction_keys", friction_keys), fmt::arg("spins", spins)),
                   settings);
 }
 

@@ -57,7 +57,7 @@ SimulationRun run_on_wall(const std::string& law, Vec3 velocity, Vec3 spin, Real
   return SimulationRun(deck.model());
 }
 
-// Agitated spheres between walls that escape through one side. rubs: keys of the pair.
+// Agitated spheres between walls that escape through one side. friction_keys: keys of the pair.
 Model escaping_model(const std::string& friction_keys, const std::vector<std::string>& settings) {
   return model_of(R"(
 [space]
@@ -158,7 +158,7 @@ TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave,
       CAPTURE(friction_keys, damping, settings.size());
       SimulationRun run(escaping_model(friction_keys + damping, settings));
       TangentialLosses before{};
-      Real grown_with_leavers = 0;
+      Real grown_with_escaped = 0;
       run.run([&] {
         const TangentialLosses now = losses_of(run);
         for (int kind = 0; kind < kLossKinds; ++kind) CHECK(now.of[kind] >= before.of[kind]);
@@ -168,10 +168,10 @@ TEST_CASE("the kinds add up to what contacts dissipate, of particles that leave,
           CHECK(near(sum_of(now), all, {.relative = 1e-11}));
         else
           CHECK(sum_of(now) <= all);
-        grown_with_leavers = run.complete_state().carried_out.losses.of[kFrictionLoss];
+        grown_with_escaped = run.complete_state().carried_out.losses.of[kFrictionLoss];
       });
       CHECK(run.complete_state().carried_out.removed > 10);
-      CHECK(grown_with_leavers > 1e-3 * before.of[kFrictionLoss]);
+      CHECK(grown_with_escaped > 1e-3 * before.of[kFrictionLoss]);
       CHECK(before.of[kFrictionLoss] > 0.05 * run.exchanged());
       for (const LossKind kind : {kRollingLoss, kTwistingLoss})
         CHECK((before.of[kind] > 1e-3 * run.exchanged()) == (friction_keys == rolling));

@@ -16,8 +16,8 @@ namespace {
 
 constexpr Real kStiffness = 1e4, kDensity = 2500, kRadius = 0.01;
 
-// Spheres that fall and slide on a floor, half of their contacts sliding, undamped; sharpness: sqrt(2 K / m)
-// h.
+// Spheres that fall and slide on a floor, half of their contacts sliding, undamped; phase_squared: sqrt(2 K /
+// m) h.
 StepCounts counts_of(Real phase_squared, Real friction) {
   const Real mass = kDensity * 4 / 3 * std::numbers::pi_v<Real> * kRadius * kRadius * kRadius;
   SimulationRun run(model_of(fmt::format(
@@ -86,7 +86,7 @@ TEST_CASE("Newton iterations of a pack with friction") {
         frictional.rejected_newton));
     const std::string phase_squared = fmt::format("{}", e.phase_squared);
     CHECK(measured("newton/" + phase_squared + ", slick", "", at_most(newton[0], 1.1 * e.frictionless)));
-    CHECK(measured("newton/" + phase_squared + ", rubbing", "", at_most(newton[1], 1.1 * e.frictional)));
+    CHECK(measured("newton/" + phase_squared + ", frictional", "", at_most(newton[1], 1.1 * e.frictional)));
     note("newton/" + phase_squared + ", products", "", per_step(frictional.linear_iterations, frictional));
     note("newton/" + phase_squared + ", frozen", "%", per_step(100 * frictional.lagged_steps, frictional));
     note("newton/" + phase_squared + ", rejected", "%",

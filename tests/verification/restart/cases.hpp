@@ -101,7 +101,7 @@ shapes = [{ radius = 0.05, offset = [0.02, 0.01] }]
 )" + disc("discs", "[0.5, 0.06], [0.5, 0.44]", "[19.0, 1.0]");
 
 // Discs that escape, each with its energy, after many periods along the periodic axis.
-inline const std::string kLateLeavers = "gravity = [3.3, 0.0]" + kPeriodicAlongX + R"(
+inline const std::string kLateEscapes = "gravity = [3.3, 0.0]" + kPeriodicAlongX + R"(
 leaving = "remove"
 [time]
 end = 3.0
@@ -254,14 +254,14 @@ inline std::vector<RestartCase> restart_cases() {
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "ballistic"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
-    cases.push_back({"rubbing shapes" + how, model_of(kFrictionalShapes, with({})), false});
+    cases.push_back({"shapes with friction" + how, model_of(kFrictionalShapes, with({})), false});
     cases.push_back({"crates" + how, model_of(kCrates, with({})), false});
     // Long runs, and so fast that the list limits adaptive steps.
     if (way == kWays.front() || way == kWays.back()) {
       cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});
       cases.push_back(
           {"round and round" + how, model_of(kRoundAndRound, with({"space.max=[1.0, 0.5]"})), false});
-      cases.push_back({"late leavers" + how, model_of(kLateLeavers, with({})), true});
+      cases.push_back({"late escaped particles" + how, model_of(kLateEscapes, with({})), true});
     }
     cases.push_back(
         {"periodic gas" + how,

@@ -140,7 +140,7 @@ stiffness = 20.0
 static_ratio = 1.4
 stribeck_rate = 0.5
 [[joint_frictions]]
-name = "rub"
+name = "friction"
 joint = "slide"
 coordinate = "displacement"
 friction_coefficient = 0.6

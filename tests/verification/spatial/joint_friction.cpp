@@ -114,7 +114,7 @@ TEST_CASE(
       loss = std::max(loss, std::abs(run.state.dissipated - kTorque * now.coordinate));
     }
     for (const Real error : {angle, rate, effort, loss})
-      CHECK(measured("hinge_friction/braked", "", at_most(error, 1e-9)));
+      CHECK(measured("revolute_friction/braked", "", at_most(error, 1e-9)));
     // The last rate before the stop and the first one after it, when the spring releases.
     CHECK(near(run.time - h * now.rate / (now.rate - before.rate), kStop, {.absolute = 1e-2 * h}));
     // It comes to rest where the spring is empty.
@@ -146,7 +146,7 @@ TEST_CASE("from an empty spring on a wheel stops when and where it must, to seco
     CHECK(fine.time < 3e-6);
     CHECK(fine.angle < 6e-5);
     for (const Real ratio : {coarse.time / fine.time, coarse.angle / fine.angle})
-      CHECK(measured("hinge_friction/stop order", "", at_least(std::log2(ratio) / 4, 1.7)));
+      CHECK(measured("revolute_friction/stop order", "", at_least(std::log2(ratio) / 4, 1.7)));
   }
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
   CHECK(fine.rate < 5e-3);
   CHECK(fine.angle < 4e-2);
   for (const Real ratio : {coarse.rate / fine.rate, coarse.angle / fine.angle, coarse.effort / fine.effort})
-    CHECK(measured("hinge_friction/halved", "", in_range(ratio, 3.8, 4.2)));
+    CHECK(measured("revolute_friction/halved", "", in_range(ratio, 3.8, 4.2)));
 }
 
 // J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: the effect of

@@ -138,13 +138,13 @@ TEST_CASE("JKR holds a sphere with up to 3/2 pi w R*, and breaks at the pull-off
   for (const Case& c : cases) {
     CAPTURE(c.name);
     const Pull pull = pull_apart({.target = c.target});
-    CHECK(measured("neck/pull_off", "",
+    CHECK(measured("jkr/pull_off", "",
                    keeps(pull.largest / pull_off(c.radius) - 1, {.promise = 1e-5, .measured = 4.2e-8})));
     CHECK(near(pull.last, Real(5) / 9 * pull_off(c.radius), {.relative = 0.1}));
     const Real displacement = kSpeed * 1e-6;  // displacement in a step [m]
-    CHECK(measured("neck/length", "steps",
+    CHECK(measured("jkr/length", "steps",
                    at_most((pull.broken - pull_off_distance(c.radius)) / displacement, 1.1)));
-    CHECK(measured("neck/balance", "",
+    CHECK(measured("jkr/balance", "",
                    keeps(pull.balance / formation_loss(c.radius), {.promise = 1e-2, .measured = 6e-4})));
   }
 }
