@@ -129,7 +129,7 @@ class KeysTest(CommandLineTest):
     def test_what_is_not_there_says_so_and_where_to_read_on(self):
         for word in ("inserter", "inflow", "clump", "CFD", "temperature"):
             text = self.about(word)
-            self.assertIn(f"{word}: not there: ", text)
+            self.assertIn(f"{word}: not supported: ", text)
             self.assertIn("input/limits.md", text)
         self.assertIn("[[bodies.shapes]]", self.about("clump").splitlines())
         text = self.expect(BAD_INPUT, "keys", "qwertz").stderr
