@@ -68,7 +68,7 @@ struct Pair {
   Twist load(const Twist& by) const {
     const FrictionalContact c = moved(by);
     const FrictionSums sums = FrictionSums::of(c);
-    return {sums.step_force, sums.step_rotation};
+    return {sums.step_force, sums.step_moment};
   }
 };
 

@@ -38,7 +38,7 @@ void check_hull(const HullCorners& hull, const std::vector<Vec3>& points, bool p
     for (const Index corner : hull.of_face(face))
       CHECK(near(dot(hull.corners[corner], normal), farthest(points, normal), {.absolute = 1e-8}));
   }
-  for (const Vec3 corner : hull.corners) CHECK(norm(corner - hull.middle) <= hull.reach);
+  for (const Vec3 corner : hull.corners) CHECK(norm(corner - hull.middle) <= hull.bounding_radius);
 }
 
 std::vector<Vec3> rotated(const std::vector<Vec3>& points, const Mat3& axes, Vec3 move) {

@@ -112,7 +112,7 @@ TEST_CASE("work, elastic energy, dissipation and the integrator's part add up") 
     for_each_step([&](const ContactStep& c) {
       const auto stored = [&](Real d) { return d > 0 ? law.energy(law.law, d) : 0; };
       const Real work = 0.37;
-      const ContactLosses losses = law.step_losses(law.law, c, work);
+      const ContactLosses losses = law.losses(law.law, c, work);
       CHECK(near(work + stored(c.overlap1) - stored(c.overlap0) + losses.dissipated + losses.integrator, 0,
                  {.absolute = kRoundOff}));
     });
@@ -127,7 +127,7 @@ TEST_CASE("the integrator does nothing to an undamped linear contact that opens 
       const Real start = c.overlap0 > 0 ? law.at_instant(law.law, c.overlap0, c.rate0).force : 0;
       const Real work = -(start + law.over_step(law.law, c).force) / 2 * (c.overlap1 - c.overlap0);
       CAPTURE(c.overlap0, c.overlap1);
-      CHECK(std::abs(law.step_losses(law.law, c, work).integrator) < 1e-12 * law.energy(law.law, kReach));
+      CHECK(std::abs(law.losses(law.law, c, work).integrator) < 1e-12 * law.energy(law.law, kReach));
     });
   }
 }
