@@ -19,6 +19,5 @@
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/models.hpp"
-#include "support/multibody_run.hpp"
 #include "support/near.hpp"
 #include "support/simulation_run.hpp"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "support/decks.hpp"
 #include "support/multibody_run.hpp"
 
 namespace scree {
@@ -21,10 +22,6 @@ std::string message_of(const Action& action) {
 inline std::string refusal(const Model& model) {
   petsc();
   return message_of<InputError>([&] { const Multibody refused(model); });
-}
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 inline Model hanging_disc() {

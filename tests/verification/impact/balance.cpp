@@ -145,7 +145,7 @@ Bounded undamped_loss(const Outcome& run) {
 
 TEST_CASE("a particle that leaves while it touches another takes the contact's energy along") {
   for (const std::string policy : {"remove", "ballistic"}) {
-    std::vector<Overrides> ways = kImplicitWays;
+    std::vector<Overrides> ways = kImplicitVariants;
     ways.push_back({"integrator.particles=velocity-verlet"});
     for (const Overrides& way : ways) {
       CAPTURE(policy, text(way));
