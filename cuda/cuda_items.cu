@@ -22,7 +22,7 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       surfaces(of, subdomain.period(), stream),
       lane(on, of.parallel.transport),
       list(kernels->history() > 0, slots_per_particle(of)),
-      history(packed_numbers(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
+      history(packed_content(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
               {other, arena}),
       results(on, stream) {
   static_cast<FieldsThere&>(now) = fields_there(of);

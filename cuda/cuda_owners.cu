@@ -72,7 +72,7 @@ void CudaOwners::migrate() {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
     std::vector<std::vector<Particle>> to(static_cast<std::size_t>(items_.ranks.size()));
     const PackedHistory contacts = items_.history.rows(departing + first, n);
-    std::vector<PackedHistory> contacts_to(to.size(), no_contacts(contacts.numbers, 0));
+    std::vector<PackedHistory> contacts_to(to.size(), no_contacts(contacts.content, 0));
     std::int64_t k = 0;
     for (const Particle& p : pack_migrants(departing + first, n)) {
       const auto owner = static_cast<std::size_t>(decomposition_.owner(p.position));

@@ -60,17 +60,17 @@ void fill_parts(const PackedHistoryViews& parts, const std::int64_t* keys, const
   }
 }
 
-KeyedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
-                     int numbers) {
+DeviceKeyedRows keyed_rows(const DeviceHistory::Listed& at, const PeriodicBox& box,
+                           const HistoryViews& history, int numbers) {
   return {at.position, at.row_key, at.list.rows(), at.surfaces.list(),
           box,         history,    numbers,        records_of(numbers)};
 }
 
 }  // namespace
 
-DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream,
+DeviceHistory::DeviceHistory(HistoryContent content, const PeriodicBox& box, cudaStream_t stream,
                              const ScratchArrays& scratch)
-    : numbers_(numbers), box_(box), stream_(stream), scratch_arrays_(scratch) {
+    : content_(content), box_(box), stream_(stream), scratch_arrays_(scratch) {
   if (width() > 0) first_step_.resize(1), h_first_step_.resize(1);
 }
 
@@ -78,7 +78,7 @@ HistoryViews DeviceHistory::views(bool ahead) {
   if (!exists()) return {};
   HistoryViews views{neighbors_.data(), ground_.data(),        bodies_.data(), ahead_.data(),
                      features_.data(),  next_features_.data(), step_};
-  if (sides_only()) views.neighbors = views.ground = views.bodies = views.ahead = nullptr;
+  if (content_ == kSidesOnly) views.neighbors = views.ground = views.bodies = views.ahead = nullptr;
   if (ahead) std::swap(views.bodies, views.ahead), std::swap(views.features, views.next_features);
   return views;
 }
@@ -239,7 +239,7 @@ void DeviceHistory::load(const PackedHistory& contacts, Index owned) {
   row_of_.resize(0);
   const auto at_once = static_cast<std::size_t>(std::min(owned, kRowsAtOnce));
   packed_.offsets.resize(at_once + 1), reserve_entries(packed_, at_once * kContactsPerRow);
-  append(contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned), 0);
+  append(contacts.content == content_ ? contacts : no_contacts(content_, owned), 0);
 }
 
 void DeviceHistory::reorder(const Index* order, Index n, Index* numbers) {
@@ -272,7 +272,7 @@ void DeviceHistory::append(const PackedHistory& arriving, Index owned) {
 
 PackedHistory DeviceHistory::download(const Rows& rows, const PackedHistoryViews& parts) const {
   PackedHistory out;
-  out.numbers = numbers_;
+  out.content = content_;
   const std::vector<Index> offsets = rows.offsets.download(stream_);
   out.offsets.assign(offsets.begin(), offsets.end());
   out.keys.resize(static_cast<std::size_t>(offsets.back()));
@@ -284,7 +284,7 @@ PackedHistory DeviceHistory::download(const Rows& rows, const PackedHistoryViews
 
 PackedHistory DeviceHistory::rows(const Index* particles, Index n) {
   if (!exists()) return {};
-  if (n == 0) return no_contacts(numbers_, 0);
+  if (n == 0) return no_contacts(content_, 0);
   packed_.offsets.resize(static_cast<std::size_t>(n) + 1);
   for_each({stream_}, n,
            RowLengthItem{stored_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
@@ -298,7 +298,7 @@ PackedHistory DeviceHistory::contacts(const Listed& at) {
   if (!exists()) return {};
   if (!at_slots_) return download(stored_, packed_history_views()).rows(row_of_.download(stream_));
   // In batches of rows: the scratch memory of the packed history is in use by steps.
-  PackedHistory out = no_contacts(numbers_, 0);
+  PackedHistory out = no_contacts(content_, 0);
   for (Index first = 0; first < at.owned; first += kRowsAtOnce) {
     const Index count = std::min(kRowsAtOnce, at.owned - first);
     reserve_entries(packed_, count_rows(packed_, at, first, count));

@@ -22,11 +22,12 @@ class DeviceHistory {
     SecondArrays& second;
     DeviceArena& of_steps;
   };
-  // numbers: history values per contact, or `kSidesOnly`; with 0 nothing below does anything. Work without a
-  // device argument is queued on the stream.
-  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, const ScratchArrays& scratch);
+  // If `content` has no history, the functions below do nothing. Work without a device argument is queued on
+  // the stream.
+  DeviceHistory(HistoryContent content, const PeriodicBox& box, cudaStream_t stream,
+                const ScratchArrays& scratch);
 
-  bool exists() const { return numbers_ != 0; }
+  bool exists() const { return content_.exists(); }
   bool at_slots() const { return at_slots_; }
   // For loops over the list outside a run of explicit steps. ahead: the history of contacts with surfaces is
   // in the arrays of the next step.
@@ -84,8 +85,7 @@ class DeviceHistory {
     DeviceArray<std::int64_t> keys;
     DeviceArray<Real> values;
   };
-  bool sides_only() const { return numbers_ == kSidesOnly; }
-  int width() const { return sides_only() ? 0 : numbers_; }
+  int width() const { return content_.values; }
   // Counts the contacts of `count` rows from `first` on into rows.offsets; the second one writes the
   // contacts, whose arrays must be sized.
   std::size_t count_rows(Rows& rows, const Listed& at, Index first, Index count);
@@ -99,7 +99,7 @@ class DeviceHistory {
   bool lay_out_in_records(std::size_t contacts);
   void clear_records();
 
-  const int numbers_;
+  const HistoryContent content_;
   const PeriodicBox box_;
   const cudaStream_t stream_;
   const ScratchArrays scratch_arrays_;

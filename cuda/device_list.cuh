@@ -22,6 +22,8 @@ struct SlicedRows {
 
   SCREE_HD std::int64_t first(Index i) const { return slice_start[i / kSlice] + i % kSlice; }
   SCREE_HD static constexpr int stride() { return kSlice; }
+  SCREE_HD std::int64_t first_number(Index i) const { return first_entry[i]; }
+  SCREE_HD Index count(Index i) const { return counts[i]; }
 
   // As `PackedRows::for_each_contact`, with the number of an entry as its slot.
   template <class Touches, class Evaluate, class Add>

@@ -9,6 +9,7 @@
 #include "cell_block_grid.cuh"
 #include "cell_sort.cuh"
 #include "contact_kernels.cuh"
+#include "dem/history/keyed_rows.hpp"
 #include "dem/surfaces/surface_sums.hpp"
 #include "dem/surfaces/surfaces.hpp"
 #include "dem/surfaces/triangle_sums.hpp"
@@ -17,16 +18,6 @@
 #include "device_triangle_works.cuh"
 
 namespace scree {
-
-// Entries with surfaces in the rows of the particles.
-struct SurfaceList {
-  const Index *offsets, *surfaces;  // [particles + 1] first entry of each, [entries]
-  const std::int8_t* images;        // [entries]
-  const SurfacePose* placed;        // present poses
-  const SurfaceFrame* frames;
-  const MeshView* meshes;
-  SurfaceNumbers numbers;
-};
 
 class DeviceSurfaces {
  public:

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 
 namespace scree {
 
@@ -23,17 +23,17 @@ struct PackedHistoryViews {
   int numbers;           // values per contact
   Part part[kParts];     // in ascending order of contacts
 
-  __device__ std::int64_t& key(Index contact) const {
+  SCREE_HD std::int64_t& key(Index contact) const {
     const Part at = part_of(contact);
     return at.keys[contact - at.first];
   }
-  __device__ Real* values(Index contact) const {
+  SCREE_HD Real* values(Index contact) const {
     const Part at = part_of(contact);
     return at.values + std::int64_t{contact - at.first} * numbers;
   }
 
  private:
-  __device__ Part part_of(Index contact) const {
+  SCREE_HD Part part_of(Index contact) const {
     Part at = part[0];
 #pragma unroll
     for (int k = 1; k < kParts; ++k)
@@ -53,7 +53,7 @@ struct StoredRows {
     const Index row = row_of[particle];
     Index count = 0;
     for (Index k = packed.offsets[row]; k < packed.offsets[row + 1]; ++k)
-      count += is_surface(packed.key(k)) && surface_of(packed.key(k)) == surface;
+      count += is_with_surface(packed.key(k), surface);
     return count;
   }
 };

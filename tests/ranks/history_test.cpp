@@ -17,7 +17,7 @@ State of_all(const HistoryTestBox& box) {
   const State own = box.in_id_order();
   State all;
   all.particles = box.ranks.all_gather(own.particles);
-  all.contacts.numbers = own.contacts.numbers;
+  all.contacts.content = own.contacts.content;
   all.contacts.set_counts(box.ranks.all_gather(own.contacts.counts()));
   all.contacts.keys = box.ranks.all_gather(own.contacts.keys);
   all.contacts.values = box.ranks.all_gather(own.contacts.values);

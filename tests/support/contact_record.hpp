@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dem/contact/contact_walk.hpp"
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "dem/history/packed_history.hpp"
 #include "dem/particles/particle_store.hpp"
 #include "dem/surfaces/surfaces.hpp"
@@ -36,7 +36,7 @@ class ContactRecord {
       for (const Particle& q : records)
         if (!q.drifting) add_particle(p, q);
       for (std::size_t w = 0; w < planes_.size(); ++w)
-        add(p, kFirstSurfaceId + static_cast<GlobalId>(w), kZeroShift, {}, wall_pair(place(p), planes_[w]));
+        add(p, surface_id(static_cast<Index>(w)), kZeroShift, {}, wall_pair(place(p), planes_[w]));
       add_bodies(p, motion);
     }
     for (const auto& [name, history] : before_)
@@ -47,7 +47,7 @@ class ContactRecord {
   // The contacts of these particles; all others are dropped.
   PackedHistory contacts(const std::vector<Particle>& records) {
     PackedHistory out;
-    out.numbers = kNumbers;
+    out.content = HistoryContent::of_law(kNumbers);
     std::map<Name, Entry> left;
     std::set<GlobalId> here;
     for (const Particle& p : records)
@@ -92,7 +92,7 @@ class ContactRecord {
   }
 
   void add_bodies(const Particle& p, const std::vector<BodyMotion>& motion) {
-    GlobalId surface = kFirstSurfaceId + static_cast<GlobalId>(planes_.size());
+    GlobalId surface = surface_id(static_cast<Index>(planes_.size()));
     for (std::size_t b = 0; b < motion.size(); ++b)
       for (const Shape& shape : model_.bodies[b].shapes) {
         ImageCount image;
@@ -108,8 +108,7 @@ class ContactRecord {
   void add(const Particle& p, GlobalId partner, std::int8_t image, ImageCount q,
            const ContactGeometry& pair) {
     if (!(pair.overlap > 0)) return;
-    const bool wall =
-        partner >= kFirstSurfaceId && partner < kFirstSurfaceId + static_cast<GlobalId>(planes_.size());
+    const bool wall = partner >= kFirstSurfaceId && partner < surface_id(static_cast<Index>(planes_.size()));
     const std::array<int, 3> periods = {image % 3 - 1 + p.image.x - q.x, image / 3 % 3 - 1 + p.image.y - q.y,
                                         image / 9 - 1 + p.image.z - q.z};
     const Name name{p.global_id, partner, wall ? std::array<int, 3>{} : periods};
@@ -131,7 +130,7 @@ class ContactRecord {
 
 // The first difference of a bit between the two; "" if there is none.
 inline std::string difference(const PackedHistory& a, const PackedHistory& b) {
-  if (a.numbers != b.numbers || a.offsets != b.offsets)
+  if (a.content != b.content || a.offsets != b.offsets)
     return "numbers of contacts: " + std::to_string(a.keys.size()) + " and " + std::to_string(b.keys.size());
   for (std::int64_t i = 0; i < a.particles(); ++i)
     for (std::int64_t k = a.offsets[static_cast<std::size_t>(i)];
@@ -147,12 +146,13 @@ inline std::string difference(const PackedHistory& a, const PackedHistory& b) {
 // order of the rows. kEven: the number that does not change its sign.
 template <int kNumbers, int kEven = 3>
 int unmirrored(const std::vector<Particle>& particles, const PackedHistory& contacts) {
-  std::map<std::tuple<GlobalId, GlobalId, std::int64_t>, std::span<const Real>> sides;
+  std::map<std::tuple<GlobalId, GlobalId, int>, std::span<const Real>> sides;
   for (std::int64_t i = 0; i < contacts.particles(); ++i)
     for (std::int64_t k = contacts.offsets[static_cast<std::size_t>(i)];
          k < contacts.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
       const std::int64_t key = contacts.keys[static_cast<std::size_t>(k)];
-      sides[{particles[static_cast<std::size_t>(i)].global_id, id_of(key), key % 27}] = contacts.values_of(k);
+      sides[{particles[static_cast<std::size_t>(i)].global_id, id_of(key), image_of(key)}] =
+          contacts.values_of(k);
     }
   int count = 0;
   for (const auto& [name, own] : sides) {

@@ -110,8 +110,8 @@ inline Model sticky(Model model) {
 }
 
 inline int unmirrored_sticky(const std::vector<Particle>& particles, const PackedHistory& contacts) {
-  return contacts.numbers == 7 ? unmirrored<7, 6>(particles, contacts)
-                               : unmirrored<6, 6>(particles, contacts);
+  return contacts.content.values == 7 ? unmirrored<7, 6>(particles, contacts)
+                                      : unmirrored<6, 6>(particles, contacts);
 }
 
 // All boxes, with either policy for escaped particles.

@@ -200,8 +200,8 @@ double surface_bytes(const Model& model, const Sizes& n) {
   double per_entry = kEntryArrays;
   if (implicit && model.rotates()) per_entry += kFrictionArraysPerEntry;
   if (model.output.contacts) per_entry += sizeof(ShownContact);
-  if (const int numbers = packed_numbers(model, history_of(model.contact)); numbers != 0)
-    per_entry += kSpareCapacity * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
+  if (const HistoryContent content = packed_content(model, history_of(model.contact)); content.exists())
+    per_entry += kSpareCapacity * (3 * records_of(content.values) * sizeof(Vec4) + 2 * sizeof(Index));
   const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
   if (!model.meshes.empty())
     per_entry += kSpareCapacity * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));

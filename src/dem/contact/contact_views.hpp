@@ -50,6 +50,9 @@ struct PackedRows {
   // Slot of the row's first entry, and the distance between its entries.
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
+  // Number of the row's first entry in the contact history.
+  SCREE_HD std::int64_t first_number(Index i) const { return offsets[i]; }
+  SCREE_HD Index count(Index i) const { return offsets[i + 1] - offsets[i]; }
   // Calls add(evaluate(j)) for the entries j of row i for which touches(j) is true, in order. evaluate must
   // have no side effects, because it may be called for other entries as well. It may take the slot
   // (`evaluate_entry`).

@@ -7,7 +7,6 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "mesh/surface_numbers.hpp"
 #include "partition/halo_plan.hpp"
 #include "partition/subdomain.hpp"
 
@@ -96,31 +95,6 @@ struct HistoryViews {
     records[slot * records_of(Law::kHistory)].w = 0;
   }
 };
-
-// Contact keys, which identify the contacts of a particle while there is no list: like a `row_key`, with
-// surfaces numbered after all particles, meshes with the feature in contact, and penetrated open surfaces
-// (the particle's centre is past the surface) after these. The image is that of the partner relative to the
-// particle with both in the periodic box, so that no key depends on when positions were last wrapped.
-inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPenetratedId = 2 * kFirstSurfaceId,
-                          kPartnersEnd = 3 * kFirstSurfaceId;
-SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool penetrated = false) {
-  return (penetrated ? kFirstPenetratedId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
-}
-SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
-SCREE_HD bool is_penetrated(std::int64_t contact_key) { return contact_key >= 27 * kFirstPenetratedId; }
-// Feature of a contact with a mesh.
-SCREE_HD Index feature_of(std::int64_t contact_key) {
-  return static_cast<Index>((contact_key / 27 % kFirstSurfaceId) >> kSurfaceBits);
-}
-// Number of the surface of a contact.
-SCREE_HD Index surface_of(std::int64_t contact_key) {
-  return static_cast<Index>(contact_key / 27 % kFirstSurfaceId & ((GlobalId{1} << kSurfaceBits) - 1));
-}
-// The key with feature 0 and not penetrated.
-SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
-  const GlobalId of_feature = GlobalId{feature_of(contact_key)} << kSurfaceBits;
-  return contact_key - 27 * (is_penetrated(contact_key) ? of_feature + kFirstSurfaceId : of_feature);
-}
 
 // Periodic box.
 struct PeriodicBox {

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "dem/history/contact_key.hpp"
 #include "dem/history/history_slots.hpp"
 #include "dem/history/shape_contacts.hpp"
 #include "dem/surfaces/surfaces.hpp"
@@ -12,17 +13,17 @@
 namespace scree {
 namespace {
 
-// The contacts with the requested keys. Their values are kept if the law has as many numbers, else zero.
+// The contacts with the requested keys. Their values are zero unless `all` has the same content.
 template <class IsRequested>
-PackedHistory only(const PackedHistory& all, int numbers, const IsRequested& is_requested) {
+PackedHistory only(const PackedHistory& all, HistoryContent content, const IsRequested& is_requested) {
   PackedHistory out;
-  out.numbers = numbers;
+  out.content = content;
   const std::vector<Real> none(static_cast<std::size_t>(out.width()));
   for (std::int64_t i = 0; i < all.particles(); ++i) {
     for (std::int64_t c = all.offsets[static_cast<std::size_t>(i)];
          c < all.offsets[static_cast<std::size_t>(i) + 1]; ++c)
       if (const std::int64_t key = all.keys[static_cast<std::size_t>(c)]; is_requested(key))
-        out.add(key, numbers == all.numbers ? all.values_of(c) : none);
+        out.add(key, content == all.content ? all.values_of(c) : none);
     out.end_row();
   }
   return out;
@@ -50,16 +51,16 @@ class OpenSurfaceKeys {
 
 }  // namespace
 
-int packed_numbers(const Model& model, int of_law) {
-  return of_law == 0 && has_open_surfaces(model) ? kSidesOnly : of_law;
+HistoryContent packed_content(const Model& model, int of_law) {
+  return of_law == 0 && has_open_surfaces(model) ? kSidesOnly : HistoryContent::of_law(of_law);
 }
 
 namespace {
 
 // Number of contacts with the surface of this number.
 Index count_with(std::span<const std::int64_t> keys, Index surface) {
-  return static_cast<Index>(std::ranges::count_if(
-      keys, [&](std::int64_t key) { return is_surface(key) && surface_of(key) == surface; }));
+  return static_cast<Index>(
+      std::ranges::count_if(keys, [&](std::int64_t key) { return is_with_surface(key, surface); }));
 }
 
 }  // namespace
@@ -84,13 +85,12 @@ void PackedHistory::add_row(const PackedHistory& from, std::int64_t particle) {
 
 void PackedHistory::order_from(std::size_t contact) {
   const auto n = static_cast<std::size_t>(width());
-  for (std::size_t k = contact + 1; k < keys.size(); ++k)
-    for (std::size_t at = k; at > contact && keys[at - 1] > keys[at]; --at) {
-      std::swap(keys[at - 1], keys[at]);
-      std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>((at - 1) * n),
-                       values.begin() + static_cast<std::ptrdiff_t>(at * n),
-                       values.begin() + static_cast<std::ptrdiff_t>(at * n));
-    }
+  sort_by_key(
+      contact, keys.size(), [this](std::size_t k) { return keys[k]; },
+      [&](std::size_t a, std::size_t b) {
+        std::swap(keys[a], keys[b]);
+        std::swap_ranges(values.data() + a * n, values.data() + (a + 1) * n, values.data() + b * n);
+      });
 }
 
 void PackedHistory::append(const PackedHistory& of_others) {
@@ -103,7 +103,7 @@ void PackedHistory::append(const PackedHistory& of_others) {
 
 PackedHistory PackedHistory::rows(std::span<const Index> particles) const {
   PackedHistory out;
-  out.numbers = numbers;
+  out.content = content;
   out.offsets.reserve(particles.size() + 1);
   for (const Index particle : particles) out.add_row(*this, particle);
   return out;
@@ -134,17 +134,17 @@ double history_bytes_with_pairs(int numbers) {
 }
 
 PackedHistory PackedHistory::without_surfaces() const {
-  return only(*this, numbers, [](std::int64_t key) { return !is_surface(key); });
+  return only(*this, content, [](std::int64_t key) { return !is_surface(key); });
 }
 
-PackedHistory sides_of(const PackedHistory& contacts, const Model& model, int numbers) {
-  return only(contacts, numbers, OpenSurfaceKeys(model));
+PackedHistory sides_of(const PackedHistory& contacts, const Model& model, HistoryContent content) {
+  return only(contacts, content, OpenSurfaceKeys(model));
 }
 
-ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers) {
+ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, HistoryContent content) {
   const OpenSurfaceKeys is_of_open_surface(model);
   ShapeContacts out;
-  out.numbers = numbers;
+  out.content = content;
   for (std::size_t k = 0; k < contacts.keys.size(); ++k)
     if (is_of_open_surface(contacts.keys[k]))
       out.shapes.push_back(contacts.shapes[k]), out.keys.push_back(contacts.keys[k]);
@@ -152,10 +152,10 @@ ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int nu
   return out;
 }
 
-PackedHistory no_contacts(int numbers, std::int64_t particles) {
+PackedHistory no_contacts(HistoryContent content, std::int64_t particles) {
   PackedHistory out;
-  out.numbers = numbers;
-  if (numbers != 0) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
+  out.content = content;
+  if (content.exists()) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
   return out;
 }
 
@@ -164,7 +164,7 @@ PackedHistory all_to_all(const Ranks& ranks, const std::vector<PackedHistory>& t
   std::vector<std::vector<Real>> values;
   PackedHistory arriving;
   for (const PackedHistory& part : to) {
-    arriving.numbers = part.numbers;
+    arriving.content = part.content;
     counts.push_back(part.counts()), keys.push_back(part.keys), values.push_back(part.values);
   }
   arriving.set_counts(ranks.all_to_all(counts));
@@ -173,7 +173,7 @@ PackedHistory all_to_all(const Ranks& ranks, const std::vector<PackedHistory>& t
 }
 
 PackedHistory in_order(const IdOrder& order, PackedHistory contacts) {
-  if (contacts.numbers == 0) return contacts;
+  if (!contacts.content.exists()) return contacts;
   const std::vector<std::int64_t> counts = contacts.counts();
   std::vector<std::int64_t> of_values = counts;
   for (std::int64_t& count : of_values) count *= contacts.width();

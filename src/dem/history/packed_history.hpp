@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "dem/history/history_content.hpp"
 #include "dem/history/shape_contacts.hpp"
 #include "model/data/model.hpp"
 #include "partition/id_order.hpp"
@@ -13,21 +14,18 @@
 
 namespace scree {
 
-// `PackedHistory::numbers` of laws without history where the model has open surfaces: the contacts with these
-// are packed for their sides, which are part of the keys.
-inline constexpr int kSidesOnly = -1;
-// `PackedHistory::numbers` of a model whose law has this many: these, or `kSidesOnly`.
-int packed_numbers(const Model& model, int of_law);
+// History content of a model whose law has `of_law` numbers per contact: these numbers, or `kSidesOnly`.
+HistoryContent packed_content(const Model& model, int of_law);
 
 // Contacts that were closed at the last step, particle by particle, without ghosts. The particles are stored
 // elsewhere in the same order.
 struct PackedHistory {
-  int numbers = 0;  // per contact; 0: no history, and no particle has a row; or `kSidesOnly`
+  HistoryContent content = kNoHistory;   // without history no particle has a row
   std::vector<std::int64_t> offsets{0};  // [particles + 1] into the contacts
-  std::vector<std::int64_t> keys;        // [contacts], increasing in a row: contact keys (history_slots.hpp)
+  std::vector<std::int64_t> keys;        // [contacts], increasing in a row: contact keys (contact_key.hpp)
   std::vector<Real> values;              // [contacts][width()]
 
-  int width() const { return numbers > 0 ? numbers : 0; }
+  int width() const { return content.values; }
   std::int64_t particles() const { return std::ssize(offsets) - 1; }
   std::int64_t contacts(std::int64_t particle) const {
     return offsets[static_cast<std::size_t>(particle) + 1] - offsets[static_cast<std::size_t>(particle)];
@@ -66,12 +64,12 @@ double history_bytes(int numbers, double slots = 10);
 double history_bytes_with_pairs(int numbers);
 
 // Packed history of particles without contacts.
-PackedHistory no_contacts(int numbers, std::int64_t particles);
+PackedHistory no_contacts(HistoryContent content, std::int64_t particles);
 
-// From the history of another law, where the model's law has `numbers`: the contacts with open surfaces, with
-// their sides only.
-PackedHistory sides_of(const PackedHistory& contacts, const Model& model, int numbers);
-ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers);
+// From the history of another law, where the model has the history `content`: the contacts with open
+// surfaces, with their sides only.
+PackedHistory sides_of(const PackedHistory& contacts, const Model& model, HistoryContent content);
+ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, HistoryContent content);
 
 // Rows in the order of the ids, like their particles. Collective.
 PackedHistory in_order(const IdOrder& order, PackedHistory contacts);

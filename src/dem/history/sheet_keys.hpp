@@ -2,7 +2,7 @@
 // it, so that keys do not depend on the orientation of its faces. Shared by the CPU and CUDA backends.
 #pragma once
 
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "dem/surfaces/surfaces.hpp"
 #include "mesh/open_surface_sides.hpp"
 
@@ -18,15 +18,18 @@ struct InMeshFrame {
       : mesh(of),
         c(transposed_times(frame.axes, (nearest_image(surface, frame, p) - shift) - surface.point)) {}
 
-  // Id of the contact in its key, from the stored feature; and the stored feature from the key.
-  SCREE_HD GlobalId name(Index surface, Index stored_feature) const {
-    if (!mesh.sheet) return surface_id(surface, stored_feature);
-    return surface_id(surface, without_side(stored_feature), is_penetrated(mesh, stored_feature, c));
+  // Completes the contact key of the mesh with the feature that the contact stores
+  // (`HistoryViews::features`), and with its side.
+  SCREE_HD ContactKey key_at(ContactKey key, Index stored) const {
+    key.feature = mesh.sheet ? without_side(stored) : stored;
+    key.penetrated = mesh.sheet && is_penetrated(mesh, stored, c);
+    return key;
   }
-  SCREE_HD Index stored_feature(std::int64_t contact_key) const {
-    const Index feature = feature_of(contact_key);
+  // Feature to be stored, from the packed key.
+  SCREE_HD Index stored_feature(std::int64_t key) const {
+    const Index feature = feature_of(key);
     if (!mesh.sheet) return feature;
-    return with_side(feature, is_outward(mesh, feature, c) != is_penetrated(contact_key));
+    return with_side(feature, is_outward(mesh, feature, c) != is_penetrated(key));
   }
 };
 

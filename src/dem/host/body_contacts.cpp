@@ -63,7 +63,7 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       kernels_(make_contact_kernels(corners_.with_own_materials(without_cohesion(model.contact)))),
       planes_(wall_planes(model)),
       entries_(model, subdomain, *kernels_, 0, masses_of_parents(model, surfaces)),
-      accepted_(packed_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
+      accepted_(packed_content(model, kernels_->history()), {model.space.min, subdomain.period()}),
       trial_(accepted_) {}
 
 // Possible partners of each placed surface, in order.
@@ -186,7 +186,7 @@ void BodyContacts::build(const SurfacePoses& poses, Real skin) {
 // Unpacks the history of the shapes in the list; the contacts of all others have ended.
 void BodyContacts::unpack_shape_contacts(const SurfacePoses& poses) {
   PackedHistory rows;
-  rows.numbers = packed_.numbers;
+  rows.content = packed_.content;
   std::size_t k = 0;
   for (Index i = 0; i < store_.owned; ++i) {
     for (; k < packed_.shapes.size() && packed_.shapes[k] <= items_[i].surface; ++k)
@@ -204,15 +204,15 @@ void BodyContacts::pack_list(const SurfacePoses& poses) {
 }
 
 void BodyContacts::load(const ShapeContacts& contacts) {
-  packed_ = contacts.numbers == accepted_.numbers() ? contacts : ShapeContacts{};
-  packed_.numbers = accepted_.numbers();
+  packed_ = contacts.content == accepted_.content() ? contacts : ShapeContacts{};
+  packed_.content = accepted_.content();
   has_list_ = false;
 }
 
 ShapeContacts BodyContacts::contacts(const SurfacePoses& poses) {
   if (!has_list_) return packed_;
   ShapeContacts out;
-  out.numbers = accepted_.numbers();
+  out.content = accepted_.content();
   if (!accepted_.exists()) return out;
   set_items(poses, Instant::now, 0);
   const PackedHistory rows = accepted_.contacts(listed(poses));
@@ -392,7 +392,7 @@ std::vector<ContactLine> BodyContacts::lines(const SurfacePoses& poses) {
   };
   for (ContactLine& line : lines) {
     line.first = id_of_shape(line.first);
-    if (line.second < kFirstSurfaceId) line.second = id_of_shape(line.second);
+    if (surface_with_id(line.second) < 0) line.second = id_of_shape(line.second);
   }
   return lines;
 }

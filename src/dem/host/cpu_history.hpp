@@ -4,9 +4,10 @@
 
 #include <vector>
 
+#include "dem/contact/contact_views.hpp"
 #include "dem/history/history_slots.hpp"
+#include "dem/history/keyed_rows.hpp"
 #include "dem/history/packed_history.hpp"
-#include "dem/history/sheet_keys.hpp"
 #include "dem/particles/particle_store.hpp"
 #include "dem/search/neighbor_list.hpp"
 #include "dem/surfaces/surfaces.hpp"
@@ -15,12 +16,12 @@ namespace scree {
 
 class CpuHistory {
  public:
-  // numbers: per contact, or `kSidesOnly`; 0: no history, and all functions below do nothing.
-  CpuHistory(int numbers, const PeriodicBox& box) : numbers_(numbers), box_(box) {}
+  // If `content` has no history, all functions below do nothing.
+  CpuHistory(HistoryContent content, const PeriodicBox& box) : content_(content), box_(box) {}
 
-  bool exists() const { return numbers_ != 0; }
-  int numbers() const { return numbers_; }
-  int records() const { return records_of(numbers_); }
+  bool exists() const { return content_.exists(); }
+  HistoryContent content() const { return content_; }
+  int records() const { return records_of(content_.values); }
   bool at_slots() const { return at_slots_; }
   // Views for walks on the list.
   HistoryViews views();
@@ -38,7 +39,7 @@ class CpuHistory {
     SurfaceNumbers numbers;
   };
   // Packed history of the owned particles, in their order.
-  PackedHistory contacts(const Listed& at) const;
+  PackedHistory contacts(const Listed& at);
 
   // Packs the history before a list is discarded; unpacks it after another one was built.
   void pack_history(const Listed& at);
@@ -54,25 +55,9 @@ class CpuHistory {
 
  private:
   static HistoryViews sides_only(std::vector<Index>& of, std::vector<Index>& ahead);
-  // Contact key at a slot, or at an entry of the surfaces, of a particle at p.
-  std::int64_t neighbor_key(const Listed& at, Vec3 p, Index slot) const;
-  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry) const;
-  std::int64_t mesh_key(const Listed& at, Vec3 p, Index entry, GlobalId name) const;
-  bool is_mesh(const Listed& at, Index entry) const;
-  InMeshFrame in_mesh_frame(const Listed& at, Vec3 p, Index entry) const;
-  bool sides_only() const { return numbers_ == kSidesOnly; }
-  // Whether the contact at a slot of these records, or at an entry of a mesh, is closed.
-  bool is_closed(const std::vector<Vec4>& records, Index slot) const {
-    return sides_only() ? features_[slot] != kNoFeature : records[first_record(slot)].w == step_;
-  }
-  void unpack_row(const Listed& at, Index i);
-  void unpack_mesh(const Listed& at, Index i, Index entry);
-  std::size_t first_record(std::int64_t slot) const {
-    return static_cast<std::size_t>(slot * records_of(numbers_));
-  }
-  void put(std::vector<Vec4>& records, Index slot, std::int64_t contact) const;
+  KeyedRows<PackedRows> keyed_rows(const Listed& at);
 
-  int numbers_;
+  HistoryContent content_;
   PeriodicBox box_;
   bool at_slots_ = false;
   PackedHistory packed_;                                   // packed history of the owned particles, unless it

@@ -11,6 +11,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/particles/row_key.hpp"
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
 #include "physics/orientation.hpp"
@@ -70,11 +71,6 @@ struct FieldsThere {
     return ((parts & kRotation) == 0 || rotates) && ((parts & kRolling) == 0 || rolls);
   }
 };
-
-// Key that orders the entries of a neighbour list's row, by global id and then by image, independent of local
-// indices.
-SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image = kZeroShift) { return id * 27 + image; }
-SCREE_HD GlobalId id_of(std::int64_t row_key) { return row_key / 27; }
 
 // One Array per FIELD and PACKED, and the items' keys. Array: device or host memory, or a plain pointer.
 template <template <class> class Array>

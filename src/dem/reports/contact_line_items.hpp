@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "dem/contact/contact_walk.hpp"
+#include "dem/history/contact_key.hpp"
 #include "dem/history/history_slots.hpp"
 #include "dem/particles/particle_fields.hpp"
 #include "dem/surface_contact/surface_items.hpp"

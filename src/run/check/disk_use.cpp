@@ -136,7 +136,7 @@ void add_snapshots(const Model& model, DiskUse& use) {
 
 void add_checkpoint(const Model& model, std::int64_t resolved_deck, DiskUse& use) {
   State state = sized_state(model);
-  state.contacts.numbers = packed_numbers(model, history_of(model.contact));
+  state.contacts.content = packed_content(model, history_of(model.contact));
   Checkpoint checkpoint = pack(state);
   checkpoint.texts = {{"fingerprint", std::string(as_size(resolved_deck), ' ')},
                       {"deck", ""},

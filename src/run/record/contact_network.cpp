@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "dem/history/contact_key.hpp"
 #include "partition/id_order.hpp"
 
 namespace scree {
@@ -22,21 +23,18 @@ void ContactNetwork::add(const ContactLine& line, const SurfaceSet& surfaces) {
   normal_force_.push_back(contact.normal_force), tangential_force_.push_back(contact.tangential_force);
   overlap_.push_back(contact.overlap);
   if (friction_steps_) slip_.push_back(contact.slip);
-  const auto number = [](GlobalId id) {
-    return static_cast<Index>(id >= kFirstSurfaceId ? id - kFirstSurfaceId : -1);
-  };
   const auto body_of = [&](Index surface) {
     return surface >= surfaces.ground() ? surfaces.at(surface - surfaces.ground()).parent : -1;
   };
-  const Index surface = number(line.second);
+  const Index surface = surface_with_id(line.second);
   const bool with_surface = surface >= 0, with_body = surface >= surfaces.ground();
-  first_.push_back(number(line.first) >= 0 ? -1 : line.first);
+  first_.push_back(surface_with_id(line.first) >= 0 ? -1 : line.first);
   second_.push_back(with_surface ? -1 : line.second);
   kind_.push_back(static_cast<int>(with_body      ? ContactKind::body
                                    : with_surface ? ContactKind::wall
                                                   : ContactKind::particle));
   wall_.push_back(with_body ? -1 : surface);
-  body_.push_back(body_of(surface)), first_body_.push_back(body_of(number(line.first)));
+  body_.push_back(body_of(surface)), first_body_.push_back(body_of(surface_with_id(line.first)));
 }
 
 LineSnapshot ContactNetwork::snapshot() const {

@@ -96,11 +96,11 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
                               std::pair(kShapeSidesOf, &sizes.shape_contacts.shapes),
                               std::pair(kShapeSidesWith, &sizes.shape_contacts.keys)})
     if (checkpoint.integers.count(name) > 0) values->resize(checkpoint.integer_array(name).size());
-  sizes.shape_contacts.numbers = shape_numbers_in(checkpoint);
+  sizes.shape_contacts.content = shape_content_in(checkpoint);
   if (checkpoint.reals.count(kShapeHistory) > 0)
     sizes.shape_contacts.values.resize(checkpoint.real_array(kShapeHistory).size());
   // Contact history and rotation are optional in a checkpoint: without them it starts empty.
-  sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
+  sizes.contacts.content = content_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";
   check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);

@@ -198,12 +198,12 @@ bool renumbers_surfaces(const DeckDifference& difference) {
 
 // Reduces the contact history to the sides of open surfaces if the new law has another history.
 void reduce_to_sides(const Model& model, State& state) {
-  const auto differs = [](const auto& contacts, int numbers) {
-    return contacts.numbers != 0 && contacts.numbers != numbers;
+  const auto differs = [](const auto& contacts, HistoryContent content) {
+    return contacts.content.exists() && contacts.content != content;
   };
-  const int numbers = packed_numbers(model, history_of(model.contact)),
-            of_shapes = packed_numbers(model, history_of(without_cohesion(model.contact)));
-  if (differs(state.contacts, numbers)) state.contacts = sides_of(state.contacts, model, numbers);
+  const HistoryContent content = packed_content(model, history_of(model.contact)),
+                       of_shapes = packed_content(model, history_of(without_cohesion(model.contact)));
+  if (differs(state.contacts, content)) state.contacts = sides_of(state.contacts, model, content);
   if (differs(state.shape_contacts, of_shapes))
     state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
 }

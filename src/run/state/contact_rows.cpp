@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 
 namespace scree {
 namespace {
@@ -23,7 +23,7 @@ constexpr RowNames kOfContacts{"contacts/count", "contacts/partner", "contacts/i
     kOfSides{"sides/count", "sides/partner", "sides/image"};
 
 const RowNames& names_of(const PackedHistory& contacts) {
-  return contacts.numbers == kSidesOnly ? kOfSides : kOfContacts;
+  return contacts.content == kSidesOnly ? kOfSides : kOfContacts;
 }
 
 // Adds a dataset of rows with one integer each.
@@ -52,7 +52,7 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
   const auto partners = read_rows(in.row_array<std::int64_t>(names.partners), first, count),
              images = read_rows(in.row_array<std::int64_t>(names.images), first, count);
   for (std::size_t k = 0; k < partners.size(); ++k) {
-    if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= 27)
+    if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= kImages)
       throw IoError(in.path + ": the partner or the image of a contact is not valid");
     contacts.keys.push_back(row_key(partners[k], static_cast<std::int8_t>(images[k])));
   }
@@ -62,7 +62,7 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
 }  // namespace
 
 void add_contacts(const PackedHistory& contacts, Checkpoint& out) {
-  if (contacts.numbers == 0) return;
+  if (!contacts.content.exists()) return;
   const RowNames& names = names_of(contacts);
   const std::int64_t count = std::ssize(contacts.keys);
   const auto key = [&contacts](std::int64_t k) { return contacts.keys[as_size(k)]; };
@@ -76,7 +76,7 @@ void add_contacts(const PackedHistory& contacts, Checkpoint& out) {
       count, [key](std::int64_t k) { return id_of(key(k)); }, out);
   add_integers(
       names.images, "image of the partner: 13 plus the periods in x, 3 times those in y, 9 times those in z",
-      count, [key](std::int64_t k) { return key(k) % 27; }, out);
+      count, [key](std::int64_t k) { return image_of(key(k)); }, out);
   const int numbers = contacts.width();
   if (numbers == 0) return;
   out.real_rows[kHistory] = {numbers, count,
@@ -86,16 +86,16 @@ void add_contacts(const PackedHistory& contacts, Checkpoint& out) {
                              "of the law", "history of the contact, as seen from this particle"};
 }
 
-int numbers_in(const Checkpoint& checkpoint) {
+HistoryContent content_in(const Checkpoint& checkpoint) {
   const auto history = checkpoint.real_rows.find(kHistory);
-  if (history != checkpoint.real_rows.end()) return history->second.width;
-  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesOnly : 0;
+  if (history != checkpoint.real_rows.end()) return HistoryContent::of_law(history->second.width);
+  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesOnly : kNoHistory;
 }
 
 PackedHistory unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
   PackedHistory contacts;
-  contacts.numbers = numbers_in(in);
-  if (contacts.numbers == 0) return contacts;
+  contacts.content = content_in(in);
+  if (!contacts.content.exists()) return contacts;
   const RowNames& names = names_of(contacts);
   const std::int64_t rows = in.row_array<std::int64_t>(names.partners).count, all = ranks.sum(rows);
   ranks.collectively([&] {
@@ -118,7 +118,7 @@ PackedHistory unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
 void add_contacts(const PackedHistory& contacts, std::size_t particle, BitHash& hash) {
   for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
     // Without a history the side follows from the centre, unless the centre has penetrated the surface.
-    if (contacts.numbers == kSidesOnly && !is_penetrated(contacts.keys[as_size(k)])) continue;
+    if (contacts.content == kSidesOnly && !is_penetrated(contacts.keys[as_size(k)])) continue;
     hash.add(contacts.keys[as_size(k)]);
     for (const Real value : contacts.values_of(k)) hash.add(value);
   }
@@ -126,7 +126,7 @@ void add_contacts(const PackedHistory& contacts, std::size_t particle, BitHash& 
 
 std::string contacts_error(const PackedHistory& contacts, const std::vector<Particle>& particles,
                            std::int64_t of_deck) {
-  if (contacts.numbers == 0) return "";
+  if (!contacts.content.exists()) return "";
   if (contacts.particles() != std::ssize(particles)) return "the contacts are of another number of particles";
   for (std::size_t i = 0; i < particles.size(); ++i)
     for (std::int64_t k = contacts.offsets[i]; k < contacts.offsets[i + 1]; ++k) {

@@ -16,8 +16,8 @@ namespace scree {
 // Adds the rows, in the order of the particles: per particle the number of its contacts, per contact the
 // partner and the values. The contacts must outlive the checkpoint and must not change meanwhile.
 void add_contacts(const PackedHistory& contacts, Checkpoint& out);
-// Number of values per contact in the checkpoint; 0 without such rows.
-int numbers_in(const Checkpoint& checkpoint);
+// History content according to the rows of the checkpoint; `kNoHistory` without such rows.
+HistoryContent content_in(const Checkpoint& checkpoint);
 // The contacts of the particles whose rows this rank has. Throws IoError, on every rank, if the rows are
 // inconsistent. Collective.
 PackedHistory unpack_contacts(const Checkpoint& checkpoint, const Ranks& ranks);

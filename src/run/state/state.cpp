@@ -74,7 +74,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("shapes/loss_power", state.shapes.loss_power);
   visit("shapes/integrator_loss", state.shapes.integrator_loss);
   visit.if_any(kShapeFrictionLosses, state.shapes.tangential);
-  const bool sides_only = state.shape_contacts.numbers == kSidesOnly;
+  const bool sides_only = state.shape_contacts.content == kSidesOnly;
   visit.if_any(sides_only ? kShapeSidesOf : kShapeContactsOf, state.shape_contacts.shapes);
   visit.if_any(sides_only ? kShapeSidesWith : kShapeContactsWith, state.shape_contacts.keys);
   visit.if_any(kShapeHistory, state.shape_contacts.values);
@@ -202,7 +202,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
       if ((field.parts & kState) != 0)
         for (const auto number : numbers_of(state.particles[i].*member)) one.add(number);
     });
-    if (state.contacts.numbers != 0) add_contacts(state.contacts, i, one);
+    if (state.contacts.content.exists()) add_contacts(state.contacts, i, one);
     sum += one.hash();
   }
   if (!with_rest) return sum;
@@ -216,11 +216,12 @@ namespace {
 // Derives the number of values per contact from the array lengths, unless the contacts store sides alone.
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
-  const bool has_values = contacts.numbers != kSidesOnly && count > 0;
+  const bool has_values = contacts.content != kSidesOnly && count > 0;
   if (contacts.keys.size() != count || (has_values ? values == 0 || values % count > 0 : values > 0))
     throw IoError(fmt::format("{}: the arrays {}, {} and {} do not fit together", path, kShapeContactsOf,
                               kShapeContactsWith, kShapeHistory));
-  if (contacts.numbers != kSidesOnly) contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
+  if (contacts.content != kSidesOnly)
+    contacts.content = HistoryContent::of_law(count > 0 ? static_cast<int>(values / count) : 0);
   for (std::size_t k = 1; k < count; ++k)
     if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
         std::pair(contacts.shapes[k], contacts.keys[k]))
@@ -229,14 +230,16 @@ void count_numbers(const std::string& path, ShapeContacts& contacts) {
 
 }  // namespace
 
-int shape_numbers_in(const Checkpoint& in) { return in.integers.count(kShapeSidesOf) > 0 ? kSidesOnly : 0; }
+HistoryContent shape_content_in(const Checkpoint& in) {
+  return in.integers.count(kShapeSidesOf) > 0 ? kSidesOnly : kNoHistory;
+}
 
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
   ranks.collectively([&] {  // one rank's rows may be unreadable
     Reader reader(checkpoint);
     state.there = fields_there(checkpoint);
-    state.shape_contacts.numbers = shape_numbers_in(checkpoint);
+    state.shape_contacts.content = shape_content_in(checkpoint);
     visit_state(reader, state), visit_output(reader, state);
     count_numbers(checkpoint.path, state.shape_contacts);
     state.particles = unpack_particles(checkpoint);

@@ -61,8 +61,8 @@ inline constexpr const char *kShapeContactsOf = "shapes/contact_shape",
                             *kShapeHistory = "shapes/contact_history", *kShapeSidesOf = "shapes/side_shape",
                             *kShapeSidesWith = "shapes/side_partner",
                             *kShapeFrictionLosses = "shapes/rubbing_losses";
-// ShapeContacts::numbers according to the names of the datasets: kSidesOnly or 0.
-int shape_numbers_in(const Checkpoint& in);
+// ShapeContacts::content according to the names of the datasets: `kSidesOnly` or `kNoHistory`.
+HistoryContent shape_content_in(const Checkpoint& in);
 // The fields that the particles of a checkpoint have.
 FieldsThere fields_there(const Checkpoint& in);
 // The state as a checkpoint, with this rank's particles. It refers to the state, which must not change or end

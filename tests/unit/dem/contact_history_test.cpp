@@ -91,7 +91,7 @@ TEST_CASE("reports between steps, and batches of steps, do not change contact hi
       }
       CHECK(differing_fields(a.records(), b.records()) == "");
       CHECK(difference(a.contacts(), b.contacts()) == "");
-      CHECK(a.contacts().numbers == 3);
+      CHECK(a.contacts().content == HistoryContent::of_law(3));
     }
     // Back into a backend without history.
     LoadedBox onward(moving_box(c), kSkin, make_history_test_backend<3>);
@@ -110,10 +110,10 @@ TEST_CASE("reports between steps, and batches of steps, do not change contact hi
 
 TEST_CASE("a law without history stores none") {
   LoadedBox box(moving_box(kBoxes[4]), kSkin);
-  box.backend->particles().load_contacts(no_contacts(3, 150));
+  box.backend->particles().load_contacts(no_contacts(HistoryContent::of_law(3), 150));
   verlet_steps(box, kStep, 3);
   const PackedHistory contacts = box.backend->particles().contacts();
-  CHECK(contacts.numbers == 0);
+  CHECK(!contacts.content.exists());
   CHECK(contacts.particles() == 0);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "dem/history/contact_key.hpp"
 #include "support/catch.hpp"
 #include "support/frictional_box.hpp"
 #include "support/near.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Real kRoundOff = 1e-11;  // of forces of up to some 100 N, and of lengths
 
-bool with_surface(const ContactLine& line) { return line.second >= kFirstSurfaceId; }
+bool with_surface(const ContactLine& line) { return surface_with_id(line.second) >= 0; }
 
 // Sums per particle.
 struct Sums {
@@ -45,7 +46,7 @@ void check_line(const ContactLine& line, const Model& model, const std::vector<V
   const auto i = static_cast<std::size_t>(line.first);
   REQUIRE(line.start == position[i]);
   REQUIRE(near(std::hypot(c.normal_force, c.tangential_force), norm(c.force), {kRoundOff, kRoundOff}));
-  const auto surface = line.second - kFirstSurfaceId;
+  const Index surface = surface_with_id(line.second);
   if (surface >= std::ssize(model.walls)) return;
   Real reach = model.particles.radius[i];
   if (!with_surface(line)) {

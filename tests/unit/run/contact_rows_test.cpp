@@ -3,7 +3,7 @@
 #include "run/state/contact_rows.hpp"
 
 #include "base/error.hpp"
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "output/hdf5_file.hpp"
 #include "run/restart/checkpoint_datasets.hpp"
 #include "run/state/state.hpp"
@@ -26,22 +26,23 @@ State state_with_history(int numbers) {
     state.particles.back().global_id = id;
   }
   PackedHistory& contacts = state.contacts;
-  contacts.numbers = numbers;
+  contacts.content = HistoryContent::of_law(numbers);
   Real next = 0.1;
-  const auto add = [&](GlobalId partner, std::int8_t image) {
+  const auto add = [&](const ContactKey& key) {
     std::vector<Real> values;
     for (int k = 0; k < numbers; ++k) values.push_back(k == 1 ? -0.0 : next /= 3);
-    contacts.add(row_key(partner, image), values);
+    contacts.add(key.pack(), values);
   };
-  add(2, kZeroShift), add(kFirstSurfaceId + 5, 12), contacts.end_row();
+  add(ContactKey::particle(2)), add(ContactKey::surface(5, 12)), contacts.end_row();
   contacts.end_row();
-  add(0, kZeroShift), add(3, 0), add(3, 26), contacts.end_row();
-  add(2, 26), contacts.end_row();
+  add(ContactKey::particle(0)), add(ContactKey::particle(3, 0)), add(ContactKey::particle(3, 26));
+  contacts.end_row();
+  add(ContactKey::particle(2, 26)), contacts.end_row();
   return state;
 }
 
 std::string difference(const PackedHistory& a, const PackedHistory& b) {
-  if (a.numbers != b.numbers) return "numbers";
+  if (a.content != b.content) return "content";
   if (a.offsets != b.offsets || a.keys != b.keys) return "contacts";
   return same_bits(a.values, b.values) ? "" : "values";
 }
@@ -83,7 +84,7 @@ TEST_CASE("a checkpoint has rows of contacts only with a law with history") {
   const State state = state_with_history(0);
   for (const auto& [name, rows] : pack(state).real_rows) CHECK_FALSE(contains(name, "contacts"));
   for (const auto& [name, rows] : pack(state).integer_rows) CHECK_FALSE(contains(name, "contacts"));
-  CHECK(unpack(pack(state)).contacts.numbers == 0);
+  CHECK(!unpack(pack(state)).contacts.content.exists());
   // Both are checkpoints of the same model; one with a part of the rows is not.
   const Model model;
   const auto trouble = [&](const Checkpoint& checkpoint) -> std::string {
@@ -124,7 +125,7 @@ TEST_CASE("the hash covers contact histories, and nothing else where there are n
   ++moved.contacts.offsets[1];
   CHECK(state_hash(moved, true) != hash);
   State none = state;
-  none.contacts = no_contacts(7, kParticles);
+  none.contacts = no_contacts(HistoryContent::of_law(7), kParticles);
   CHECK(state_hash(none, true) != hash);
   CHECK(state_hash(none, true) == state_hash(state_with_history(0), true));
 }
@@ -140,7 +141,8 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
   CHECK(contains(with([](PackedHistory& c) { c.values[4] = std::nan(""); }), "is not finite"));
   CHECK(contains(with([](PackedHistory& c) { std::swap(c.keys[2], c.keys[3]); }),
                  "particle 2 are out of order"));
-  CHECK(contains(with([](PackedHistory& c) { c.keys[5] = row_key(kParticles); }), "with particle 4"));
+  CHECK(contains(with([](PackedHistory& c) { c.keys[5] = ContactKey::particle(kParticles).pack(); }),
+                 "with particle 4"));
   CHECK(contains(with([](PackedHistory& c) { c.offsets.pop_back(); }), "another number of particles"));
   const auto unpacked = [&](const char* name, std::int64_t value) -> std::string {
     Checkpoint changed = pack(state);
@@ -165,14 +167,15 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
 
 TEST_CASE("the histories of contacts with walls can be left out") {
   PackedHistory all;
-  all.numbers = 1;
+  all.content = HistoryContent::of_law(1);
   const Real values[] = {1, 2, 3};
-  all.add(row_key(5), {values, 1}), all.add(row_key(kFirstSurfaceId), {values + 1, 1}), all.end_row();
-  all.add(row_key(kFirstSurfaceId + 3), {values + 2, 1}), all.end_row();
+  const std::int64_t of_particle = ContactKey::particle(5).pack();
+  all.add(of_particle, {values, 1}), all.add(ContactKey::surface(0).pack(), {values + 1, 1}), all.end_row();
+  all.add(ContactKey::surface(3).pack(), {values + 2, 1}), all.end_row();
   const PackedHistory left = all.without_surfaces();
-  CHECK(left.numbers == 1);
+  CHECK(left.content == all.content);
   CHECK(left.offsets == std::vector<std::int64_t>{0, 1, 1});
-  CHECK(left.keys == std::vector<std::int64_t>{row_key(5)});
+  CHECK(left.keys == std::vector<std::int64_t>{of_particle});
   CHECK(left.values == std::vector<Real>{1});
 }
 

@@ -19,8 +19,8 @@ void shift_bodies(HistoryTestBox& box, Real shift, Real turn) {
 PackedHistory with_bodies(const HistoryTestBox& box) {
   const PackedHistory all = box.state().contacts;
   PackedHistory out;
-  out.numbers = all.numbers;
-  const GlobalId first = kFirstSurfaceId + std::ssize(box.model.walls);
+  out.content = all.content;
+  const GlobalId first = surface_id(static_cast<Index>(box.model.walls.size()));
   for (std::int64_t i = 0; i < all.particles(); ++i) {
     for (std::int64_t k = all.offsets[static_cast<std::size_t>(i)];
          k < all.offsets[static_cast<std::size_t>(i) + 1]; ++k)

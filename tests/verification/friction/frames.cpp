@@ -2,7 +2,7 @@
 // uniform velocity; a cohesive clump at rest, in translation and in rigid rotation.
 #include <map>
 
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"

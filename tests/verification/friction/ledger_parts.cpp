@@ -2,7 +2,7 @@
 // contact histories.
 #include <fmt/format.h>
 
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "physics/energy.hpp"
 #include "physics/spring_slider.hpp"
 #include "support/bars.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/history/history_slots.hpp"
+#include "dem/history/contact_key.hpp"
 #include "run/state/state.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
