@@ -35,7 +35,9 @@ struct PackedHistoryViews {
  private:
   SCREE_HD Part part_of(Index contact) const {
     Part at = part[0];
+#ifdef __CUDA_ARCH__
 #pragma unroll
+#endif
     for (int k = 1; k < kParts; ++k)
       if (contact >= part[k].first) at = part[k];
     return at;
