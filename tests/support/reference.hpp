@@ -1,6 +1,7 @@
 // Tables of tests/reference, and decks of input, for tests.
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -13,7 +14,7 @@ namespace scree {
 
 // Rows of numbers of a reference file; lines that do not start with a number are its header.
 inline std::vector<std::vector<Real>> reference_rows(const std::string& name) {
-  std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
+  std::ifstream file(std::filesystem::path(SCREE_SOURCE_DIR) / "tests/reference" / name);
   REQUIRE(file.good());
   std::vector<std::vector<Real>> rows;
   for (std::string line; std::getline(file, line);) {
@@ -33,7 +34,8 @@ inline std::vector<std::vector<Real>> reference_rows(const std::string& name) {
 // Model of the deck input/NAME.
 inline Model input_model(const std::string& name, const std::vector<std::string>& overrides = {}) {
   Log log(true);
-  return build_model(load_deck(std::string(SCREE_SOURCE_DIR) + "/input/" + name, overrides), log);
+  return build_model(
+      load_deck((std::filesystem::path(SCREE_SOURCE_DIR) / "input" / name).string(), overrides), log);
 }
 
 }  // namespace scree

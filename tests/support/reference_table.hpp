@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -39,7 +40,7 @@ class ReferenceTable {
 
   // Reads tests/reference/NAME.
   explicit ReferenceTable(const std::string& name) {
-    std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
+    std::ifstream file(std::filesystem::path(SCREE_SOURCE_DIR) / "tests/reference" / name);
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line[0] == '#') continue;
       if (columns_.empty())

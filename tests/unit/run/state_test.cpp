@@ -51,7 +51,7 @@ State awkward_state() {
   }
   s.there = {true, true};
   s.shapes = {n.real(), n.real(), n.real(), {{n.real(), 0, n.real()}}};
-  s.shape_contacts = {3, {0, 2, 2}, {n.integer(), n.integer(), n.integer() + 1}, {}};
+  s.shape_contacts = {HistoryContent::of_law(3), {0, 2, 2}, {n.integer(), n.integer(), n.integer() + 1}, {}};
   for (int k = 0; k < 9; ++k) s.shape_contacts.values.push_back(n.real());
   for (int k = 0; k < 30; ++k) s.works.push_back(k % 2 == 0 ? n.integer() : -n.integer());
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}},

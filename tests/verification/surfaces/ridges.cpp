@@ -55,11 +55,11 @@ struct Fold {
   Real angle;
   Vec3 along{std::cos(angle), 0, -std::sin(angle)}, normal{std::sin(angle), 0, std::cos(angle)};
 
-  bool is_penetrated(Vec3 c) const { return angle > 0 ? dot(c, along) > 0 : dot(c, normal) < c.z; }
-  bool is_on_edge(Vec3 c) const { return angle > 0 && c.x > 0 && !is_penetrated(c); }
+  bool is_past(Vec3 c) const { return angle > 0 ? dot(c, along) > 0 : dot(c, normal) < c.z; }
+  bool is_on_edge(Vec3 c) const { return angle > 0 && c.x > 0 && !is_past(c); }
   // Normal of the contact.
   Vec3 normal_at(Vec3 c) const {
-    if (is_penetrated(c)) return normal;
+    if (is_past(c)) return normal;
     if (!is_on_edge(c)) return {0, 0, 1};
     return (1 / std::hypot(c.x, c.z)) * Vec3{c.x, 0, c.z};
   }
@@ -91,7 +91,7 @@ Carried carried_over(const Fold& fold, const std::string& method, Vec3 spring) {
     out.spring = spring_of(run.complete_state());
     out.longest_error = std::max(out.longest_error, std::abs(norm(out.spring) / norm(spring) - 1));
     const Vec3 c = run.particles()[0].position;
-    past += fold.is_penetrated(c), out.edge_steps += fold.is_on_edge(c);
+    past += fold.is_past(c), out.edge_steps += fold.is_on_edge(c);
   }
   return out;
 }
@@ -130,10 +130,10 @@ TEST_CASE("friction of a sphere that slides over a fold is at Coulomb's limit an
         const Vec3 c = run.particles()[0].position, n = fold.normal_at(c);
         const std::vector<Real> on_fold = run.contact_values();
         const Vec3 force{on_fold[0], on_fold[1], on_fold[2]};
-        const Real push = -dot(force, n), limit = kFriction * push, sliding = norm(force + push * n);
-        wrong += !(push > 0) || sliding > (1 + kRoundOff) * limit;
-        sliding += sliding > (1 - kRoundOff) * limit;
-        past += fold.is_penetrated(c), edge_steps += fold.is_on_edge(c);
+        const Real push = -dot(force, n), limit = kFriction * push, tangential = norm(force + push * n);
+        wrong += !(push > 0) || tangential > (1 + kRoundOff) * limit;
+        sliding += tangential > (1 - kRoundOff) * limit;
+        past += fold.is_past(c), edge_steps += fold.is_on_edge(c);
       }
       CHECK(wrong == 0);
       CHECK(sliding > past + edge_steps);
