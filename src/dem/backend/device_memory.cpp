@@ -27,10 +27,10 @@ constexpr double kOwnedFields = bytes_in_arrays<kOwnedArrays>();
 constexpr double kSpinFields = bytes_in_arrays<kSpins>();  // where particles rotate; twice
 constexpr double kOwnedSpinFields = bytes_in_arrays<kOwnedSpins>();
 constexpr double kRollingFields = bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
-constexpr double kStartAcceleration = sizeof(Vec3);                  // of implicit steps; twice where
-                                                                     // particles rotate
+// Of implicit steps; twice where particles rotate.
+constexpr double kStartAcceleration = sizeof(Vec3);
 constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and offsets of the surfaces' rows
-// sorted keys and their order
+// With the sorted keys and their order.
 constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);

@@ -11,9 +11,9 @@ namespace scree {
 // Norms of one Newton iteration of the particles: dimensionless maxima over all particles.
 struct ParticleNorms {
   Real residual = 0;  // over the largest force on a particle, at the iterate and at the start of the step
-  Real correction_bound = 0;  // bound of the position correction that the residual can still cause, over the
-                              // radius
-  bool overshoot = false;     // the last correction went too far along its direction
+  // Bound of the position correction that the residual can still cause, over the radius.
+  Real correction_bound = 0;
+  bool overshoot = false;  // the last correction went too far along its direction
 };
 
 struct ParticleCorrection {
@@ -26,9 +26,9 @@ class ImplicitStep {
  public:
   virtual ~ImplicitStep() = default;
 
-  virtual void predict() = 0;            // called first
-  virtual Real step_displacement() = 0;  // largest displacement of a particle or surface since the start of
-                                         // the step [m]
+  virtual void predict() = 0;  // called first
+  // Largest displacement of a particle or surface since the start of the step [m].
+  virtual Real step_displacement() = 0;
   virtual ParticleNorms contact_force() = 0;
   // Particle with the largest residual of the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() = 0;

@@ -102,7 +102,7 @@ class Reports {
   virtual ParticleOutput output() = 0;
   virtual ShapePack pack_shapes() = 0;       // complete on rank 0
   virtual ContactLines contact_lines() = 0;  // at the current positions
-  // The particles among `wanted` that this rank owns, in any order.
+  // The particles among `requested` that this rank owns, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> requested) = 0;
   // Contact sums of each parent (bodies, then placed walls), and of these static planes (indices into
   // Model::walls). Complete on rank 0.

@@ -86,7 +86,7 @@ struct ContactViews {
   const SurfaceStep* steps;  // per entry, over an implicit step
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
-  Real interaction_range = 0;  // Contact::reach [m]
+  Real interaction_range = 0;  // Contact::interaction_range [m]
   // Radii [m] that laws use at planes instead of the items' own; null: the items' own. Supported by packed
   // rows only.
   const Real* law_radius = nullptr;

@@ -15,7 +15,7 @@ namespace scree {
 
 class CpuSurfaces {
  public:
-  // reach, masses: see `SurfaceViews`; empty masses: null.
+  // interaction_range, masses: see `SurfaceViews`; empty masses: null.
   CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels,
               Real interaction_range, std::vector<Real> masses = {});
   // Radii of the items that laws use instead of the items' own [m]; empty: their own.
@@ -23,7 +23,7 @@ class CpuSurfaces {
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
-  // of `look`.
+  // of `query`.
   void find_loads(const SurfacePoses& poses, const ParticleStore& store, SurfaceRows& rows,
                   const SurfaceQuery& query);
   // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
@@ -70,9 +70,8 @@ class CpuSurfaces {
     return works_.exist() ? works_.limbs(work_sums_) : std::vector<std::int64_t>{};
   }
   void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
-  const SurfaceFriction* friction_steps() const {
-    return friction_steps_.data();
-  }  // per entry, of the last find_friction_steps()
+  // Per entry, of the last find_friction_steps().
+  const SurfaceFriction* friction_steps() const { return friction_steps_.data(); }
 
   // Views of particles at these positions, with the contacts that were evaluated last.
   ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,

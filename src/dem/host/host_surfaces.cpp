@@ -232,12 +232,12 @@ void HostSurfaces::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) c
   step.pairs = bodies_.pairs();  // of rank 0
   // Index of a body's blocks plus one; 0: none yet. A body may occur again, because meshes come after the
   // shapes of all bodies.
-  std::vector<std::size_t> place(model_.bodies.size());
+  std::vector<std::size_t> block_of(model_.bodies.size());
   for (const StepSums& sums : merged(steps_)) {
     const int body = surfaces_.at(sums.surface).parent;
     end[body] += sums.wrench(), step.wrench[body] += sums.wrench(kWrenchTerms);
     if (!surfaces_.is_on_body(sums.surface)) continue;
-    std::size_t& own = place[static_cast<std::size_t>(body)];
+    std::size_t& own = block_of[static_cast<std::size_t>(body)];
     if (own == 0) step.stiffness.push_back({body, {}, {}}), own = step.stiffness.size();
     WrenchStiffness& blocks = step.stiffness[own - 1];
     for (int k = 0; k < kBlockTerms; ++k) {

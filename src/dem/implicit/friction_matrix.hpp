@@ -47,11 +47,11 @@ struct FrictionEntry {
   static constexpr Index kNone = -2;
   SCREE_HD bool is_contact() const { return normal.neighbor != kNone; }
 
-  // Product of the entry with relative displacement `apart` and summed rotations `turning` of the partners:
-  // force on i, and its torque over the radius. consistent: includes the derivatives with respect to the
-  // overlap, with which the matrix is neither symmetric nor strictly positive, but equals the derivative up
-  // to terms of the order of overlap over radius and of the rotation in a step. Vector: Vec3, or Vec3f in a
-  // solve, whose directions have their own unit.
+  // Product of the entry with the relative displacement and the sum of the rotations of the partners: force
+  // on i, and its torque over the radius. consistent: includes the derivatives with respect to the overlap,
+  // with which the matrix is neither symmetric nor strictly positive, but equals the derivative up to terms
+  // of the order of overlap over radius and of the rotation in a step. Vector: Vec3, or Vec3f in a solve,
+  // whose directions have their own unit.
   template <class Vector>
   SCREE_HD TwistOf<Vector> apply(Vector relative_displacement, Vector rotation_sum, bool consistent) const {
     const Vector n{normal.x, normal.y, normal.z}, t{slip_direction.x, slip_direction.y, slip_direction.z};

@@ -121,8 +121,8 @@ struct FrictionalContact {
   ContactHistory history;
 };
 
-// Evaluates a contact over the step. turning(at_end): sum of both partners' spins times their arms at one end
-// of the step; even [m/s]; called for laws with a dashpot.
+// Evaluates a contact over the step. arm_spin(at_end): sum of both partners' spins times their arms at one
+// end of the step; even [m/s]; called for laws with a dashpot.
 template <class Law, class ArmSpin>
 SCREE_HD FrictionalContact frictional_contact(const Law& law, const FrictionalPath& c,
                                               const ContactHistory& old, bool resolve_events,

@@ -26,8 +26,8 @@ struct SurfaceRows {
   std::vector<Index> by_surface;    // [entries with placed surfaces], surface by surface
   std::vector<MeshGroup> groups;
   std::vector<Index> triangles;  // of the groups
-  std::vector<CachedContact>
-      cached_contacts;  // per group, from previous queries; the rows do not depend on it
+  // Per group, from previous queries; the rows do not depend on it.
+  std::vector<CachedContact> cached_contacts;
 
   SurfaceEntries entries() const {
     return {surfaces.data(), images.data(), particles.data(), by_surface.data()};

@@ -12,7 +12,7 @@
 
 namespace scree {
 
-// A body at a contact. place: contact point relative to its centre of mass [m].
+// A body at a contact. arm: contact point relative to its centre of mass [m].
 struct TouchedBody {
   int body;
   Vec3 arm;

@@ -7,7 +7,7 @@
 
 namespace scree {
 
-// Displacement of the point `place` of a body, relative to its centre, for a unit displacement along the
+// Displacement of the point `point` of a body, relative to its centre, for a unit displacement along the
 // body's k-th coordinate (x, y, z, rx, ry, rz).
 SCREE_HD Vec3 unit_displacement(Vec3 point, int k) {
   const Vec3 axis{k % 3 == 0 ? Real(1) : Real(0), k % 3 == 1 ? Real(1) : Real(0),

@@ -105,9 +105,9 @@ SCREE_HD int find_matching_contact(const MeshView& mesh, const MeshContact& now,
 }
 
 // Contacts of the g-th group, a particle and a mesh, at an instant or, with in.h above 0, over the explicit
-// step that ends there. kHasRange: also pairs within in.reach beyond touch, for which the law decides whether
-// they are in contact. The contacts found are the same either way, unless the centre is deeper than its
-// radius inside a closed mesh.
+// step that ends there. kHasRange: also pairs within in.interaction_range beyond touch, for which the law
+// decides whether they are in contact. The contacts found are the same either way, unless the centre is
+// deeper than its radius inside a closed mesh.
 template <bool kHasRange, bool kOpenSurfaces>
 struct MeshTouchItem {
   SurfaceViews in;

@@ -34,7 +34,7 @@ struct SurfaceViews {
   int records = 0;             // history records per contact
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws with `kNeedsMotion`
   Real h = 0;                  // see SurfaceQuery
-  Real interaction_range = 0;  // Contact::reach [m]
+  Real interaction_range = 0;  // Contact::interaction_range [m]
   // Mass of each placed surface's parent for damping laws; null: all parents are immovable [kg]
   const Real* masses = nullptr;
   // Radii [m] that laws use instead of the particles' own; null: the particles' own.
@@ -66,7 +66,7 @@ struct SurfaceTouch {
   bool touches;
 };
 
-// reach: interaction range beyond touch, in.reach or 0 [m].
+// interaction_range: beyond touch, in.interaction_range or 0 [m].
 SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const SurfacePose& surface, Index entry, Vec4 p,
                                     Real interaction_range) {
   if (surface.kind == SurfaceKind::mesh) {
@@ -186,8 +186,8 @@ struct SurfaceLoadItem {
     const bool closed = is_closed(law, state, before);
     if (!closed) {
       in.template store_no_history<Law>(entry);
-      loads[entry].touches = in.h > 0 && Law::breaks(before);  // the step that opens the contact may
-                                                               // dissipate energy
+      // The step that opens the contact may dissipate energy.
+      loads[entry].touches = in.h > 0 && Law::breaks(before);
       if (!loads[entry].touches) return;
     }
     MovingPair pair = moving_pair(state, touch, surface, entry);
@@ -255,8 +255,8 @@ struct SurfaceLoadItem {
 // Geometry of a particle and a placed surface at both ends of an implicit step.
 struct SurfacePath {
   SurfaceTouch now, start;
-  // Displacements [m]. travel: of the particle's centre relative to the surface's material halfway along the
-  // contact's path; turned: of that material relative to the surface's point, by rotation.
+  // Displacements [m]. displacement: of the particle's centre relative to the surface's material halfway
+  // along the contact's path; turned: of that material relative to the surface's point, by rotation.
   Vec3 displacement, turned;
   Changeover change{};
 };

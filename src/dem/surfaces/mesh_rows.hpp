@@ -26,7 +26,7 @@ struct MeshQuery {
   SCREE_HD void for_each_triangle(const Visit& visit) const {
     for_each_centre([&](Vec3 c) { for_each_triangle_near(mesh, c, p.w + past, visit); });
   }
-  // Number of entries that the row needs for the mesh. remembered: contacts of the particle with it in the
+  // Number of entries that the row needs for the mesh. stored: contacts of the particle with it in the
   // history.
   SCREE_HD Index entries(RowKind kind, const Index* triangles, Index count, Index stored) const {
     bool one_sided = mesh.sheet && kind == RowKind::smooth;

@@ -82,8 +82,7 @@ SCREE_HD BlockIndex block_index(int k) {
 SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
   const Vec3 n = c.contact.normal, moment = cross(c.arm, n);
   if (k == kBlockRows || k == kWrenchTerms + kBlockRows)
-    return 0;  // conveyor motion acts through friction
-               // only
+    return 0;  // conveyor motion acts through friction only
   if (k < kWrenchTerms) return -c.contact.end_force * component(n, moment, k);
   if (k < 2 * kWrenchTerms) return -c.contact.step.force * component(n, moment, k - kWrenchTerms);
   const BlockIndex at = block_index(k);
@@ -116,7 +115,7 @@ struct SurfaceSums {
 using InstantSums = SurfaceSums<kWrenchTerms>;
 using StepSums = SurfaceSums<kStepTerms>;
 
-// Sums ordered by place(), with equal ones merged.
+// Sums ordered by key(), with equal ones merged.
 template <class Sums>
 std::vector<Sums> merged_by_key(std::vector<Sums> sums) {
   std::stable_sort(sums.begin(), sums.end(), [](const Sums& a, const Sums& b) { return a.key() < b.key(); });

@@ -22,7 +22,7 @@ enum class SurfaceKind : int { plane, sphere, mesh };  // discs are spheres with
 // Constant description of a surface other than a static plane.
 struct Surface {
   SurfaceKind kind;
-  int parent;  // parent: index into Model::bodies; after these the walls of SurfaceSet, one after the other
+  int parent;  // index into Model::bodies; after these the walls of SurfaceSet, one after the other
   int material;
   Vec3 point;    // of a plane, centre of a sphere, origin of a mesh; in the parent's frame [m]
   Vec3 normal;   // of a plane: unit vector into its free side

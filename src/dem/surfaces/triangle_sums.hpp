@@ -41,7 +41,7 @@ struct MeshLoads {
   std::span<const SurfaceLoad> loads;
 };
 
-// Sums of the triangles in contact, ordered by place(). numbers: with planes on the host.
+// Sums of the triangles in contact, ordered by key(). numbers: with planes on the host.
 std::vector<TriangleSums> triangle_sums(const MeshLoads& contacts, const SurfaceNumbers& numbers);
 
 }  // namespace scree
