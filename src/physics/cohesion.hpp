@@ -29,8 +29,8 @@ SCREE_HD Real cube_root(Real x) {
 
 // JKR contact of two partners; Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971):
 //   F = 4 E* a^3 / (3 R*) - sqrt(8 pi w E* a^3),  d = a^2 / R* - sqrt(2 pi w a / E*)
-// with the contact radius a. The contact forms at d = 0 and breaks under tension at d = -`reach()`, where a_s
-// = (pi w R*^2 / (8 E*))^(1/3). With p = sqrt(a / a_s) >= 1 and l = `reach()`
+// with the contact radius a. The contact forms at d = 0 and breaks under tension at d = -`range`, where
+// a = a_s = (pi w R*^2 / (8 E*))^(1/3). With p = sqrt(a / a_s) >= 1 and l = `range`
 //   F = F_c p^3 (p^3 - 6) / 9,  d = l (p^4 - 4 p) / 3,  F_c = 3/2 pi w R* the pull-off force
 // The damping is that of Hertz's law, whose restitution does not depend on the speed, with a in place of
 // sqrt(R* d). Damping from the stiffness F/d would be undefined where F or d change their signs.
@@ -45,7 +45,7 @@ struct JkrPair {
 
   SCREE_HD bool is_cohesive() const { return range > 0; }
   SCREE_HD Real interaction_range() const { return range; }
-  // p of an overlap d > -`reach()`, by Newton's method on a convex function, started above the root.
+  // p of an overlap d > -`range`, by Newton's method on a convex function, started above the root.
   SCREE_HD Real root_of(Real d) const {
     const Real scaled = 3 * d / range;
     Real p = Real(1.6) + (scaled > 0 ? std::sqrt(std::sqrt(scaled)) : 0);  // 1.6 > 4^(1/3), the root at d = 0
@@ -65,12 +65,12 @@ struct JkrPair {
     const Real p = root_of(d), cube = p * p * p;
     return pull_off / 9 * cube * (cube - 6);
   }
-  SCREE_HD Real slope(Real d) const {  // infinite at d = -`reach()`
+  SCREE_HD Real slope(Real d) const {  // infinite at d = -`range`
     if (!is_cohesive()) return bare.slope(d);
     const Real p = root_of(d), cube = p * p * p;
     return pull_off * p * p * (cube - 3) / (2 * range * (cube - 1));
   }
-  // Elastic energy relative to the separated partners, at d = -`reach()` [J]. At first touch it is
+  // Elastic energy relative to the separated partners, at d = -`range` [J]. At first touch it is
   // -`formation_loss()`: that energy is dissipated in elastic waves when the contact forms, and is counted
   // there.
   SCREE_HD Real energy(Real d) const {

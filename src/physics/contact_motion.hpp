@@ -32,9 +32,8 @@ struct ContactMotion {
   Vec3 rolling;   // tangential part of the rotation of i relative to j [rad], rotated likewise; odd
   Real twisting;  // rotation of i relative to j about the normal [rad]; even
   Real turn;      // rotation of the pair about the normal, the mean of both spins [rad]; odd
-  Real lever_arm_ratio;  // lever-arm ratio (R_i + R_j) / |r|, 1 at a face: force on the centres over spring
-                         // force
-  Real arm_i, arm_j;     // [m]
+  Real lever_arm_ratio;       // (R_i + R_j) / |r|, 1 at a face: force on the centres over spring force
+  Real arm_i, arm_j;          // [m]
   Real inertia_i, inertia_j;  // [kg m^2]
   Real h;                     // [s]
 

@@ -10,16 +10,16 @@ namespace scree {
 
 // Normal quantities at the end of a step, and at its start (0), where all are zero if the contact was open.
 struct NormalContact {
-  Real
-      friction_load;  // load in Coulomb's limit: normal force after the cut, plus the adhesive part; >= 0 [N]
+  // Load in Coulomb's limit: normal force after the cut, plus the adhesive part; >= 0 [N].
+  Real friction_load;
   Real radius, radius0;        // contact radius [m]
   Real stiffness, stiffness0;  // elastic stiffness of the normal force [N/m]
 };
 
 // Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
-//   reach()                interaction range beyond touch [m]; default: none
-//   kHysteretic = true           JKR: contacts form at touch, d = 0, and break at d = -reach()
-//   formation_loss()          with kHysteretic: energy that the formation of a contact dissipates [J]
+//   interaction_range()    beyond touch [m]; default: none
+//   kHysteretic = true     JKR: contacts form at touch, d = 0, and break at d = -interaction_range()
+//   formation_loss()       with kHysteretic: energy that the formation of a contact dissipates [J]
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0

@@ -11,7 +11,7 @@
 namespace scree {
 
 // Every law below has
-//   Law(const NormalLawParameters&)   its parameters from those of the deck; accepts() says whether it applies
+//   Law(parameters)           its parameters from those of the deck; accepts() says whether it applies
 //   tension                   as in NormalLawParameters
 //   as<T>()                   the law with numbers of type T
 //   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:

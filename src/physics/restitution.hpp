@@ -21,8 +21,8 @@ inline Real cut_contact_time(Real damping_ratio) {
   return 2 * (below > 0 ? std::atan2(s, damping_ratio) : std::asinh(s)) / s;
 }
 
-// Damping ratio of a coefficient of restitution in (0, 1]. tension: the force may be tensile until the overlap
-// is zero; else it is cut at zero, before that.
+// Damping ratio of a coefficient of restitution in (0, 1]. tension: the force may be tensile until the
+// overlap is zero; else it is cut at zero, before that.
 inline Real damping_ratio_of(Real restitution, bool tension) {
   const Real decay = -std::log(restitution);
   if (tension) return decay / std::hypot(std::numbers::pi_v<Real>, decay);

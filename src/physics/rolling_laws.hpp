@@ -138,7 +138,7 @@ struct RollingAndTwisting {
     }
     return out;
   }
-  // The moment at an instant. spring: from the history [N m]; turning: spin of i relative to j [rad/s].
+  // The moment at an instant. spring: from the history [N m]; relative_spin: of i relative to j [rad/s].
   SCREE_HD Vec3 at(const RollingContact& c, Vec3 spring, Vec3 relative_spin) const {
     const Vec3 n = c.motion.normal1, along = dot(spring, n) * n, twist = dot(relative_spin, n) * n;
     Vec3 out;

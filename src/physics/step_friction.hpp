@@ -15,21 +15,21 @@ struct FrictionStep {
   ContactStep step;
   ContactMotion motion;   // with the mean spins
   Real lever_arm_ratio0;  // `ContactMotion::lever_arm_ratio` at the start
-  Vec3 slip_rate0,
-      slip_rate1;  // tangential velocity of i relative to j at both ends [m/s]; for laws with a dashpot
+  // Tangential velocity of i relative to j at both ends [m/s]; for laws with a dashpot.
+  Vec3 slip_rate0, slip_rate1;
   PairSize size;
   Real start_force, end_force;  // of the normal law at both ends [N]
   Real step_force;              // normal force that the step is solved with, see `StepContact` [N]
-  Real lagged_limit;  // lagged limit of the mean force over the step [N]; negative: the limit follows the
-                      // normal force
+  // Lagged limit of the mean force over the step [N]; negative: the limit follows the normal force.
+  Real lagged_limit;
 };
 
 // Friction force T over an implicit step (dem/README.md): -lever_arm_ratio T acts on i, and normal x T times
 // the arms is the torque on both.
 struct StepFriction {
-  Vec3 start, step,
-      end;     // force at the start, force that the step is solved with, force at the end [N]; tangential at
-               // normal0, normal1, normal1
+  // Force at the start, force that the step is solved with, force at the end [N]; tangential at normal0,
+  // normal1, normal1.
+  Vec3 start, step, end;
   Real limit;  // of the mean force over the step [N]
   // Derivatives of `step`: `stiffness` with respect to the slip perpendicular to `direction` [N/m], and
   // `normal_force_slope` along `direction` with respect to step_force. `direction` is the unit vector of
@@ -50,7 +50,7 @@ SCREE_HD Real closed_fraction(const ContactStep& c) {
   return c.overlap0 > 0 ? c.overlap0 / (c.overlap0 - c.overlap1) : 0;
 }
 
-// Derivative of `closed_share()` with respect to the overlap at the end [1/m].
+// Derivative of `closed_fraction()` with respect to the overlap at the end [1/m].
 SCREE_HD Real closed_fraction_slope(const ContactStep& c) {
   if ((c.overlap0 > 0) == (c.overlap1 > 0)) return 0;
   const Real change = c.overlap1 - c.overlap0;

@@ -17,8 +17,8 @@ namespace scree {
 // Recommended steps of velocity Verlet, used where a deck does not give a step: at most these fractions, and
 // no longer than trial impacts reproduce the rebound (model/checks/explicit_step.hpp).
 inline constexpr Real kStableStepFraction = Real(1) / 3;  // of the stability limit in dense contact
-inline constexpr Real kPullOffShare = 0.01;  // of the shortest contact duration, where a JKR contact must
-                                             // break within one step
+// Of the shortest contact duration, where a JKR contact must break within one step.
+inline constexpr Real kPullOffShare = 0.01;
 // Recommended phase of a body on its contacts in one step [rad]: its contacts are integrated staggered with
 // the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
@@ -59,9 +59,9 @@ SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
 // k_t [N/m], inertia_ratio I / (m R^2). It is the higher of two uncoupled modes. In one of them alternate
 // layers move tangentially against each other, with two of three contacts between layers; in the other all
 // particles spin alike, so that every contact slips by both spins. The squared frequencies are 8 (K + k_t)/m
-// and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs. rolling_stiffness: k_r /
-// R^2 [N/m]. For two spins a, b a contact's k_t R^2 |a + b|^2 + k_r |a - b|^2 is at most twice the larger
-// stiffness times |a|^2 + |b|^2: the larger of k_t and k_r / R^2 is used.
+// and 16 k_t/(m ratio) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m ratio) for discs, with the ratio
+// I / (m R^2). rolling_stiffness: k_r / R^2 [N/m]. For two spins a, b a contact's k_t R^2 |a + b|^2 + k_r |a
+// - b|^2 is at most twice the larger stiffness times |a|^2 + |b|^2: the larger of k_t and k_r / R^2 is used.
 SCREE_HD Real dense_friction_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_ratio,
                                        int dimension, Real rolling_stiffness = 0) {
   const bool discs = dimension == 2;
