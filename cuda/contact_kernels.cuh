@@ -81,16 +81,15 @@ struct VerletControl {
   Real displacement;  // upper bound for any particle when the open step was opened [m]
   RowUse rows;        // that the open step walks
   Real margin;        // of the pruned rows [m]
-  Real moved;      // upper bound of the displacement of any particle since they were pruned [m]; `kNoRows`:
-                   // there are none
+  // Upper bound of the displacement of any particle since they were pruned [m]; `kNoRows`: there are none.
+  Real moved;
   Index closed;    // closed steps since the start of the run
   Index last;      // the run stops when this many are closed
   Index substeps;  // particle steps per step of the bodies
   int parity[2];   // which of the two position and velocity arrays holds the open step
   int outside;     // whether a particle was outside the domain in a step of this run
   int stop;
-  int alone;       // one rank: the last thread block closes the step. Several ranks do so after their
-                   // reduction, of
+  int alone;       // one rank: the last thread block closes the step; several ranks first reduce `shared`
   Real shared[2];  // the largest squared displacement of the step [m^2], and `outside`
   // Result of closing step `closed` and opening the next, for the last few steps: the host can read it
   // unchanged while the next step runs.

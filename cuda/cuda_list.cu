@@ -262,8 +262,8 @@ void CudaList::find_rows(Real skin) {
   for_each(items_.device(), items_.layout.active, BuiltAtItem{items_.now.position.data(), built_at_.data()});
 }
 
-// Where an allocation fails the particles are unchanged. Phases in which that is likely end with `together`,
-// so that all ranks fail at once and can write their last good state.
+// Where an allocation fails the particles are unchanged. Phases in which that is likely run in
+// `collectively`, so that all ranks fail at once and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
   commit_open_step();
   current_ = false;

@@ -27,8 +27,8 @@ struct Results {
   // (mixed) longer on an H200.
   VerletControl control;
   long long worst_id;
-  Index interior, active,
-      staying;  // numbers of particles: in the interior, in the search, and on this rank after migration
+  // Numbers of particles: in the interior, in the search, and on this rank after migration.
+  Index interior, active, staying;
   ExactSums<kWallTerms> wall;
   ExactSums<kRotationTerms> rotation;
   ExactSums<1> cohesion;

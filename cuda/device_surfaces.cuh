@@ -39,7 +39,7 @@ class DeviceSurfaces {
   // Fills the rows. poses: the present ones of the surfaces. Waits for the device.
   void build(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   bool any_placed() const { return placed_count_ > 0; }
-  bool all_placed_static() const { return any_placed() && all_static_; }  // as `SurfaceSet::at_rest`
+  bool all_placed_static() const { return any_placed() && all_static_; }  // as `SurfaceSet::is_static`
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
@@ -103,7 +103,7 @@ class DeviceSurfaces {
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
 
   PeriodicBox box_;
-  Real interaction_range_;  // `Contact::reach` [m]
+  Real interaction_range_;  // `Contact::interaction_range` [m]
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
   bool all_static_;

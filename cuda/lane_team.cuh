@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// kLanes: lanes per team, a power of two; consecutive lanes of a warp form a team. All lanes of a team call
-// its functions together.
+// kLanes: lanes per group, a power of two; consecutive lanes of a warp form a group. All lanes of a group
+// call its functions together.
 template <int kLanes>
 struct LaneTeam {
   static_assert(32 % kLanes == 0);
