@@ -8,8 +8,8 @@
 
 namespace scree {
 
-// A cached contact. While the centre is within `room` of `from`, it is over this triangle, and a query would
-// find the contact with it only; triangle -1: a query would find none.
+// A cached contact. While the centre is within `safe_distance` of `from`, it is over this triangle, and a
+// query would find the contact with it only; triangle -1: a query would find none.
 struct CachedContact {
   Vec3 from;             // in the frame of the mesh [m]
   Real safe_distance;    // [m]
@@ -34,8 +34,8 @@ SCREE_HD Real uncertainty(const MeshView& mesh) { return 2 * mesh.flatness + 4 *
 
 }  // namespace mesh_detail
 
-// The row of a sphere whose contacts are searched within `reach` of its centre c. All lanes of the team get
-// the same result.
+// The row of a sphere whose contacts are searched within `search_range` of its centre c. All lanes of the
+// group get the same result.
 template <class LaneGroup>
 struct CachedContactRow {
   const MeshView& mesh;
@@ -46,8 +46,8 @@ struct CachedContactRow {
   Real search_range;
   LaneGroup team{};
 
-  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `reach` or, on a
-  // smooth row, farther away than the plane of t.
+  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `search_range` or,
+  // on a smooth row, farther away than the plane of t.
   SCREE_HD CachedContact over(Index t) const {
     const MeshTriangle& triangle = mesh.triangles[t];
     const MeshPart& part = mesh.parts[triangle.part];

@@ -12,9 +12,9 @@ namespace scree {
 
 namespace {
 
-constexpr Real kLeastHeight =
-    1e-12;  // height over the longest side; length of a side, below which its ends are merged
-constexpr Index kMigrated = -1;
+// Height over the longest side; length of a side, below which its ends are merged.
+constexpr Real kLeastHeight = 1e-12;
+constexpr Index kRemoved = -1;
 
 using Corners = std::array<Index, 3>;
 using Edge = std::pair<Index, Index>;  // the lower vertex first
@@ -50,7 +50,7 @@ class Joiner {
   std::vector<Index> without_area() const {
     std::vector<Index> found;
     for (Index t = 0; t < static_cast<Index>(triangles_.size()); ++t)
-      if (triangles_[t][0] != kMigrated && !is_high(triangles_[t])) found.push_back(t);
+      if (triangles_[t][0] != kRemoved && !is_high(triangles_[t])) found.push_back(t);
     return found;
   }
   bool is_high(const Corners& t) const {
@@ -59,7 +59,7 @@ class Joiner {
 
   void remove(Index t) {
     for (const Index v : triangles_[t]) std::erase(at_[v], t);
-    triangles_[t] = {kMigrated, kMigrated, kMigrated};
+    triangles_[t] = {kRemoved, kRemoved, kRemoved};
   }
   void put(Index t, const Corners& corners) {
     triangles_[t] = corners;
@@ -72,7 +72,7 @@ class Joiner {
     std::vector<Index> found = without_area();
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Index t = found[i];
-      if (triangles_[t][0] == kMigrated) continue;
+      if (triangles_[t][0] == kRemoved) continue;
       const Corners c = triangles_[t];
       if (has_corner_twice(c)) {
         remove(t);
@@ -164,7 +164,7 @@ class Joiner {
       std::erase(at_[b], t);
       put(t, part(a, between.front()));
       for (std::size_t k = 0; k < between.size(); ++k) {
-        triangles_.push_back({kMigrated, kMigrated, kMigrated});
+        triangles_.push_back({kRemoved, kRemoved, kRemoved});
         numbers_.push_back(numbers_[t]);
         put(static_cast<Index>(triangles_.size()) - 1,
             part(between[k], k + 1 < between.size() ? between[k + 1] : b));
@@ -175,7 +175,7 @@ class Joiner {
   void drop_gone() {
     std::size_t kept = 0;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      if (triangles_[t][0] == kMigrated) continue;
+      if (triangles_[t][0] == kRemoved) continue;
       triangles_[kept] = triangles_[t], numbers_[kept++] = numbers_[t];
     }
     triangles_.resize(kept), numbers_.resize(kept);

@@ -16,7 +16,7 @@ struct HullCorners {
   std::vector<Index> first;         // per face its first entry of face_corners, and the end
   std::vector<Index> face_corners;  // per face its corners, which are coplanar; in 2D the ends of an edge
   std::vector<Vec3> normals;        // per face, unit, outwards
-  Vec3 middle;                      // no corner is farther from it than `reach` [m]
+  Vec3 middle;                      // no corner is farther from it than `bounding_radius` [m]
   Real bounding_radius = 0;
   // Radius of the sphere with the surface area of the hull; in 2D of the circle with the length of the
   // hull's outline [m].

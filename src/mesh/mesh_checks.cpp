@@ -144,8 +144,8 @@ class Checker {
   }
 
   void check_volume() {
-    constexpr Real kLeastThickness =
-        1e-12;  // relative to the mesh's own size: below it round-off decides the sign
+    // Relative to the mesh's own size: below it round-off decides the sign.
+    constexpr Real kLeastThickness = 1e-12;
     const Real volume = mesh_volume(mesh_), area = mesh_area(mesh_);
     if (std::abs(volume) <= kLeastThickness * area * std::sqrt(area)) {
       troubles_.push_back(fmt::format("it encloses {:.3g} m^3, nothing but round-off", volume));

@@ -62,8 +62,8 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
 }
 
-// Whether c lies in the edge's normal cone and within `reach` of its nearest point; `from`: from that point
-// to c.
+// Whether c lies in the edge's normal cone and within `search_range` of its nearest point; `from`: from
+// that point to c.
 SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Real search_range,
                               Vec3& from) {
   const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
@@ -157,8 +157,8 @@ SCREE_HD Real mesh_skin(Real radius, Real skin) {
   return skin > kLeastShare * radius ? skin : kLeastShare * radius;
 }
 
-// Whether c, less than `reach` away, is well over this triangle (-1: none) from outside. `face` is then the
-// contact with its plane, and no other triangle of that plane adds information.
+// Whether c, less than `search_range` away, is well over this triangle (-1: none) from outside. `face` is
+// then the contact with its plane, and no other triangle of that plane adds information.
 SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real search_range, MeshContact& face) {
   if (t < 0 || t >= mesh.triangle_count) return false;
   const MeshTriangle& triangle = mesh.triangles[t];
@@ -377,11 +377,11 @@ class MeshContactSearch : TriangleQuery<MeshContactSearch> {
   bool left_out_ = false;  // candidates were dropped for lack of slots
 };
 
-// Finds the contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and
-// feature; the nearest kMeshSlots, if there are more. triangles: all that are within `reach` of c; further
-// ones do not change the result. Returns the number of contacts; entries of `out` behind them are undefined.
-// Inside a closed mesh the only contact is the nearest face, with a negative distance. likely: a triangle
-// that c may be over; it affects the run time only.
+// Finds the contacts less than `search_range` from c [m], in order of distance, type (face, edge, vertex) and
+// feature; the nearest kMeshSlots, if there are more. triangles: all that are within `search_range` of c;
+// further ones do not change the result. Returns the number of contacts; entries of `out` behind them are
+// undefined. Inside a closed mesh the only contact is the nearest face, with a negative distance. likely: a
+// triangle that c may be over; it affects the run time only.
 SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real search_range, const Index* triangles,
                                 Index count, MeshContact out[kMeshSlots], Index likely = -1) {
   return MeshContactSearch(mesh, c, search_range, out).contacts_of(triangles, count, likely);

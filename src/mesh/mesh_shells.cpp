@@ -18,8 +18,8 @@ namespace scree {
 namespace {
 
 constexpr std::size_t kMostShells = 10'000;  // all pairs are compared
-constexpr Real kThicknessFraction =
-    0.01;  // fraction of the thickness: a point so deep under the surface of a shell is inside it
+// Fraction of the thickness: a point so deep under the surface of a shell is inside it.
+constexpr Real kThicknessFraction = 0.01;
 
 // Normal of a triangle, of length 2 x area.
 Vec3 normal_of(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
@@ -193,9 +193,8 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
   std::set<Index> misplaced;
   for (Index i = 0; i < count; ++i) {
     if (std::ranges::binary_search(crossing, i)) continue;
-    const Real around =
-        volume[i] < 0 ? 1
-                      : 0;  // winding number that the other shells must have in the solid behind the shell
+    // Winding number that the other shells must have in the solid behind the shell.
+    const Real around = volume[i] < 0 ? 1 : 0;
     if (near[i].empty() && around != 0) misplaced.insert(i);
     const Real under = depth_under(shells[i], depth);
     for (const Index t : largest_of_parts(mesh, near[i], points)) {

@@ -18,8 +18,8 @@ std::vector<Real> shell_volumes(const TriangleMesh& mesh, const std::vector<Inde
 // Nesting of the shells of a closed mesh, whatever their windings.
 struct ShellNesting {
   std::vector<Real> volume;  // as from shell_volumes()
-  std::vector<std::vector<Index>>
-      around;  // per shell, those that enclose it; not determined for more than 10,000 shells
+  // Per shell, those that enclose it; not determined for more than 10,000 shells.
+  std::vector<std::vector<Index>> around;
 };
 // Tested at points just inside each shell, so that shells may touch; for intersecting shells the majority of
 // these points counts.

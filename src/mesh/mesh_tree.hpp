@@ -48,8 +48,8 @@ SCREE_HD bool is_nearer(const MeshView& mesh, Index triangle, Vec3 p, Real limit
   return squared_distance(box, p) < limit && squared_distance(a, b, c, p) < limit;
 }
 
-// Calls visit(triangle) for every triangle less than `reach` from c [m], but for round-off, in increasing
-// order. The state of the traversal is a level and a number, so that it needs no stack.
+// Calls visit(triangle) for every triangle less than `search_range` from c [m], but for round-off, in
+// increasing order. The state of the traversal is a level and a number, so that it needs no stack.
 SCREE_HD_CALLER
 template <class Visit>
 SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real search_range, const Visit& visit) {

@@ -82,7 +82,7 @@ class NearestContact : TriangleQuery<NearestContact> {
   SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real search_range)
       : TriangleQuery(mesh, c, search_range) {}
 
-  // likely: as for find_mesh_contacts(). All lanes of the team get the same result.
+  // likely: as for find_mesh_contacts(). All lanes of the group get the same result.
   SCREE_HD_CALLER template <class LaneGroup>
   SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const LaneGroup& team,
                         MeshContact& out) {
