@@ -46,8 +46,8 @@ class BushingElement final : public ForceElement {
   int column(std::size_t block) const { return primitives_.front()->column(static_cast<int>(block)); }
 
   Bushing bushing_;
-  std::vector<std::unique_ptr<PrimitiveFunction>>
-      primitives_;  // three, or six where the bushing resists rotation
+  // Three, or six where the bushing resists rotation.
+  std::vector<std::unique_ptr<PrimitiveFunction>> primitives_;
 };
 
 }  // namespace scree

@@ -61,8 +61,8 @@ class KluFactors {
   std::unique_ptr<klu_symbolic, Free> symbolic_{nullptr, Free{&common_}};
   std::unique_ptr<klu_numeric, Free> numeric_{nullptr, Free{&common_}};
   std::vector<int> diagonal_;  // for every column, the position among the pivots of the row that KLU prefers
-  std::vector<std::size_t>
-      ties_;  // entries of L, counted consecutively, as large as their pivot when it was chosen
+  // Entries of L, counted consecutively, as large as their pivot when it was chosen.
+  std::vector<std::size_t> ties_;
 };
 
 }  // namespace scree

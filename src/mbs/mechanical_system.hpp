@@ -59,8 +59,8 @@ struct SystemDerivatives {
   SparseTerm tangent_inertia;    // M (T^-1 - 1)
   SparseTerm reaction;           // -Q_lambda^T [constraints, coordinates]
   std::vector<CoupledEntry> coupling;
-  bool loaded =
-      false;  // whether `coupling` has entries of add_passing(), beside which all other entries may be small
+  // Whether `coupling` has entries of add_passing(), beside which all other entries may be small.
+  bool loaded = false;
 
   void add_passing(int row, int column, Real of_stiffness, Real of_damping) {
     if (of_stiffness == 0 && of_damping == 0) return;

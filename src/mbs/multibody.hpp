@@ -17,8 +17,8 @@ struct MultibodyState {
   // joints [rad], which count their revolutions
   std::vector<Real> position;
   std::size_t counted_angles = 0;  // number of these angles, the last of the positions
-  std::vector<Real>
-      velocity;  // v: q'; the last three of a spatial body are the angular velocity in its frame [rad/s]
+  // v: q'; the last three of a spatial body are the angular velocity in its frame [rad/s].
+  std::vector<Real> velocity;
   std::vector<Real> acceleration;  // a: v', with hht_alpha < 0 at t + hht_alpha h
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n

@@ -73,8 +73,8 @@ class NewtonSolver {
   // generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20, 1983)
   // preconditioned with its factors. Sums are taken on one rank in a fixed order.
   std::span<const Real> solve_coupled();
-  Real product(const std::vector<Real>& a,
-               const std::vector<Real>& b) const;  // inner product of forces [J^2]
+  // Inner product of forces [J^2].
+  Real product(const std::vector<Real>& a, const std::vector<Real>& b) const;
 
   const MechanicalSystem& system_;
   HhtMethod& method_;
@@ -85,8 +85,8 @@ class NewtonSolver {
   bool has_acceleration_factors_ = false;  // whether acceleration_solver_ has factors of acceleration_matrix_
   std::vector<Real> misfit_, forces_, gaps_;
   std::vector<Real> coupled_, left_;  // a solution, and its residual force
-  std::vector<std::vector<Real>> directions_,
-      images_;  // search directions and their products with the matrix, of norm 1
+  // Search directions and their products with the matrix, of norm 1.
+  std::vector<std::vector<Real>> directions_, images_;
   Real last_residual_ = 0;
   bool first_ = true;  // the next iteration is the first of its step
 };

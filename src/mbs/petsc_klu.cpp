@@ -154,8 +154,8 @@ PetscErrorCode attach_pattern(Mat matrix, const SparsePattern& pattern) {
 
 PetscErrorCode register_klu_refactor() {
   PetscFunctionBegin;
-  PetscCall(
-      MatInitializePackage());  // PETSc's own packages first: PETSc 3.18 does not register them afterwards
+  // PETSc's own packages first: PETSc 3.18 does not register them afterwards.
+  PetscCall(MatInitializePackage());
   PetscCall(MatSolverTypeRegister(kKluRefactor, MATSEQAIJ, MAT_FACTOR_LU, make_factor));
   PetscFunctionReturn(kSuccess);
 }

@@ -20,7 +20,7 @@ namespace scree {
 namespace {
 
 constexpr const char* kPrefix = "mbs_";
-constexpr int kOwnWords = 5;  // leading arguments set by PetscSession
+constexpr int kOwnArguments = 5;  // leading arguments set by PetscSession
 
 // Factor packages in the order of their measured speed on chains of bodies.
 constexpr std::array kPackages = {
@@ -73,7 +73,7 @@ PetscSession::PetscSession(const std::string& program, const std::vector<std::st
   // A run depends on its deck and its command line, not on files in the user's home; signals belong to the
   // program; unused options are reported through unused_options().
   words_ = {program, "-skip_petscrc", "-no_signal_handler", "-options_left", "no"};
-  static_assert(kOwnWords == 5);
+  static_assert(kOwnArguments == 5);
   words_.insert(words_.end(), options.begin(), options.end());
   for (std::string& word : words_) arguments_.push_back(word.data());
   arguments_.push_back(nullptr);
@@ -98,7 +98,7 @@ std::vector<std::string> PetscSession::unused_options() const {
   std::vector<std::string> unused;
   for (PetscInt i = 0; i < count; ++i) {
     const bool given =
-        std::find(words_.begin() + kOwnWords, words_.end(), fmt::format("-{}", names[i])) != words_.end();
+        std::find(words_.begin() + kOwnArguments, words_.end(), fmt::format("-{}", names[i])) != words_.end();
     if (!given) continue;
     unused.push_back(fmt::format("-{}{}{}", names[i], values[i] ? " " : "", values[i] ? values[i] : ""));
   }

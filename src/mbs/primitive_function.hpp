@@ -54,17 +54,14 @@ std::unique_ptr<PrimitiveFunction> dot1_primitive(const SpatialPair& pair, Vec3 
 std::unique_ptr<PrimitiveFunction> dot2_primitive(const SpatialPair& pair, Vec3 a);
 //   distance: |d| [m]; undefined where the points coincide
 std::unique_ptr<PrimitiveFunction> distance_primitive(const SpatialPair& pair);
-//   angle of a joint, in whole revolutions too [rad]: has this cosine and sine, each a dot1 of axes of the
-//   two bodies;
-//   number: of SpatialMotion::counted_angle, which keeps the revolutions; undefined where both are 0
+//   angle: that of a joint, whole revolutions included [rad]. cosine, sine: each a dot1 of axes of the two
+//   bodies; undefined where both are 0. number: of SpatialMotion::counted_angle, which keeps the revolutions.
 std::unique_ptr<PrimitiveFunction> angle_primitive(std::unique_ptr<PrimitiveFunction> cosine,
                                                    std::unique_ptr<PrimitiveFunction> sine, int number);
 
-//   component k of the rotation vector from the first of two frames fixed to the bodies to the second one.
-//   It has
-//   the same components along the axes of either frame [rad]. frame: its orientation in the frame of its
-//   body.
-//   The rotation vector jumps at half a revolution.
+//   rotation_vector: component k of the rotation vector from the first of two frames fixed to the bodies to
+//   the second one, the same along the axes of either frame [rad]. frame: its orientation in the frame of its
+//   body. The rotation vector jumps at half a revolution.
 std::unique_ptr<PrimitiveFunction> rotation_vector_primitive(const SpatialPair& pair,
                                                              const Quaternion (&frame)[2], int k);
 

@@ -11,8 +11,8 @@ namespace scree {
 
 namespace {
 
-constexpr Real kSuspect =
-    1e-8;  // pivot of A^T A, the squared distance of a column from the columns before it
+// Pivot of A^T A, the squared distance of a column from the columns before it.
+constexpr Real kSuspect = 1e-8;
 constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
 constexpr Real kRoundOff = 1e-12;    // coefficients that count as zero, relative to the largest
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes

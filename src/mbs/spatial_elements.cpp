@@ -23,13 +23,13 @@ void add_at(std::vector<Real>& force, int first, Vec3 value) {
 
 // T = k (c - c_0) + k_d c' + actuator(t) along a primitive function c with gradient g and Hessian H.
 // Q = -T g,  -Q_q = g (k g + k_d H^T v)^T + T H,  -Q_v = k_d g g^T
-class MeasureSpring final : public ForceElement {
+class PrimitiveSpring final : public ForceElement {
  public:
   struct Law {
     Real stiffness = 0, damping = 0, free_value = 0;
     ScalarFunction actuator;
   };
-  MeasureSpring(std::string title, std::unique_ptr<PrimitiveFunction> c, Law law)
+  PrimitiveSpring(std::string title, std::unique_ptr<PrimitiveFunction> c, Law law)
       : title_(std::move(title)), c_(std::move(c)), law_(std::move(law)) {}
 
   Real add_force(const BodyPoses& poses, Real t, Real length, std::vector<Real>& force) override {
@@ -164,10 +164,10 @@ class AppliedForceElement final : public ForceElement {
 std::unique_ptr<ForceElement> make_spatial_element(const SpringDamper& element, const BodyLayout& layout,
                                                    Real end) {
   const std::string title = fmt::format("spring-damper '{}'", element.name);
-  return std::make_unique<MeasureSpring>(
+  return std::make_unique<PrimitiveSpring>(
       title, distance_primitive(spatial_pair(layout, element.body, element.point)),
-      MeasureSpring::Law{element.stiffness, element.damping, element.free_length,
-                         ScalarFunction(element.actuator, title, end)});
+      PrimitiveSpring::Law{element.stiffness, element.damping, element.free_length,
+                           ScalarFunction(element.actuator, title, end)});
 }
 
 std::unique_ptr<ForceElement> make_spatial_element(const AppliedForce& element, const BodyLayout& layout,

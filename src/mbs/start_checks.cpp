@@ -20,8 +20,8 @@ constexpr Real kPositionGap = 1e-10;   // of the constraint's scale
 constexpr Real kRunningGap = 1e-6;     // of the scale, during a run, where steps keep Phi to their tolerance
 constexpr Real kContradiction = 1e-6;  // of the scale, between redundant rows: the digits of a deck
 constexpr Real kVelocityGap = 1e-8;    // of the largest velocity plus the constraint's scale per second
-constexpr Real kAccelerationGap =
-    1e-3;  // of the largest acceleration plus the constraint's scale per second squared
+// Of the largest acceleration plus the constraint's scale per second squared.
+constexpr Real kAccelerationGap = 1e-3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
