@@ -36,8 +36,8 @@ constexpr Real kRoundOffMove = 1e-12;
 // Data of the last iteration of a Newton loop.
 struct CoupledStep::Iteration {
   Real residual = 0, correction = 1;  // of the particles
-  Real judged_correction =
-      1;  // minimum of the last correction and the correction that the residual can still cause
+  // Minimum of the last correction and the correction that the residual can still cause.
+  Real judged_correction = 1;
   IterationNorms bodies;
 };
 

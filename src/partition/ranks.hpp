@@ -122,8 +122,8 @@ class Ranks {
   [[noreturn]] void end_job(const char* message, int exit_code) const;
   // element: size of an entry [B].
   void send_to_root(const void* data, std::size_t count, std::size_t element) const;
-  std::size_t arriving(int sender,
-                       std::size_t element) const;  // number of entries in the sender's next message
+  // Number of entries in the sender's next message.
+  std::size_t arriving(int sender, std::size_t element) const;
   void receive(int sender, void* data, std::size_t count, std::size_t element) const;
   std::vector<int> counts_of(std::size_t own) const;
   void gather_bytes(const void* own, const std::vector<int>& counts, std::size_t element, void* all) const;
