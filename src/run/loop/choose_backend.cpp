@@ -12,8 +12,8 @@
 namespace scree {
 namespace {
 
-constexpr std::int64_t kGpuParticles =
-    2000;  // --backend auto: a GPU is faster from this number on (table4.py)
+// --backend auto: a GPU is faster from this number on (table4.py).
+constexpr std::int64_t kGpuParticles = 2000;
 
 std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);

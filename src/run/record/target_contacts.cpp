@@ -9,7 +9,7 @@ namespace scree {
 namespace {
 
 // Index of a placed wall's parent: placed walls follow the bodies, in their order.
-std::size_t carrier_of_wall(const Model& model, int wall) {
+std::size_t parent_of_wall(const Model& model, int wall) {
   std::size_t parent = model.bodies.size();
   for (int w = 0; w < wall; ++w) parent += model.walls[as_size(w)].has_pose();
   return parent;
@@ -46,8 +46,8 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyCoupling& 
   std::vector<int> planes;
   for (const ContactTarget& target : targets)
     if (is_plane(target)) planes.push_back(target.wall);
-  std::vector<ContactSum> on_carriers, on_surfaces;
-  if (planes.size() < targets.size()) on_carriers = backend.reports().parent_contacts();
+  std::vector<ContactSum> on_parents, on_surfaces;
+  if (planes.size() < targets.size()) on_parents = backend.reports().parent_contacts();
   if (std::ranges::any_of(targets, is_mesh)) on_surfaces = backend.reports().surface_contacts();
   const std::vector<ContactSum> on_planes = backend.reports().wall_contacts(planes);
   std::vector<BodyMotion> motion;
@@ -59,14 +59,14 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyCoupling& 
     if (is_plane(target))
       sum = *plane++;
     else if (target.wall >= 0)
-      sum = on_wall(model.walls[as_size(target.wall)], on_carriers[carrier_of_wall(model, target.wall)],
-                    link.motion()[carrier_of_wall(model, target.wall)]);
+      sum = on_wall(model.walls[as_size(target.wall)], on_parents[parent_of_wall(model, target.wall)],
+                    link.motion()[parent_of_wall(model, target.wall)]);
     else if (is_mesh(target))
       sum = on_surfaces[as_size(SurfaceSet::posed_mesh(model, target.bodies.front(), target.mesh))];
     else if (!target.row)
-      sum = on_carriers[target.bodies.front()];
+      sum = on_parents[target.bodies.front()];
     else if (!motion.empty())  // on rank 0
-      sum = row_sum(target.bodies, on_carriers, motion);
+      sum = row_sum(target.bodies, on_parents, motion);
   }
   return sums;
 }

@@ -9,10 +9,10 @@ namespace scree {
 namespace {
 
 constexpr double kUpdateSeconds = 0.25;  // between progress lines on a terminal
-constexpr double kLogSeconds =
-    600;  // between progress lines in a log, in addition to one per tenth of the run
-constexpr double kFlushSeconds =
-    5;  // between writes of history and status, in addition to those with checkpoints
+// Between progress lines in a log, in addition to one per tenth of the run.
+constexpr double kLogSeconds = 600;
+// Between writes of history and status, in addition to those with checkpoints.
+constexpr double kFlushSeconds = 5;
 
 double seconds_between(std::chrono::steady_clock::time_point one, std::chrono::steady_clock::time_point two) {
   return std::chrono::duration<double>(two - one).count();

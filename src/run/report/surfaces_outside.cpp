@@ -53,8 +53,8 @@ void for_each_extreme(const Model& model, const Wall& wall, const Visit& visit) 
 }
 
 // Whether a surface is beyond an open side. 2D lines extend along z, where their domain has no sides.
-template <class Carrier>
-bool extends_beyond(const Model& model, const Carrier& parent, const BodyMotion& motion, const Box& open) {
+template <class Parent>
+bool extends_beyond(const Model& model, const Parent& parent, const BodyMotion& motion, const Box& open) {
   const Mat3 axes = rotation_matrix(orientation(motion));
   bool beyond = false;
   for_each_extreme(model, parent, [&](Vec3 offset, Real radius) {

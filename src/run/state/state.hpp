@@ -27,8 +27,8 @@ struct BalanceState {
   Real start = 0;             // Ledger::accounted() at t = 0 [J]
   Real start_integrator = 0;  // Ledger::dissipated_integrator at t = 0 [J]
   Real exchanged = 0;         // energy_exchanged() at the last row [J]
-  Real exchanged_under_old_deck =
-      0;  // energy_exchanged() with the decks before --allow-changes changed them [J]
+  // energy_exchanged() with the decks before --allow-changes changed them [J].
+  Real exchanged_under_old_deck = 0;
   EnergyExtremes extremes;
   Ledger last;  // at the last row
 };
