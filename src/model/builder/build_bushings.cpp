@@ -91,7 +91,7 @@ Matrix6 read_matrix(const DeckTable& table, const std::string& key) {
 }
 
 // Checks the rotation at t = 0 between the frames, which only markers can give.
-void check_start_turn(const DeckTable& table, const Model& model, const Bushing& bushing) {
+void check_start_rotation(const DeckTable& table, const Model& model, const Bushing& bushing) {
   Quaternion frame[2];
   for (int side = 0; side < 2; ++side)
     frame[side] = quaternion_of(transposed(global_frame(model, bushing.body[side], bushing.marker[side])));
@@ -115,7 +115,7 @@ Bushing build_bushing(const DeckTable& table, const Model& model, const Connecti
   bushing.damping = read_matrix(table, "damping");
   if (table.has("preload"))
     for (std::size_t k = 0; k < 6; ++k) bushing.preload[k] = table.reals("preload")[k];
-  check_start_turn(table, model, bushing);
+  check_start_rotation(table, model, bushing);
   return bushing;
 }
 

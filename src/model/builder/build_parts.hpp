@@ -17,8 +17,8 @@ void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
 // dimension: of the domain.
 Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& space);
-void build_time(const DeckTable& deck,
-                Model& model);  // control and end; also the integrator where the deck names it
+// Control and end; also the integrator where the deck names it.
+void build_time(const DeckTable& deck, Model& model);
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers

@@ -37,7 +37,7 @@ bool is_closed(const TriangleMesh& mesh) {
 }
 
 // A body with the mesh, or the ground, and the mesh's origin in the body's frame [m].
-struct MeshPlace {
+struct MeshOnBody {
   int body = kGround;
   Vec3 offset;
 };
@@ -51,7 +51,7 @@ Vec3 offset_on(const Model& model, int body, int mesh) {
   return from_center(model, body, {});
 }
 
-MeshPlace place_of(const DeckTable& table, const Model& model, const ModelNames& names, int mesh) {
+MeshOnBody mesh_on_body(const DeckTable& table, const Model& model, const ModelNames& names, int mesh) {
   if (table.has("body")) {
     const int body = find_name(names.bodies, table, "body", "body");
     return {body, offset_on(model, body, mesh)};
@@ -176,8 +176,8 @@ PackingBox FillRegion::packing(Real gap, std::int64_t tries) const {
 
 Real FillRegion::share(const IsFree& is_free) const {
   constexpr int kPoints = 20000;
-  const Real point =
-      1e-9 * norm(max_ - min_);  // a very small sphere, as overlaps with surfaces need a radius
+  // A very small sphere, as overlaps with surfaces need a radius.
+  const Real point = 1e-9 * norm(max_ - min_);
   RandomNumbers random(1);
   int found = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -256,15 +256,14 @@ void FillRegion::add_mesh(const DeckTable& table, const Model& model, const Mode
         "mesh",
         "is a closed solid that collides: its inside is matter; of a file, sheet = true makes a shell of "
         "it, which may hold particles");
-  const MeshPlace place = place_of(table, model, names, number);
+  const MeshOnBody on = mesh_on_body(table, model, names, number);
   MeshView view = surface.view();
   view.sheet = false;
   const Model* const of = &model;
   parts_.emplace_back(
-      [=](Vec3 p, Real r) { return lies_inside(view, to_body_point(*of, place.body, p) - place.offset, r); });
+      [=](Vec3 p, Real r) { return lies_inside(view, to_body_point(*of, on.body, p) - on.offset, r); });
   std::vector<Vec3> corners;
-  for (const Vec3 v : surface.vertices)
-    corners.push_back(to_global_point(model, place.body, place.offset + v));
+  for (const Vec3 v : surface.vertices) corners.push_back(to_global_point(model, on.body, on.offset + v));
   stay_within_points(corners);
 }
 

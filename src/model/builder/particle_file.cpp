@@ -77,7 +77,7 @@ bool is_positive(const std::string& column) {
 }
 
 // The error of a value, or "".
-std::string value_trouble(const std::string& column, Real value) {
+std::string value_error(const std::string& column, Real value) {
   if (column == "inertia_factor" && value > 1) return "must be at most 1, all mass at the radius";
   if (std::isfinite(value) && (!is_positive(column) || value > 0)) return "";
   return fmt::format("must be a {}finite number", is_positive(column) ? "positive, " : "");
@@ -86,7 +86,7 @@ std::string value_trouble(const std::string& column, Real value) {
 // Throws InputError without the place.
 Real parse_cell(const std::string& cell, const std::string& column) {
   const std::optional<Real> value = number_of(cell);
-  const std::string trouble = value ? value_trouble(column, *value) : "must be a number";
+  const std::string trouble = value ? value_error(column, *value) : "must be a number";
   if (!trouble.empty()) throw InputError(fmt::format("column {} = {}: {}", column, cell, trouble));
   return *value;
 }
@@ -290,7 +290,7 @@ void check_names(const std::vector<std::string>& names, int dimension, const std
 void check_values(const ParticleColumns& columns, std::int64_t first, const std::string& path) {
   for (const auto& [name, values] : columns) {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::string trouble = value_trouble(name, values[i]);
+      const std::string trouble = value_error(name, values[i]);
       if (trouble.empty()) continue;
       throw InputError(fmt::format("{}: dataset {}, row {} = {}: {}", path, name,
                                    first + static_cast<std::int64_t>(i), values[i], trouble));

@@ -12,12 +12,12 @@ namespace scree {
 
 // A body, and the contacts that particles can have with it.
 struct PressedBody {
-  Real stiffness =
-      0;  // of the stiffest contact with a particle, an estimate; 0: no particle can touch the body [N/m]
+  // That of the stiffest contact with a particle, an estimate; 0: no particle can touch the body [N/m].
+  Real stiffness = 0;
   Real damping = 0;  // of the contact with the largest damping, an estimate [N s/m]
   Real mass = 0;     // [kg]
-  Real least_mass =
-      0;  // smallest effective mass at the surface, 1 / (1/m + arm^2 / inertia) with the longest arm [kg]
+  // Smallest effective mass at the surface, 1 / (1/m + arm^2 / inertia) with the longest arm [kg].
+  Real least_mass = 0;
   Real reach = 0;  // largest distance of its surfaces from its centre of mass [m]
 
   // Phase of the body's oscillation on this number of contacts in a step of length h [s].

@@ -14,13 +14,11 @@ struct ExplicitStep {
 
 // The longest step for which velocity-verlet, with integrator.substeps substeps per step,
 // - keeps the trial rebounds of all pairs of materials within kReboundTolerance
-// (model/checks/impact_trials.hpp),
+//   (model/checks/impact_trials.hpp),
 // - uses at most kStableStepFraction of the stability limit in dense contact, with springs and dashpots along
-// the
-//   normal, tangential and against rolling, and at most kPullOffShare of that of a JKR contact,
+//   the normal, tangential and against rolling, and at most kPullOffShare of the duration of a JKR contact,
 // - resolves the oscillation of bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and
-// with
-//   the largest number of particles that can touch them (shortest_loaded_step),
+//   with the largest number of particles that can touch them (shortest_loaded_step),
 // - and moves nothing by more than half of the smallest radius (unnoticed_step).
 // Rounded down to two digits, so that a deck that gives the printed step has the same step.
 ExplicitStep longest_explicit_step(const Model& model);

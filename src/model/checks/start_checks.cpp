@@ -82,8 +82,8 @@ class ItemNames {
   const Model& model_;
   std::int64_t particles_;
   std::vector<int> body_;  // for each shape
-  std::vector<std::pair<std::size_t, int>>
-      meshes_;  // for each mesh of a body: the body, and the index into Model::meshes
+  // For each mesh of a body: the body, and the index into Model::meshes.
+  std::vector<std::pair<std::size_t, int>> meshes_;
 };
 
 constexpr Real kRoundOff = 1e-9;  // of exact contact between neighbours

@@ -39,8 +39,8 @@ struct Body {
   std::string name;
   bool in_row = false;  // belongs to a row, whose bodies share their keys
   Real mass = 0;        // [kg]
-  Real inertia =
-      0;  // about the z axis through the centre of mass; spatial: the smallest principal moment [kg m^2]
+  // Moment about the z axis through the centre of mass; spatial: the smallest principal moment [kg m^2].
+  Real inertia = 0;
   Vec3 position;              // of the centre of mass at t = 0 [m]
   Real angle = 0;             // [rad]
   Vec3 velocity;              // [m/s]
@@ -64,8 +64,8 @@ struct Body {
 // A point and axes fixed to a body, or to the ground (in the global frame).
 struct Marker {
   Vec3 point;  // [m]
-  Quaternion
-      orientation;  // from components in the marker's frame to the body's frame; the marker's axis is z
+  // From components in the marker's frame to the body's frame; the marker's axis is z.
+  Quaternion orientation;
 };
 
 // A joint between body[0] and body[1]; either may be the ground. Points and axis are in the body frames.
@@ -82,8 +82,8 @@ struct Joint {
   // Spatial bodies, in place of axis and angle_offset: orientation of the joint's frame in each body's frame,
   // axis along z. Universal: the first body's arm is x, the second body's arm is y.
   Quaternion marker[2];
-  std::string
-      deck_label;  // label of its table for messages: "deck.toml:38:1: joints.hinge"; empty without a deck
+  // Label of its table for messages: "deck.toml:38:1: joints.hinge"; empty without a deck.
+  std::string deck_label;
   // Distance joint that is a cylinder with a free length: it has no constraint row; motors and stops act on
   // its length.
   bool telescopes = false;

@@ -143,8 +143,8 @@ struct Output {
   Real snapshot_interval = 0;    // [s]; 0: only the first and the last state
   Real history_interval = 0;     // [s]; 0: every step
   Real checkpoint_interval = 0;  // [s] of simulated time; 0: none at such intervals
-  Real checkpoint_wall_interval =
-      0;  // [s] of wall-clock time since the last checkpoint; 0: none at such intervals
+  // Wall-clock time since the last checkpoint [s]; 0: none at such intervals.
+  Real checkpoint_wall_interval = 0;
   bool history_csv = false;
   bool contacts = false, links = true;   // whether snapshots have them as line segments
   int compression = 0;                   // deflate level for particles in snapshots and checkpoints; 0: none
@@ -204,8 +204,8 @@ struct Model {
   Integrator integrator;
   Output output;
   Parallel parallel;
-  bool consistent_velocities =
-      false;  // initial velocities of bodies are corrected to agree with joints and drivers
+  // Initial velocities of bodies are corrected to agree with joints and drivers.
+  bool consistent_velocities = false;
 
   // Whether particles rotate: only where contacts have friction.
   bool rotates() const { return !contact.friction.empty(); }

@@ -34,8 +34,8 @@ struct NamedMesh {
 
 struct ModelNames {
   NameMap materials, meshes, bodies, joints;
-  std::map<std::string, std::vector<int>>
-      rows;  // bodies of a row in order; a single body is a row of one body
+  // Bodies of a row in order; a single body is a row of one body.
+  std::map<std::string, std::vector<int>> rows;
   std::map<std::string, NamedMarker> markers;
   std::vector<Real> densities;       // of the materials [kg/m^3], 0 where not given
   std::vector<NamedMesh> triangles;  // of the meshes

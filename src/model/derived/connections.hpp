@@ -47,8 +47,8 @@ Vec3 to_global_direction(const Model& model, int body, Vec3 local);
 Vec3 from_center(const Model& model, int body, Vec3 local);
 // The marker of a body with this point and frame (rows x, y, z), both at t = 0 in the global frame.
 Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame);
-Mat3 global_frame(const Model& model, int body,
-                  const Quaternion& orientation);  // frame of a body's marker at t = 0, rows x, y, z
+// Frame of a body's marker at t = 0, rows x, y, z.
+Mat3 global_frame(const Model& model, int body, const Quaternion& orientation);
 
 // The markers of a connection. Without markers: the deck's point or local_points (left out: the body's centre
 // of mass, or midway between the two), and on either body these axes (rows x, y, z at t = 0 in the global

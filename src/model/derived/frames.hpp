@@ -17,8 +17,7 @@ Vec3 read_direction(const DeckTable& table, const std::string& key);
 // The vector `local` of the frame of the body of this table, in the global frame at t = 0.
 Vec3 rotated_at_start(const DeckTable& body, Vec3 local);
 
-// Axes of a frame: rows x, y, z.
-// z = axis, of length 1; x the global axis that is most nearly across.
+// Axes of a frame (rows x, y, z): z = axis, of length 1; x the global axis that is most nearly across.
 Mat3 frame_about(Vec3 axis);
 // The frame after the shortest rotation that takes `from` to `to`, unit vectors that are not opposite.
 Mat3 rotated_frame(const Mat3& frame, Vec3 from, Vec3 to);

@@ -27,8 +27,8 @@ using Motion = std::array<Real, kMotions>;
 // Mobility of a body's point in a direction: the body's motions divided by the root of their inertia. A
 // spring there adds this vector times its transpose, times the stiffness, to the matrix of squared
 // frequencies [kg^-1/2].
-Motion mobility(const Body& body, Vec3 place, Vec3 direction) {
-  const Vec3 lever = cross(place, direction);
+Motion mobility(const Body& body, Vec3 arm, Vec3 direction) {
+  const Vec3 lever = cross(arm, direction);
   const Real move = 1 / std::sqrt(body.mass), turn = 1 / std::sqrt(body.inertia);
   if (body.kind == BodyKind::planar) return {move * direction.x, move * direction.y, 0, 0, 0, turn * lever.z};
   return {move * direction.x, move * direction.y, move * direction.z,
