@@ -5,8 +5,7 @@
 
 namespace scree {
 
-// ---- the domain
-// -----------------------------------------------------------------------------------------------
+// ---- the domain -------------------------------------------------------------------------------------------
 
 enum class Boundary { open, wall, periodic };
 template <>
@@ -29,8 +28,7 @@ template <>
 inline constexpr auto kFormerWords<OutsidePolicy> =
     std::to_array<Word<OutsidePolicy>>({{"drift", OutsidePolicy::drift}});
 
-// ---- time
-// ----------------------------------------------------------------------------------------------------
+// ---- time -------------------------------------------------------------------------------------------------
 
 enum class StepControl { fixed, adaptive };
 template <>
@@ -101,8 +99,7 @@ inline constexpr auto kWords<Mixing> = std::to_array<Word<Mixing>>({{"none", Mix
                                                                     {"minimum", Mixing::minimum},
                                                                     {"maximum", Mixing::maximum}});
 
-// ---- bodies
-// --------------------------------------------------------------------------------------------------
+// ---- bodies -----------------------------------------------------------------------------------------------
 
 enum class BodyKind {
   planar,  // moves in a plane z = const, rotates about z
@@ -278,8 +275,7 @@ inline constexpr auto kWords<Interpolation> =
                                         {"monotone", Interpolation::monotone},
                                         {"linear", Interpolation::linear}});
 
-// ---- output
-// --------------------------------------------------------------------------------------------------
+// ---- output -----------------------------------------------------------------------------------------------
 
 // Fields that snapshots have of each triangle of the meshes.
 enum class SurfaceField { pressure, shear, impact_work, sliding_work, wear_depth };
@@ -291,8 +287,7 @@ inline constexpr auto kWords<SurfaceField> =
                                        {"sliding_work", SurfaceField::sliding_work},
                                        {"wear_depth", SurfaceField::wear_depth}});
 
-// ---- particles
-// -----------------------------------------------------------------------------------------------
+// ---- particles --------------------------------------------------------------------------------------------
 
 // How the positions of a group of particles are given.
 enum class GroupKind { list, row, lattice, random, file };
@@ -311,8 +306,7 @@ inline constexpr auto kWords<DistributionKind> =
                                            {"normal", DistributionKind::normal},
                                            {"table", DistributionKind::table}});
 
-// ---- ranks and devices
-// ---------------------------------------------------------------------------------------
+// ---- ranks and devices ------------------------------------------------------------------------------------
 
 // How ghost data are sent between the GPUs of several ranks.
 enum class Transport { automatic, cuda_aware, nccl, staged };

@@ -23,8 +23,8 @@ const std::string kCellData = "/VTKHDF/CellData/";
 const std::string kPointDataOffsets = "/VTKHDF/Steps/PointDataOffsets/";
 const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
 const std::string kConstantOffsets = kSteps + "ConstantOffsets";
-constexpr std::size_t kXdmfGrowth =
-    5;  // the .xdmf is rewritten when it has grown by one snapshot in this many
+// The .xdmf is rewritten when it has grown by one snapshot in this many.
+constexpr std::size_t kXdmfGrowth = 5;
 
 void create_field(Hdf5File& file, const std::string& name, const PointField& field, RowStorage storage) {
   storage.width = field.width;

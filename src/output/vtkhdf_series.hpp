@@ -144,8 +144,8 @@ class VtkHdfSeries {
   SeriesOptions options_;
   DoubleBufferedFile file_;
   std::vector<SnapshotRows> places_;
-  std::string
-      xdmf_grids_;  // grids of the first xdmf_snapshots_ snapshots; the file has xdmf_written_ of them
+  // Grids of the first xdmf_snapshots_ snapshots; the file has xdmf_written_ of them.
+  std::string xdmf_grids_;
   std::size_t xdmf_snapshots_ = 0, xdmf_written_ = 0;
 };
 
