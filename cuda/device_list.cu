@@ -33,7 +33,7 @@ template <class Visit>
 __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const Vec4 p = in.position[i];
   const CellGrid& cells = in.grid.cells.own;
-  const CellIndex c = in.grid.cells.entry_index(xyz(p));
+  const CellIndex c = in.grid.cells.cell_index(xyz(p));
   if (c.x < 0) return;
   const auto in_range = [&](Index j) {
     const Vec4 q = in.position[j];

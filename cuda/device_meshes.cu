@@ -170,10 +170,10 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   records.store(touches, entry);
   __syncthreads();
   const auto thread = static_cast<Index>(threadIdx.x);
-  if (thread < for_lanes) item.kinematics(pending[kTouchThreads - 1 - thread], SingleLane{});
+  if (thread < for_lanes) item.query(pending[kTouchThreads - 1 - thread], SingleLane{});
   using LaneGroup = LaneTeam<kTeamLanes>;
   for (Index k = thread / kTeamLanes; k < for_teams; k += kTouchThreads / kTeamLanes)
-    item.kinematics(pending[k], LaneGroup{});
+    item.query(pending[k], LaneGroup{});
 }
 
 template <bool kOpenSurfaces, class Query>
