@@ -9,7 +9,7 @@ namespace {
 // The most steps queued before the host reads the control block: enough to hide the latency of reading it.
 constexpr Index kQueuedSteps = 128;
 // A list is rebuilt at once if the exact displacement exceeds this fraction of what it covers.
-constexpr Real kWornList = 0.9;
+constexpr Real kRebuildFraction = 0.9;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ StepsTaken CudaExplicitRun::take_steps_without_bodies(Index most, bool keep_open
 // After a stop: whether the list was the reason, and was rebuilt or turned out to cover the particles still.
 bool CudaExplicitRun::renew_list(StageTimers& timers) {
   if (list_.current() && list_.bound() < list_.skin() / 2) return false;
-  if (!(list_.displacement() < kWornList)) list_.build(items_.model.contact.skin, timers);
+  if (!(list_.displacement() < kRebuildFraction)) list_.build(items_.model.contact.skin, timers);
   control_.resume();
   return true;
 }

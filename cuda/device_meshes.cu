@@ -129,8 +129,8 @@ struct GroupItem {
 };
 
 constexpr int kTouchThreads = 128;
-constexpr int kTouchBlocks = 4;  // blocks per multiprocessor: with more, registers spill
-constexpr int kTeamLanes = 8;    // rows have about ten triangles
+constexpr int kTouchBlocks = 4;    // blocks per multiprocessor: with more, registers spill
+constexpr int kLanesPerGroup = 8;  // rows have about ten triangles
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // Contacts at an instant.
@@ -149,10 +149,10 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   __shared__ TouchRecords::Shared shared;
   // Groups of triangles that must be searched: those for lane groups from the front, those for single lanes
   // from the back.
-  __shared__ Index pending[kTouchThreads], for_teams, for_lanes;
+  __shared__ Index pending[kTouchThreads], for_lane_groups, for_lanes;
   SurfaceViews now = views;
   if (!query.open(now)) return;
-  if (threadIdx.x == 0) for_teams = for_lanes = 0;
+  if (threadIdx.x == 0) for_lane_groups = for_lanes = 0;
   __syncthreads();
   const MeshTouchItem<kHasRange, kOpenSurfaces> item{now, touches, cached_contacts};
   const TouchRecords records(shared);
@@ -164,15 +164,15 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     if (found == Nearest::one) entry = group.entry;
     if (found == Nearest::unclear) {
       const bool smooth = group.kind == RowKind::smooth;
-      pending[smooth ? atomicAdd(&for_teams, 1) : kTouchThreads - 1 - atomicAdd(&for_lanes, 1)] = g;
+      pending[smooth ? atomicAdd(&for_lane_groups, 1) : kTouchThreads - 1 - atomicAdd(&for_lanes, 1)] = g;
     }
   }
   records.store(touches, entry);
   __syncthreads();
   const auto thread = static_cast<Index>(threadIdx.x);
   if (thread < for_lanes) item.query(pending[kTouchThreads - 1 - thread], SingleLane{});
-  using LaneGroup = LaneTeam<kTeamLanes>;
-  for (Index k = thread / kTeamLanes; k < for_teams; k += kTouchThreads / kTeamLanes)
+  using LaneGroup = LaneTeam<kLanesPerGroup>;
+  for (Index k = thread / kLanesPerGroup; k < for_lane_groups; k += kTouchThreads / kLanesPerGroup)
     item.query(pending[k], LaneGroup{});
 }
 

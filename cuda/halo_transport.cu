@@ -131,7 +131,7 @@ bool gpus_are_shared(const Ranks& ranks) {
 }
 
 // Why NCCL does not work here; empty if it does.
-std::string nccl_trouble([[maybe_unused]] bool shared) {
+std::string nccl_error([[maybe_unused]] bool shared) {
 #ifdef SCREE_NCCL
   return shared ? "two ranks share a GPU, and NCCL takes one rank per GPU" : "";
 #else
@@ -139,14 +139,14 @@ std::string nccl_trouble([[maybe_unused]] bool shared) {
 #endif
 }
 
-std::string cuda_aware_trouble(const Ranks& ranks) {
+std::string cuda_aware_error(const Ranks& ranks) {
   return ranks.any(!Ranks::mpi_takes_device_memory()) ? "this MPI library does not take device memory" : "";
 }
 
 }  // namespace
 
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport transport) {
-  const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble(ranks);
+  const std::string no_nccl = nccl_error(gpus_are_shared(ranks)), no_mpi = cuda_aware_error(ranks);
   const auto refuse = [&](Transport refused, const std::string& why) {
     std::string allowed = "\"auto\"";
     if (no_mpi.empty()) allowed += ", \"cuda-aware\"";

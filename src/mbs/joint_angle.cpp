@@ -14,9 +14,10 @@ namespace {
 // second   = f_c c''_0 + f_s s''_0 + f_cc c'^2 + f_ss s'^2 + 2 f_cs c' s'
 // with f_c = -s / r, f_s = c / r, f_cc = -f_ss = 2 s c / r^2, f_cs = (s^2 - c^2) / r^2, r = s^2 + c^2: exact
 // also where the axes are not parallel yet, in Newton's iterations.
-class TwistMeasure final : public PrimitiveFunction {
+class AnglePrimitive final : public PrimitiveFunction {
  public:
-  TwistMeasure(std::unique_ptr<PrimitiveFunction> cosine, std::unique_ptr<PrimitiveFunction> sine, int number)
+  AnglePrimitive(std::unique_ptr<PrimitiveFunction> cosine, std::unique_ptr<PrimitiveFunction> sine,
+                 int number)
       : PrimitiveFunction(cosine->pair()),
         cosine_(std::move(cosine)),
         sine_(std::move(sine)),
@@ -71,7 +72,7 @@ class TwistMeasure final : public PrimitiveFunction {
 
 std::unique_ptr<PrimitiveFunction> angle_primitive(std::unique_ptr<PrimitiveFunction> cosine,
                                                    std::unique_ptr<PrimitiveFunction> sine, int number) {
-  return std::make_unique<TwistMeasure>(std::move(cosine), std::move(sine), number);
+  return std::make_unique<AnglePrimitive>(std::move(cosine), std::move(sine), number);
 }
 
 }  // namespace scree

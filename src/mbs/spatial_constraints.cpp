@@ -56,9 +56,9 @@ class Coincidence final : public Constraint {
 };
 
 // velocity_rhs = f',  acceleration_rhs = f'' - (c'' without accelerations)
-class MeasureConstraint final : public Constraint {
+class PrimitiveConstraint final : public Constraint {
  public:
-  MeasureConstraint(std::unique_ptr<PrimitiveFunction> c, ScalarFunction f)
+  PrimitiveConstraint(std::unique_ptr<PrimitiveFunction> c, ScalarFunction f)
       : c_(std::move(c)), f_(std::move(f)) {}
 
   bool is_angle() const override { return c_->is_angle(); }
@@ -100,7 +100,7 @@ std::unique_ptr<Constraint> coincidence_constraint(const SpatialPair& pair) {
 }
 
 std::unique_ptr<Constraint> primitive_constraint(std::unique_ptr<PrimitiveFunction> c, ScalarFunction f) {
-  return std::make_unique<MeasureConstraint>(std::move(c), std::move(f));
+  return std::make_unique<PrimitiveConstraint>(std::move(c), std::move(f));
 }
 
 }  // namespace scree

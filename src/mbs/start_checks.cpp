@@ -92,7 +92,7 @@ void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Rea
   if (!trouble.empty()) throw InputError(trouble);
 }
 
-void check_joints_meet(const Model& model) {
+void check_joints_closed(const Model& model) {
   for (const Joint& joint : model.joints)
     if (const JointGap ends = joint_gap(model, joint); !ends.meets())
       throw InputError(
@@ -175,7 +175,7 @@ StartFindings check_start(const Model& model, RigidBodySystem& system, const std
   check_senses(model);
   check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
-  check_joints_meet(model);
+  check_joints_closed(model);
   StartFindings findings{"", redundant_rows(system, terms.constraint_jacobian)};
   check_contradictions(system, findings.repeated, terms.constraint, kContradiction,
                        ConstraintLevel::positions);

@@ -131,12 +131,12 @@ struct CachedContactRow {
       farther = permitted_beyond_edge(other, below);
       if (!(farther < enough) && !(same_side < enough)) return farther;
     }
-    const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - search_range;
-    if (kind == RowKind::any) return beyond_reach;
+    const Real away = mesh_detail::distance_to(mesh, other, c), beyond_range = away - search_range;
+    if (kind == RowKind::any) return beyond_range;
     const Real by_distance = Real(0.5) * (away - below.distance);
     if (farther < by_distance) farther = by_distance;
     shrink(farther, same_side);
-    return farther > beyond_reach ? farther : beyond_reach;
+    return farther > beyond_range ? farther : beyond_range;
   }
   // Displacement of c for which a triangle beyond an edge stays farther away than the plane below; 0: it is
   // beyond no edge. Derived in src/mesh/README.md, "Cached narrow-phase queries".

@@ -81,7 +81,7 @@ class SideTracker {
   SCREE_HD int keep(MeshContact* contacts, int count) {
     bool continues[kMeshSlots] = {};
     int past = 0;
-    for (const Match match : {Match::same, Match::same_side, Match::past, Match::past_neighbour})
+    for (const Match match : {Match::same, Match::same_side, Match::penetrated, Match::penetrated_neighbour})
       for (int k = 0; k < count && old_.count > 0; ++k) {
         if (continues[k]) continue;
         const int before = find(contacts[k], match);
@@ -93,7 +93,7 @@ class SideTracker {
   }
 
  private:
-  enum class Match { same, same_side, past, past_neighbour };
+  enum class Match { same, same_side, penetrated, penetrated_neighbour };
 
   // The previous contact that matches this one, -1: none; the lowest of several.
   SCREE_HD int find(const MeshContact& now, Match match) const {
@@ -111,7 +111,7 @@ class SideTracker {
     if (same_side != (match == Match::same_side)) return false;
     if (!same_side && (is_open(mesh_, feature) || is_open(mesh_, now.feature))) return false;
     const MeshContact previous = sided_feature_at(mesh_, old, c_);
-    if (match == Match::past_neighbour)
+    if (match == Match::penetrated_neighbour)
       return previous.distance < 0 && on_neighbouring_patches(mesh_, feature, now.feature);
     if (!mesh_detail::share_patch(mesh_, feature, now.feature)) return false;
     if (same_side) return dot(previous.normal, now.normal) >= mesh_.cosine;
