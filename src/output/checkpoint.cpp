@@ -66,8 +66,8 @@ std::map<std::string, Extent> extents_of(const RowMap<T>& arrays, const Ranks& r
 }
 
 template <class T>
-void reserve_entries(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
-                     const std::map<std::string, Extent>& extents, int compression) {
+void reserve_rows(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
+                  const std::map<std::string, Extent>& extents, int compression) {
   for (const auto& [name, rows] : arrays) {
     file.create_rows<T>(group + name,
                         {rows.width, kMostRowsPerChunk, true, compression, extents.at(name).all},
@@ -95,8 +95,8 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
   ranks.on_root([&] {
     Hdf5File file(path, Hdf5Access::create);
     write_small(file, checkpoint);
-    reserve_entries(file, kRealRows, checkpoint.real_rows, reals, compression);
-    reserve_entries(file, kIntegerRows, checkpoint.integer_rows, integers, compression);
+    reserve_rows(file, kRealRows, checkpoint.real_rows, reals, compression);
+    reserve_rows(file, kIntegerRows, checkpoint.integer_rows, integers, compression);
     file.close();
   });
   SharedRows file(ranks, path);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Files that a run may write.
-constexpr const char* kKeys[] = {
+constexpr const char* kFileNames[] = {
     "history.h5",      "history.csv",     "particles.vtkhdf", "particles.xdmf",    "bodies.vtkhdf",
     "bodies.xdmf",     "surfaces.vtkhdf", "surfaces.xdmf",    "contacts.vtkhdf",   "contacts.xdmf",
     "links.vtkhdf",    "links.xdmf",      "checkpoint.h5",    "checkpoint_end.h5", "checkpoint_failed.h5",
@@ -61,7 +61,7 @@ bool ResultsFolder::continues() const {
 std::vector<std::string> ResultsFolder::results_of_others() const {
   std::vector<std::string> found;
   if (continues()) return found;
-  for (const char* name : kKeys) {
+  for (const char* name : kFileNames) {
     const std::string path = options_.folder + "/" + name;
     std::error_code none_such;
     if (is_there(path) && (options_.restart.empty() || !fs::equivalent(path, options_.restart, none_such)))
@@ -125,7 +125,7 @@ void ResultsFolder::clear() const {
     for (const std::string& name : results_of_others()) remove_file(options_.folder + "/" + name);
     for (const char* name : kCheckpoints) remove_file(options_.folder + "/" + name + kEarlier);
   }
-  for (const char* name : kKeys)
+  for (const char* name : kFileNames)
     for (const char* suffix : kCopySuffixes) remove_file(options_.folder + "/" + name + suffix);
 }
 

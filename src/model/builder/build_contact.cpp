@@ -272,8 +272,7 @@ void take_attraction(const DeckTable& table, NormalLawParameters& law) {
 
 // Throws InputError where pairs have different kinds of adhesion: a run has JKR contacts, or added adhesive
 // forces.
-void check_attraction_beside(const DeckTable& table, const GivenPairs& before,
-                             const NormalLawParameters& law) {
+void check_adhesion_kinds(const DeckTable& table, const GivenPairs& before, const NormalLawParameters& law) {
   if (!law.is_cohesive() || !(is_jkr(law) || before.jkr) || !(pulls(law) || before.adhesion)) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
@@ -293,7 +292,7 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   NormalLawParameters law = build_law(deck, table, model, material);
   check_mixing(table, given, law);
   take_attraction(table, law);
-  check_attraction_beside(table, given, law);
+  check_adhesion_kinds(table, given, law);
   const Friction friction = build_friction(deck, table, law, material);
   const RollingParameters rolling = build_rolling(table, friction, model.space.dimension);
   // JKR laws exist only with friction: the contact rotates with its partners.

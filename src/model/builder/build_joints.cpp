@@ -167,7 +167,7 @@ std::string shown_point(const Model& model, const Joint& joint, Vec3 p) {
                                                          : fmt::format("({}, {})", p.x, p.y);
 }
 
-void check_joint_meets(const DeckTable& table, const Model& model, const Joint& joint) {
+void check_joint_closed(const DeckTable& table, const Model& model, const Joint& joint) {
   const JointGap gap = joint_gap(model, joint);
   if (gap.meets()) return;
   const std::string key = joint.kind == JointKind::distance ? "distance"
@@ -228,7 +228,7 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
       joint.axis = to_body_direction(model, joint.body[0], global_axis(table));
     joint.angle_offset = start_angle(model, joint.body[1]) - start_angle(model, joint.body[0]);
   }
-  check_joint_meets(table, model, joint);
+  check_joint_closed(table, model, joint);
   return joint;
 }
 

@@ -42,7 +42,7 @@ void check(const DeckTable& table, const TriangleMesh& mesh) {
 }
 
 // A triangle with edges up to L has at most the area of the equilateral one, sqrt(3) / 4 L^2.
-void check_room(const DeckTable& table, const TriangleMesh& mesh) {
+void check_memory_of_refined(const DeckTable& table, const TriangleMesh& mesh) {
   const Real longest = table.real("refine"),
              least = mesh_area(mesh) / (std::sqrt(Real(3)) / 4 * longest * longest);
   const FreeMemory memory = free_memory();
@@ -54,7 +54,7 @@ void check_room(const DeckTable& table, const TriangleMesh& mesh) {
 }
 
 TriangleMesh made_finer(const DeckTable& table, const TriangleMesh& mesh) {
-  check_room(table, mesh);
+  check_memory_of_refined(table, mesh);
   try {
     return refined(mesh, table.real("refine"));
   } catch (const InputError& error) {

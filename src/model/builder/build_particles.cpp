@@ -344,13 +344,13 @@ IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
 }
 
 // Number of particles of random groups and of all groups before the last of them, which they must avoid.
-std::int64_t places_found(const std::vector<Group>& groups) {
-  std::int64_t before = 0, places = 0;
+std::int64_t avoided_particles(const std::vector<Group>& groups) {
+  std::int64_t before = 0, avoided = 0;
   for (const Group& group : groups) {
     before += group.count();
-    if (group.is_random()) places = before;
+    if (group.is_random()) avoided = before;
   }
-  return places;
+  return avoided;
 }
 
 // A group without a name has its number as name in outputs, which no other group may have.
@@ -379,8 +379,8 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   for (const Group& group : groups) group.warn_if_empty(log), group.note_thickness(model.disc_thickness);
   model.particles.totals.count = size.particles = count;
   const IdRange own = share.part(count);
-  check_memory(size, bytes_to_build_particles(own.size(), places_found(groups)), "building the particles",
-               share);
+  check_memory(size, bytes_to_build_particles(own.size(), avoided_particles(groups)),
+               "building the particles", share);
   model.particles.first_id = own.first, model.particles.dimension = model.space.dimension;
   GlobalId first = 0;
   for (Group& group : groups) {

@@ -141,7 +141,7 @@ class CsvTable {
 };
 
 // Names of the columns; empty for an empty file. Counts the rows.
-std::vector<std::string> look_through_csv(const std::string& path, int dimension, std::int64_t& count) {
+std::vector<std::string> scan_csv(const std::string& path, int dimension, std::int64_t& count) {
   CsvTable table(path);
   std::vector<std::string> header, cells;
   if (!table.next(cells)) return {};
@@ -229,7 +229,7 @@ std::string advice_of_own(hid_t file) {
 }
 
 // Lengths of the file's columns.
-std::map<std::string, std::int64_t> look_through_hdf5(const std::string& path, int dimension) {
+std::map<std::string, std::int64_t> scan_hdf5(const std::string& path, int dimension) {
   const QuietHdf5 quiet;
   const Handle file = open_file(path);
   if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
@@ -310,11 +310,11 @@ ParticleFile::ParticleFile(const std::string& path, int dimension)
   if (!hdf5_) {
     if (beginning.find('\r') != beginning.npos && beginning.find('\n') == beginning.npos)
       throw InputError(path + ": its lines end in a carriage return alone; they must end in a line feed");
-    columns_ = look_through_csv(path, dimension, count_);
+    columns_ = scan_csv(path, dimension, count_);
     check_names(columns_, dimension, path);
     return;
   }
-  const std::map<std::string, std::int64_t> lengths = look_through_hdf5(path, dimension);
+  const std::map<std::string, std::int64_t> lengths = scan_hdf5(path, dimension);
   for (const auto& [name, length] : lengths) columns_.push_back(name);
   check_names(columns_, dimension, path);
   count_ = lengths.at("x");

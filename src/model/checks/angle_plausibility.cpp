@@ -13,7 +13,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
+constexpr Real kRevolution = 2 * std::numbers::pi_v<Real>;
 
 class Search {
  public:
@@ -32,14 +32,14 @@ class Search {
     }
   }
   void judge(const DeckTable& table, const Key& key, Real value, const DeckValue& given) {
-    if (!(std::abs(value) > kTurn) || !std::isfinite(value)) return;
+    if (!(std::abs(value) > kRevolution) || !std::isfinite(value)) return;
     const bool meant =
         key.unit == "rad" || (key.unit == "rad or m" && std::floor(value) == value && is_of_angle(table));
     if (!meant) return;
     findings_.push_back(fmt::format(
         "{}: {}.{} = {}: {:g} rad are {:.3g} revolutions; angles are in radians: {:g} degrees are {:.6g}",
-        given.location, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
-        value * kTurn / 360));
+        given.location, table.path(), key.name, given.shown, value, std::abs(value) / kRevolution, value,
+        value * kRevolution / 360));
   }
   // Whether the values of the table refer to an angle of its joint.
   bool is_of_angle(const DeckTable& table) const {

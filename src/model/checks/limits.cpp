@@ -68,7 +68,7 @@ bool has_material(const Parts& parts, int material) {
 }
 
 // Whether a body with a shape of material a may touch another body with a mesh of material b.
-bool shapes_meet_meshes(const Model& model, int a, int b) {
+bool shapes_touch_meshes(const Model& model, int a, int b) {
   const TouchRule rule(model);
   const int bodies = static_cast<int>(model.bodies.size());
   const auto body = [&](int number) -> const Body& { return model.bodies[static_cast<std::size_t>(number)]; };
@@ -83,7 +83,7 @@ bool shapes_meet_meshes(const Model& model, int a, int b) {
 }
 
 // Whether shapes of one material may touch walls that are meshes of the other.
-bool shapes_meet_walls(const Model& model, const MaterialUse& use, int material) {
+bool shapes_touch_walls(const Model& model, const MaterialUse& use, int material) {
   return use.shapes > 0 && std::ranges::any_of(model.walls, [&](const Wall& wall) {
            return wall.mesh >= 0 && wall.material == material;
          });
@@ -159,15 +159,15 @@ bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int
   if (first.particles > 0 && second.shapes + second.meshes > 0) return true;
   if (second.particles > 0 && first.shapes + first.meshes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
-  return bodies_can_touch(model, uses, a, b) || shapes_meet_walls(model, first, b) ||
-         shapes_meet_walls(model, second, a);
+  return bodies_can_touch(model, uses, a, b) || shapes_touch_walls(model, first, b) ||
+         shapes_touch_walls(model, second, a);
 }
 
 bool bodies_can_touch(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
   if (first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch()) return true;
-  return (first.shapes > 0 && second.meshes > 0 && shapes_meet_meshes(model, a, b)) ||
-         (second.shapes > 0 && first.meshes > 0 && shapes_meet_meshes(model, b, a));
+  return (first.shapes > 0 && second.meshes > 0 && shapes_touch_meshes(model, a, b)) ||
+         (second.shapes > 0 && first.meshes > 0 && shapes_touch_meshes(model, b, a));
 }
 
 bool touch_open_surfaces_only(const std::vector<MaterialUse>& uses, int a, int b) {

@@ -235,7 +235,7 @@ bool is_boxed(const DeckTable& group) {
 
 // Such groups have equal positions in their boxes, with equal radii in equal order where those are drawn from
 // equal distributions.
-std::string same_random_places(const DeckTable& deck) {
+std::string same_random_positions(const DeckTable& deck) {
   const auto size = [](const DeckTable& table) { return table.vector("max") - table.vector("min"); };
   const auto alike = [&](const DeckTable& a, const DeckTable& b) {
     constexpr Real kRoundOff = 1e-12;
@@ -337,7 +337,7 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        odd_mass(deck, model),
                                        belt_without_friction(model),
                                        many_steps(model),
-                                       same_random_places(deck)};
+                                       same_random_positions(deck)};
   const ImpactSpeeds speeds(model);
   const std::vector<MaterialUse> uses = material_uses(model);
   for (const PairLimit& limit : pair_limits(model)) {

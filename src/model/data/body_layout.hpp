@@ -15,29 +15,29 @@ class BodyLayout {
  public:
   explicit BodyLayout(const std::vector<Body>& bodies) {
     for (const Body& body : bodies) {
-      places_.push_back({positions_, columns_});
+      offsets_.push_back({positions_, columns_});
       const bool spatial = body.kind == BodyKind::spatial;
       positions_ += spatial ? 7 : 3, columns_ += spatial ? 6 : 3;
     }
   }
 
-  int bodies() const { return static_cast<int>(places_.size()); }
+  int bodies() const { return static_cast<int>(offsets_.size()); }
   int positions() const { return positions_; }
   int columns() const { return columns_; }
   // Index of the body's first coordinate.
-  int position(int body) const { return places_[static_cast<std::size_t>(body)].position; }
-  int column(int body) const { return places_[static_cast<std::size_t>(body)].column; }
+  int position(int body) const { return offsets_[static_cast<std::size_t>(body)].position; }
+  int column(int body) const { return offsets_[static_cast<std::size_t>(body)].column; }
   int body_of_column(int column) const {
-    const auto after = std::upper_bound(places_.begin(), places_.end(), column,
-                                        [](int c, const Place& place) { return c < place.column; });
-    return static_cast<int>(after - places_.begin()) - 1;
+    const auto after = std::upper_bound(offsets_.begin(), offsets_.end(), column,
+                                        [](int c, const Offsets& at) { return c < at.column; });
+    return static_cast<int>(after - offsets_.begin()) - 1;
   }
 
  private:
-  struct Place {
+  struct Offsets {
     int position, column;
   };
-  std::vector<Place> places_;
+  std::vector<Offsets> offsets_;
   int positions_ = 0, columns_ = 0;
 };
 

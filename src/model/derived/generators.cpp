@@ -16,7 +16,7 @@ namespace scree {
 
 namespace {
 
-Vec3 random_place(const PackingBox& box, Real radius, RandomNumbers& random) {
+Vec3 random_position(const PackingBox& box, Real radius, RandomNumbers& random) {
   if (box.drawn) return box.drawn->draw(random, radius);
   const Real x = random.uniform(box.min.x + radius, box.max.x - radius);
   const Real y = random.uniform(box.min.y + radius, box.max.y - radius);
@@ -152,7 +152,7 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
     const Real r = radius[order[n]];
     bool found = false;
     for (std::int64_t attempt = 0; static_cast<Real>(attempt) < tries && !found && fits(box, r); ++attempt) {
-      positions[order[n]] = random_place(box, r, random);
+      positions[order[n]] = random_position(box, r, random);
       found = bins.is_clear(positions[order[n]], r, box.gap) && is_free(positions[order[n]], r);
     }
     if (!found) return std::vector<Vec3>(n);

@@ -127,7 +127,7 @@ std::string consequence(const Model& model) {
 }
 
 // The periodic image of p nearest to `middle` [m].
-Vec3 image_relative_to(Vec3 middle, Vec3 p, Vec3 periods) {
+Vec3 nearest_image(Vec3 middle, Vec3 p, Vec3 periods) {
   const auto along = [](Real m, Real x, Real period) {
     return period > 0 ? x - std::round((x - m) / period) * period : x;
   };
@@ -170,7 +170,7 @@ std::string SurfacesOutside::warning(std::span<const EscapedParticle> escaped_pa
     const Mat3 axes = rotation_matrix(orientation(motion[c]));
     const Vec3 middle = motion[c].position + axes * (Real(0.5) * (box.min + box.max));
     for (const EscapedParticle& escaped_particle : escaped_particles) {
-      const Vec3 place = image_relative_to(middle, escaped_particle.position, periods) - motion[c].position;
+      const Vec3 place = nearest_image(middle, escaped_particle.position, periods) - motion[c].position;
       if (!box.is_within(transposed_times(axes, place), diameter)) continue;
       return fmt::format(
           "particle {} leaves the domain at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
