@@ -41,7 +41,7 @@ struct ChosenValue {
 // std::logic_error where the key is not declared with that type.
 class DeckTable {
  public:
-  // path: "bodies.net", empty for the whole deck. place: as in DeckValue.
+  // path: "bodies.net", empty for the whole deck. location: as in DeckValue.
   DeckTable(const TableKeys& keys, std::string path, std::string location)
       : keys_(&keys), path_(std::move(path)), location_(std::move(location)) {}
 
@@ -75,7 +75,7 @@ class DeckTable {
     return get<std::vector<DeckTable>>(key);
   }
 
-  // path: "bodies.net". label: with the place in front, "deck.toml:12:1: bodies.net".
+  // path: "bodies.net". label: with the location in front, "deck.toml:12:1: bodies.net".
   const std::string& path() const { return path_; }
   const std::string& location() const { return location_; }
   std::string label() const { return location_ + ": " + path_; }

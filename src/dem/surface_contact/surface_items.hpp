@@ -89,7 +89,7 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
 }
 
 // Position of a contact with a plane or a mesh at the start of the step, from the surface's point then [m].
-// normal0: the contact's normal then; apart: displacement of the sphere's centre relative to the surface's
+// normal0: the contact's normal then; point_displacement: of the sphere's centre relative to the surface's
 // point since. On a face and an edge the contact is below the centre; at a vertex it is the vertex.
 SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
                             Vec3 point_displacement) {
