@@ -20,7 +20,7 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       idle_work(work),
       kernels(std::move(law)),
       surfaces(of, subdomain.period(), stream),
-      lane(on, of.parallel.transport),
+      halo_stream(on, of.parallel.transport),
       list(kernels->history() > 0, slots_per_particle(of)),
       history(packed_content(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
               {other, arena}),
