@@ -57,7 +57,7 @@ checkpoint_interval = 1.0
 """
 
 
-# Spheres with friction. Each rank generates some layers and receives others, because the domain is cut across its length.
+# Spheres with friction. Each rank generates some layers and receives others: the domain is cut across its length.
 LONG_BED = """[space]
 dimension = 3
 min = [0.0, 0.0, 0.0]
