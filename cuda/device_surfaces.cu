@@ -18,7 +18,7 @@ struct EntrySearch {
   Index active;
   CellBlockGrid grid;
   const Index* starts;
-  Real reach, skin;  // reach: largest particle radius + skin [m]
+  Real search_radius, skin;  // search_radius: largest particle radius + skin [m]
   SurfaceNumbers numbers;
   const SurfacePose* placed;
   Vec3 period;
@@ -71,7 +71,7 @@ __device__ void visit_near(const EntrySearch& in, const Visit& visit) {
   if (surface.kind != SurfaceKind::sphere) return;
   const CellGrid& cells = in.grid.cells.own;
   for_each_shift(in.period, [&](Vec3 shift, std::int8_t image) {
-    const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.interaction_range);
+    const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.search_radius);
     const Index nx = range.upper.x - range.lower.x + 1, ny = range.upper.y - range.lower.y + 1,
                 nz = range.upper.z - range.lower.z + 1;
     for (Index c = static_cast<Index>(threadIdx.x); c < nx * ny * nz; c += kSearchThreads) {
