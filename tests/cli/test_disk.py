@@ -114,7 +114,7 @@ class DiskTest(CommandLineTest):
         found, said, report = self.sizes(frictional, "time.end=0.02", "output.contacts=true")
         dense = named(report, r"\ncheckpoints .* each; ")
         self.assertTrue(0.8 * said[0] <= found[0] <= 1.2 * dense)
-        with_contacts = said[2] + named(report, r"\nsnapshots .*with contacts ")
+        with_contacts = said[2] + named(report, r"\nsnapshots .*contacts add ")
         self.assertTrue(0.8 * said[2] <= found[2] <= 1.2 * with_contacts)
 
     def test_what_does_not_fit_is_said_with_what_to_change(self):
