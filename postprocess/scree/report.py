@@ -85,7 +85,7 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
     pace = f", {taken / loop:.3g} particle-steps per second" if loop > 0 and taken else ""
     several = f" in {len(starts)} starts" if len(starts) > 1 else ""
     # Records of earlier versions have the count under its former name.
-    escaped = counts["particles_escaped"] if "particles_escaped" in counts else counts["left"]
+    escaped_particles = counts["particles_escaped"] if "particles_escaped" in counts else counts["left"]
     rejected = counts["rejected_error"] + counts["rejected_newton"]
     memory, on_gpus = f"{cost['peak_memory_kib'] / 1024:,.0f} MiB", cost.get("device_memory_kib", 0) / 1024
     if on_gpus:
@@ -93,7 +93,7 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         ("simulated", f"{record['measures']['simulated_time']:.6g} s in {steps:,} steps, {rejected:,} rejected steps"),
         ("model", f"{counted(particles, 'particle', 'particles')}, {counted(counts['bodies'], 'body', 'bodies')}, "
-                  f"{counted(escaped, 'escaped particle', 'escaped particles')}"),
+                  f"{counted(escaped_particles, 'escaped particle', 'escaped particles')}"),
         ("wall time", f"{duration(float(total['wall_seconds']))}{several}{pace}; {memory}"),
         ("hardware", f"{run['ranks']} {'rank' if run['ranks'] == 1 else 'ranks'}, {escaped(run['backend'])}, "
                f"{escaped(record['host']['name'])} ({escaped(record['host']['processor'])})"),

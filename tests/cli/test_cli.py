@@ -199,7 +199,7 @@ class UsageTest(CommandLineTest):
                      "particles      6", "\nhistory        4001 rows of 48 columns, about ", "\ndisk           about ",
                      "\ncheckpoints    one at the end, about ", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
-                     "in steps of 0.0001 s with 0.9792", "fixed step 0.0001 s (4000 steps)"):
+                     "in steps of 0.0001 s: 0.9792, error 0.00097 %", "fixed step 0.0001 s (4000 steps)"):
             self.assertIn(word, text)
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])

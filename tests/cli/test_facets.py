@@ -141,7 +141,7 @@ class FacetsTest(CommandLineTest):
                 self.write("boxes.stl", boxes(*shifts))
                 message = self.refused(solid)
                 self.assertRegex(message, r'bodies\.b\.solids\.0\.mesh = "m": its shells ' + pair +
-                                 r" cut through each other, first at \(.*\) \(triangles .*: unite them")
+                                 r" cut through each other, first at \(.*\) \(triangles .*: unite the shells")
                 report, warnings = self.check(wall)
                 self.assertIn(f'mesh "m": its shells {pair} cut through each other', warnings)
         # One on the other, and one beside the other with a side in common.

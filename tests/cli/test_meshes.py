@@ -338,7 +338,7 @@ class LostLoadTest(CommandLineTest):
 
     def test_what_is_carried_out_of_the_space_is_warned_of_at_once_and_when_it_is_lost(self):
         deck = self.write("tray.toml", TRAY)
-        early = "wall \"tray\" reaches beyond an open side of the space"
+        early = "wall \"tray\" reaches beyond an open side of the domain"
         self.assertIn(early, self.expect(DONE, "check", deck).stderr)
         for launcher in ((), TWO_RANKS):
             with self.subTest(launcher=launcher):

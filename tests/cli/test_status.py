@@ -89,7 +89,7 @@ class StatusTest(CommandLineTest):
         self.assertRegex(lines[1], r"/a +done +0\.4 of 0\.4 s +100 % +4000 +\S+ particle-steps/s +\S+$")
         text = self.status("a", "empty", "none", code=BAD_INPUT)
         self.assertIn("contains no status.toml of a run", text)
-        self.assertIn(": no such folder", text)
+        self.assertRegex(text, r"/none +no such folder\n")
         self.assertIn("done", text)
 
     def test_what_cannot_be_told_is_one_message(self):

@@ -246,7 +246,7 @@ class RunTest(FolderTest):
         deck.run(out, quiet=True, scree=PROGRAM)
         before = (out / "deck.toml").read_text()
         deck["time.step"] = 5e-4
-        with self.assertRaisesRegex(scree.ScreeError, "out: holds results of an earlier run: "):
+        with self.assertRaisesRegex(scree.ScreeError, "out: contains results of an earlier run: "):
             deck.run(out, quiet=True, scree=PROGRAM)
         deck["bodies.net.mass"] = -1
         with self.assertRaisesRegex(scree.ScreeError, rf"^{DECK}:\d+:\d+: bodies.net.mass = -1: must be a number"):

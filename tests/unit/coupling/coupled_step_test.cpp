@@ -198,7 +198,7 @@ TEST_CASE("a step that does not converge names the side that is at fault") {
   const std::string touching = trouble({"particles.falling.origin=[-0.03, -0.04]"});
   CAPTURE(touching);
   CHECK(contains(touching, "stage particle_correct: no convergence in 1 iterations; the largest residual, "));
-  CHECK(contains(touching, "is that of particle 0"));
+  CHECK(contains(touching, "occurs at particle 0"));
   // The particles move along their prediction, far from everything.
   const std::string bodies =
       trouble({"gravity=[0, 0]", "particles.falling.origin=[0.5, 0.5]", "particles.falling.radius=0.01"});

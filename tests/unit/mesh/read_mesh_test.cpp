@@ -169,7 +169,7 @@ TEST_CASE("messages for files that cannot be read") {
   fs::create_directory(folder / "folder.stl");
   CHECK(message("folder.stl") == at + "folder.stl: is a folder; must be a file");
   fs::create_symlink("/dev/zero", folder / "endless.stl");
-  CHECK(message("endless.stl") == at + "endless.stl: is no regular file");
+  CHECK(message("endless.stl") == at + "endless.stl: is not a regular file");
   std::ofstream(folder / "empty.ply");
   CHECK(message("empty.ply") == at + "empty.ply: is empty");
   std::ofstream(folder / "step.stp") << "x";

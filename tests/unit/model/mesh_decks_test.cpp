@@ -172,7 +172,7 @@ TEST_CASE("lines of planar decks: refined along themselves, closed counterclockw
   CHECK(triangles({"meshes.line.closed=true", "meshes.line.refine=0.1"}) == 2 * (3 + 5 + 4));
   CHECK(
       contains(model_error(kSmallLine, {"meshes.line.closed=true", "meshes.line.points=[[0,0],[0,1],[1,0]]"}),
-               "must run counterclockwise"));
+               "must be in counterclockwise order"));
   CHECK(contains(model_error(kSmallLine, {"meshes.line.points=[[0,0]]"}), "must be at least 2"));
   CHECK(contains(model_error(kSmallLine, {"meshes.line.points=[[0,0],[0.5,0.25],[0.5,0.25]]"}),
                  "must be apart, one from the next: (0.5, 0.25) stands twice"));

@@ -62,7 +62,7 @@ TEST_CASE("a column's value is that of its name") {
                                              {"step/rejected_error", 6},
                                              {"step/rejected_newton", 7},
                                              {"step/contacts", 8},
-                                             {"step/left", 9},
+                                             {"step/particles_escaped", 9},
                                              {"step/bodies_outside", 10},
                                              {"energy/kinetic", 11},
                                              {"energy/gravitational", 12},

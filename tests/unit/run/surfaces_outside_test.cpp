@@ -69,7 +69,7 @@ TEST_CASE("walls of triangles whose motion crosses an open side are warned of, w
 TEST_CASE("a particle leaves at surfaces where it is in their box or beside it, in any image") {
   const std::vector<std::string> right = {"bodies.disc.position=[0.65,0]"};
   CHECK(contains(escaping_at({1.02, 0, 0}, right),
-                 "particle 7 leaves the space at t = 0.5 s at the surfaces of body \"disc\""));
+                 "particle 7 leaves the domain at t = 0.5 s at the surfaces of body \"disc\""));
   CHECK(contains(escaping_at({1.02, 0.13, 0}, right), "particle 7"));
   CHECK(escaping_at({1.02, 0.15, 0}, right).empty());
   CHECK(escaping_at({-1.02, 0, 0}, right).empty());

@@ -163,7 +163,7 @@ def show_rates(folder, report, axes):
         if not report.has(folder, name):
             continue
         columns = bulk.history(folder, name)
-        time, left = columns["step/time"] - FILLED, columns["step/left"]
+        time, left = columns["step/time"] - FILLED, columns["step/particles_escaped"]
         report.check(f"spheres that left before the hole of {hole} d was opened", left[time < 0].max(), 0, 0, "closed")
         steady = time >= OPENED
         found[hole] = numpy.polyfit(time[steady], left[steady], 1)[0]
@@ -234,7 +234,7 @@ def smoke():
     """A small silo holds its filling until its lid drops; in another one the wall moves up and carries load."""
     def check(folder, report):
         columns = bulk.history(folder, "small")
-        time, left = columns["step/time"], columns["step/left"]
+        time, left = columns["step/time"], columns["step/particles_escaped"]
         report.check("spheres that left before the lid dropped", left[time < 3].max(), 0, 0, "closed")
         report.check("and after", left[-1], 5, 60, "some")
         _, (above, friction, pressed) = stresses(folder, "up", 7.0)
