@@ -19,7 +19,7 @@ struct Kind {
 };
 
 constexpr auto kKinds = std::to_array<Kind>({
-    {kHdf5, "an HDF5 file"},
+    {kHdf5, kHdf5Kind},
     {"PK\x03\x04"sv, "a ZIP archive, e.g. a spreadsheet (.xlsx, .ods)"},
     {"\xd0\xcf\x11\xe0"sv, "an old office file (.xls, .doc)"},
     {"\x1f\x8b"sv, "compressed with gzip"},
@@ -44,7 +44,7 @@ constexpr auto kKinds = std::to_array<Kind>({
 
 // Kind of an XML file by its elements, as far as comments and declarations leave them within the beginning.
 std::string kind_of_xml(std::string_view text) {
-  if (text.find("<robot") != text.npos) return "a robot model (URDF)";
+  if (text.find("<robot") != text.npos) return kUrdfKind;
   if (text.find("<mujoco") != text.npos) return "a MuJoCo model (XML)";
   if (text.find("<sdf") != text.npos) return "a Gazebo world (SDF)";
   if (text.find("<VTKFile") != text.npos) return "a VTK file (XML)";

@@ -6,6 +6,9 @@
 
 namespace scree {
 
+// Kinds for which a message about decks has advice of its own.
+inline constexpr const char *kHdf5Kind = "an HDF5 file", *kUrdfKind = "a robot model (URDF)";
+
 // Number of bytes that suffice.
 inline constexpr std::size_t kFileBeginning = 512;
 

@@ -79,8 +79,8 @@ namespace {
 
 // Advice for some kinds of files that are not decks; "" for others.
 std::string way_to_a_deck(const std::string& path, const std::string& kind) {
-  if (kind == "a robot model (URDF)") return fmt::format(": scree-post urdf {} converts it to one", path);
-  if (kind == "an HDF5 file") return "; a run continues with its deck and --restart CHECKPOINT";
+  if (kind == kUrdfKind) return fmt::format(": scree-post urdf {} converts it to one", path);
+  if (kind == kHdf5Kind) return "; a run continues with its deck and --restart CHECKPOINT";
   if (kind.starts_with("a triangle mesh")) return ", which names meshes by meshes.file";
   return "";
 }
