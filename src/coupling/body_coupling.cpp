@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "base/error.hpp"
 #include "dem/surfaces/surfaces.hpp"
@@ -52,18 +53,18 @@ void BodyCoupling::predict(const MultibodyState& bodies, Real t, Real h, Real en
 
 IterationNorms BodyCoupling::correct() {
   IterationNorms norms;
-  if (!has_bodies()) return norms;
-  ranks_.on_root([&] {
-    try {
-      norms = multibody_->correct(step_wrench_);
-    } catch (const SimulationError& error) {
-      const std::string dead_point = multibody_->dead_point();
-      if (dead_point.empty()) throw;
-      throw SimulationError(std::string(error.what()) + "; " + dead_point);
-    }
-  });
-  ranks_.broadcast(norms);
+  if (has_bodies()) ranks_.on_root([&] { norms = correct_on_root(); }, std::span(&norms, 1));
   return norms;
+}
+
+IterationNorms BodyCoupling::correct_on_root() {
+  try {
+    return multibody_->correct(step_wrench_);
+  } catch (const SimulationError& error) {
+    const std::string dead_point = multibody_->dead_point();
+    if (dead_point.empty()) throw;
+    throw SimulationError(std::string(error.what()) + "; " + dead_point);
+  }
 }
 
 Real BodyCoupling::error() const {
@@ -72,10 +73,17 @@ Real BodyCoupling::error() const {
   return error;
 }
 
-void BodyCoupling::accept(MultibodyState& bodies) {
-  const std::vector<BodyWrench> wrench = wrench_of_bodies();
-  if (has_bodies()) ranks_.on_root([&] { multibody_->accept(bodies, wrench); });
+void BodyCoupling::accept(MultibodyState& bodies, bool deferred) {
+  const auto close = [&] { multibody_->accept(bodies, wrench_of_bodies()); };
+  if (has_bodies()) deferred ? defer(close) : ranks_.on_root(close);
   take_wrench(bodies);
+}
+
+void BodyCoupling::throw_deferred() {
+  if (!has_bodies()) return;
+  ranks_.on_root([&] {
+    if (deferred_) std::rethrow_exception(std::exchange(deferred_, nullptr));
+  });
 }
 
 void BodyCoupling::account_walls(MultibodyState& bodies, Real t, Real end,
@@ -116,10 +124,16 @@ std::string BodyCoupling::of_root(const std::function<std::string()>& tell) {
 }
 
 // Rank 0 also computes the motion of walls: on other machines sine and cosine may differ in the last bits.
-void BodyCoupling::broadcast(RankList& list, Real t) {
+// set_bodies: sets the motion of the bodies, on rank 0; values: broadcast with the motion.
+template <class Action, class... Values>
+void BodyCoupling::broadcast(RankList& list, Real t, const Action& set_bodies, Values... values) {
   const std::span<BodyMotion> motion(motion_);
-  if (walls_.move()) walls_.at(t, motion.subspan(bodies_));
-  if (parents_move()) ranks_.broadcast(walls_.move() ? motion : motion.first(bodies_));
+  const auto set = [&] {
+    if (deferred_) std::rethrow_exception(std::exchange(deferred_, nullptr));
+    if (multibody_) set_bodies();
+    if (walls_.move()) walls_.at(t, motion.subspan(bodies_));
+  };
+  if (parents_move()) ranks_.on_root(set, walls_.move() ? motion : motion.first(bodies_), values...);
   list.set_body_motion(motion_);
 }
 
@@ -128,18 +142,20 @@ void BodyCoupling::set_poses(const std::vector<BodyMotion>& bodies) {
 }
 
 void BodyCoupling::broadcast_motion(RankList& list) {
-  if (!has_parents()) return;
-  if (multibody_) set_poses(multibody_->motion());
-  broadcast(list, end_);
+  if (has_parents()) broadcast(list, end_, [&] { set_poses(multibody_->motion()); });
+}
+
+void BodyCoupling::broadcast_motion(RankList& list, BodyIterations& iterations) {
+  broadcast(
+      list, end_, [&] { set_poses(multibody_->motion()); }, std::span(&iterations, 1));
 }
 
 void BodyCoupling::broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t) {
   if (!has_parents()) return;
-  if (multibody_) {
+  broadcast(list, t, [&] {
     multibody_->motion(state, tau, of_bodies_);
     set_poses(of_bodies_);
-  }
-  broadcast(list, t);
+  });
 }
 
 void BodyCoupling::reduce_wrench(ImplicitStep& step) {
@@ -156,9 +172,13 @@ void BodyCoupling::reduce_end_wrench(RankParticles& particles) {
 
 bool BodyCoupling::is_loaded(Real h) {
   if (!has_bodies() || !loaded_.can_be()) return false;
-  bool loaded = ranks_.is_root() && loaded_.are_loaded(contacts_, h);
+  bool loaded = is_loaded_on_root(h);
   ranks_.broadcast(loaded);
   return loaded;
+}
+
+bool BodyCoupling::is_loaded_on_root(Real h) const {
+  return ranks_.is_root() && has_bodies() && loaded_.can_be() && loaded_.are_loaded(contacts_, h);
 }
 
 void BodyCoupling::open_loaded(Real h) {

@@ -1,6 +1,7 @@
 // Connects the ranks with rank 0's multibody subsystem: motion is broadcast, wrenches are reduced.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,6 +15,13 @@
 #include "partition/ranks.hpp"
 
 namespace scree {
+
+// Newton iterations of the bodies in an explicit step, which rank 0 alone takes: what the other ranks know.
+struct BodyIterations {
+  bool loaded = false;  // the wrenches follow the correction (LoadedBodies)
+  bool last = false;    // the contacts at the present motion end the step
+  int count = 0;
+};
 
 class BodyCoupling {
  public:
@@ -37,21 +45,40 @@ class BodyCoupling {
   void solve_acceleration(MultibodyState& bodies, Real t);  // uses end_wrench()
   // end: end of the step, t + h up to round-off [s].
   void predict(const MultibodyState& bodies, Real t, Real h, Real end);
-  IterationNorms correct();             // uses the step's wrench; returns the norms on every rank
-  Real error() const;                   // on every rank
-  void accept(MultibodyState& bodies);  // uses end_wrench()
+  IterationNorms correct();          // uses the step's wrench; returns the norms on every rank
+  IterationNorms correct_on_root();  // the same on rank 0 alone
+  Real error() const;                // on every rank
+  // Uses end_wrench(). deferred: as in defer(), for explicit steps.
+  void accept(MultibodyState& bodies, bool deferred = false);
   // Adds the work of walls on particles over a step or substep from t to `end` [s]. wrench: the contact
   // wrenches that the step was solved with; those at its start are in `bodies`, where end_wrench() of the
   // walls replaces them.
   void account_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench);
   const std::vector<BodyWrench>& step_wrench() const { return step_wrench_.wrench; }
   void check_reactions();
+  std::string trouble_on_root() const { return multibody_->trouble(); }
   // On every rank.
   std::string trouble();
   std::string dead_point();
 
+  // Explicit steps: runs an action on rank 0 without telling the others. Its exceptions are thrown on every
+  // rank by the next broadcast_motion() or throw_deferred(), and actions before that are left out. In this
+  // way an explicit step of several ranks needs one broadcast per evaluation of the contacts.
+  template <class Action>
+  void defer(const Action& action) {
+    if (ranks_.alone()) return action();
+    if (!ranks_.is_root() || deferred_) return;
+    try {
+      action();
+    } catch (...) {
+      deferred_ = std::current_exception();
+    }
+  }
+  void throw_deferred();  // collective
+
   // Rank 0 -> all: motion at the current iterate of the open step; sets the surface poses of the list.
   void broadcast_motion(RankList& list);
+  void broadcast_motion(RankList& list, BodyIterations& iterations);  // and these
   // Rank 0 -> all: motion tau [s] after `state` by rank 0's prediction, and that of walls at time t [s]; sets
   // the surface poses of the list.
   void broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t);
@@ -65,8 +92,9 @@ class BodyCoupling {
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
   // Whether the contacts found by the last reduce_end_wrench(run) are stiff for a step of the bodies of
-  // length h [s] (LoadedBodies). Collective.
+  // length h [s] (LoadedBodies). Collective; the second one is false on ranks other than 0.
   bool is_loaded(Real h);
+  bool is_loaded_on_root(Real h) const;
   // The calls of a step of loaded bodies, in this order. open_loaded() follows predict(). follow_load()
   // follows each correct(): with `found`, reduce_end_wrench(run) has evaluated the contacts at the corrected
   // position; otherwise the wrenches are extrapolated by their slopes. average_accelerations() follows
@@ -84,13 +112,15 @@ class BodyCoupling {
 
  private:
   std::string of_root(const std::function<std::string()>& tell);
-  void broadcast(RankList& list, Real t);
+  template <class Action, class... Values>
+  void broadcast(RankList& list, Real t, const Action& set_bodies, Values... values);
   void set_poses(const std::vector<BodyMotion>& bodies);
 
   Ranks ranks_;
   std::size_t bodies_;
   WallMotions walls_;
-  Real end_ = 0;  // end of the open step [s]
+  Real end_ = 0;                 // end of the open step [s], on rank 0
+  std::exception_ptr deferred_;  // exception of rank 0 that the other ranks do not know yet
   std::unique_ptr<Multibody> multibody_;
   std::vector<BodyMotion> motion_;                                  // of the bodies, then of the placed walls
   std::vector<BodyMotion> of_bodies_, walls_before_, walls_after_;  // scratch

@@ -84,7 +84,8 @@ class CoupledStep {
   };
   bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
-  void evaluate_contacts(ExplicitRun& run);
+  void correct_bodies(BodyIterations& iterations);
+  void evaluate_contacts(ExplicitRun& run, BodyIterations& iterations);
 
   const Model& model_;
   Backend& backend_;

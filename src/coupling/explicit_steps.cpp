@@ -20,6 +20,11 @@ void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& w
   }
 }
 
+// Whether the wrench follows the contacts at the position of this iteration.
+bool follows(const BodyIterations& iterations) {
+  return iterations.loaded && iterations.count <= kMostEvaluations;
+}
+
 }  // namespace
 
 std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h,
@@ -36,6 +41,7 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
       const bool last = taken + 1 == times.size();
       open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
     }
+    body_coupling_.throw_deferred();
   } else {
     const Index most = as_index(times.size()) * substeps;
     taken = as_size(run->take_steps(most, false, timers_).closed / substeps);
@@ -96,43 +102,51 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
 // begins, with the contacts at the bodies' corrected position. For loaded bodies every iteration evaluates
 // the contacts at the position that it has reached, and the wrench follows.
 void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step) {
-  const Integrator& limits = model_.integrator;
-  const bool loaded = body_coupling_.is_loaded(step.h);
-  const auto small = [&](const IterationNorms& norms) {
-    return norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance;
-  };
+  BodyIterations iterations;
+  iterations.loaded = body_coupling_.is_loaded_on_root(step.h);
   {
     const auto scope = timers_.time(Stage::mbs_correct);
-    body_coupling_.predict(bodies, step.t, step.h, step.end);
-    if (loaded) body_coupling_.open_loaded(step.h);
+    body_coupling_.defer([&] {
+      body_coupling_.predict(bodies, step.t, step.h, step.end);
+      if (iterations.loaded) body_coupling_.open_loaded(step.h);
+    });
   }
-  bool evaluated = false;
-  IterationNorms norms;
-  for (int iteration = 1; iteration == 1 || !small(norms); ++iteration) {
-    if (iteration > limits.max_iterations)
-      throw SimulationError(
-          fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
-                      limits.max_iterations, body_coupling_.trouble()));
+  while (!iterations.last) {
     {
       const auto scope = timers_.time(Stage::mbs_correct);
-      ++counts_.newton_iterations;
-      norms = body_coupling_.correct();
+      body_coupling_.defer([&] { correct_bodies(iterations); });
     }
-    evaluated = loaded && iteration <= kMostEvaluations;
-    if (evaluated) evaluate_contacts(run);
-    if (loaded) body_coupling_.follow_load(evaluated);
+    evaluate_contacts(run, iterations);
+    if (follows(iterations)) body_coupling_.defer([&] { body_coupling_.follow_load(true); });
   }
-  if (!evaluated) evaluate_contacts(run);
+  counts_.newton_iterations += iterations.count;
   const auto scope = timers_.time(Stage::accept);
-  body_coupling_.accept(bodies);
-  if (loaded) body_coupling_.average_accelerations(bodies);
+  body_coupling_.accept(bodies, true);
+  if (iterations.loaded) body_coupling_.defer([&] { body_coupling_.average_accelerations(bodies); });
+}
+
+// On rank 0: iterates until the contacts must be evaluated at the corrected position.
+void CoupledStep::correct_bodies(BodyIterations& iterations) {
+  const Integrator& limits = model_.integrator;
+  do {
+    if (iterations.count == limits.max_iterations)
+      throw SimulationError(
+          fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
+                      limits.max_iterations, body_coupling_.trouble_on_root()));
+    ++iterations.count;
+    const IterationNorms norms = body_coupling_.correct_on_root();
+    iterations.last =
+        norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance;
+    if (follows(iterations)) return;
+    if (iterations.loaded) body_coupling_.follow_load(false);
+  } while (!iterations.last);
 }
 
 // Evaluates the contacts with the bodies at their last corrected position.
-void CoupledStep::evaluate_contacts(ExplicitRun& run) {
+void CoupledStep::evaluate_contacts(ExplicitRun& run, BodyIterations& iterations) {
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
-    body_coupling_.broadcast_motion(backend_.list());
+    body_coupling_.broadcast_motion(backend_.list(), iterations);
   }
   const auto scope = timers_.time(Stage::reduce_wrench);
   run.shape_contacts();

@@ -214,6 +214,20 @@ void Ranks::broadcast_failure(std::exception_ptr failure, int from) const {
   throw_as(own);
 }
 
+// The message begins with whether there is a failure, whose text follows in messages of its own.
+void Ranks::broadcast_with_failure(std::exception_ptr failure,
+                                   std::initializer_list<std::span<std::byte>> values) const {
+  std::vector<std::byte> message{failure ? std::byte{1} : std::byte{0}};
+  for (const std::span<std::byte> part : values) message.insert(message.end(), part.begin(), part.end());
+  broadcast_bytes(message.data(), message.size());
+  if (message[0] != std::byte{0}) return broadcast_failure(failure);
+  auto from = message.begin() + 1;
+  for (const std::span<std::byte> part : values) {
+    std::copy_n(from, part.size(), part.begin());
+    from += std::ssize(part);
+  }
+}
+
 namespace {
 
 // Waits until a collective begun by this rank is complete, but at most for the given time.

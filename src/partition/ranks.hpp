@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <initializer_list>
 #include <numeric>
 #include <span>
 #include <string>
@@ -95,6 +96,19 @@ class Ranks {
     }
     broadcast_failure(failure);
   }
+  // The same, followed by a broadcast of values that the action may set; all of it is one message.
+  template <class Action, class... Values>
+  void on_root(const Action& action, std::span<Values>... values) const {
+    static_assert((std::is_trivially_copyable_v<Values> && ...));
+    if (alone()) return action();
+    std::exception_ptr failure;
+    try {
+      if (is_root()) action();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    broadcast_with_failure(failure, {std::as_writable_bytes(values)...});
+  }
 
   // Collective try: runs an action on every rank. If it throws on some ranks, all ranks throw the exception
   // of the lowest of those. If other ranks do not return, because they wait for the failed one within the
@@ -118,6 +132,8 @@ class Ranks {
  private:
   void broadcast_bytes(void* data, std::size_t bytes, int from = 0) const;
   void broadcast_failure(std::exception_ptr failure, int from = 0) const;
+  void broadcast_with_failure(std::exception_ptr failure,
+                              std::initializer_list<std::span<std::byte>> values) const;
   void throw_collectively(std::exception_ptr failure) const;
   [[noreturn]] void end_job(const char* message, int exit_code) const;
   // element: size of an entry [B].
