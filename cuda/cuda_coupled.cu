@@ -16,18 +16,22 @@ StepsTaken CudaExplicitRun::take_steps_with_bodies(Index most, bool keep_open, S
 bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   for (;;) {
     if (!list_.current() || !(bodies_.side().list_displacement() < list_.skin() / 2))
-      list_.build(items_.model.contact.skin, timers), control_.resume();
+      list_.build(items_.model.contact.skin, timers), control_.resume(), boundary_apart_ = false;
     const auto scope = timers.time(Stage::contact_force);
     queue_loads();
+    workspace_.step_queued.hold(bodies_.stream());
     items_.results.copy(&Results::control, bodies_.stream());
-    if (keep_open) queue_.queue(1, &bodies_.loads_found());
+    if (keep_open) {
+      const MovingSurfaces moving{bodies_.loads_found(), workspace_.boundary_done};
+      queue_.queue(1, &moving), boundary_apart_ = items_.parts.apart();
+    }
     items_.idle();
     bodies_.take_loads(h_);
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
     if (before.expired) {  // the queued step has done nothing
       list_.set_bound(list_.skin());
-      renew_list(timers);
+      renew_list(timers), boundary_apart_ = false;
       continue;
     }
     bodies_.side().accumulate_losses(h_), bodies_.accumulate_load_works(h_);
@@ -46,12 +50,13 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
 }
 
 // Queues the open step's contacts with surfaces, which its kernel reads; their sums are copied to the host
-// concurrently.
+// concurrently. The particles near surfaces are in the boundary rows of the previous step, so that its
+// interior rows may still be under way.
 void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
   bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
                        items_.history.views(control_.velocity_parity() == 1), h_},
-                      workspace_.step_queued);
+                      boundary_apart_ ? workspace_.boundary_done : workspace_.step_queued);
 }
 
 // Runs concurrently with the step queued last: its kernel reads the same state arrays but has contacts of its

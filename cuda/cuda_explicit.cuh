@@ -40,7 +40,8 @@ class CudaExplicitRun : public ExplicitRun {
   RunControl control_;
   StepQueue queue_;
   const Real h_;
-  Index closed_ = 0;  // with bodies: closed steps since the start of the run
+  Index closed_ = 0;             // with bodies: closed steps since the start of the run
+  bool boundary_apart_ = false;  // with bodies: the previous step's boundary rows were queued apart
   // Positions as the last closed step left them, with the velocities at which its law was evaluated.
   struct {
     const Vec4 *position, *velocity, *spin;

@@ -56,10 +56,6 @@ struct MixedSpinGhostItem {
   }
 };
 
-void hold_until(const Event* event, Device on) {
-  if (event != nullptr) event->hold(on.stream);
-}
-
 }  // namespace
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
@@ -147,15 +143,17 @@ void StepQueue::gather_open_step() {
 
 // queue_surfaces(device): what rows near surfaces wait for; queue_ghosts(device, k): the halo exchange of the
 // k-th step from now; queue_rows(device, rows): the kernel of a step for these rows; key: everything that the
-// launches depend on.
+// launches depend on; boundary_done: recorded after the boundary rows, if not null.
 template <class QueueSurfaces, class QueueGhosts, class QueueRows>
 void StepQueue::queue_successively(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
-                                   const QueueGhosts& queue_ghosts, const QueueRows& queue_rows) {
+                                   const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
+                                   Event* boundary_done) {
   const Device rows = items_.device(), lane{items_.halo_stream.stream};
   const StepParts& parts = items_.parts;
   const auto queue_boundary = [&](Device on) {
     if (parts.apart()) queue_surfaces(on);
     queue_rows(on, parts.boundary());
+    if (boundary_done != nullptr) boundary_done->record(on.stream);
   };
   if (!items_.ranks.alone()) {
     const auto queue_interior = [&](Device on) {
@@ -194,7 +192,7 @@ void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surface
 }
 
 // The host knows where queued steps read their ghosts: after a stop nothing is read any more.
-void StepQueue::queue_double(Index steps, const Event* loads_found) {
+void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
   DeviceHalo& halo = items_.halo_stream.halo;
   const VerletRequest r = request();
   const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
@@ -224,9 +222,12 @@ void StepQueue::queue_double(Index steps, const Event* loads_found) {
       key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
   const DeviceContactKernels& kernels = *items_.kernels;
   DeviceSurfaces& surfaces = items_.surfaces;
-  if (!surfaces.all_placed_static())
+  const auto no_surfaces = [](Device) {};
+  if (moving != nullptr)
     return queue_successively(
-        key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
+        key, steps, [&](Device on) { moving->loads_found.hold(on.stream); }, queue_ghosts, queue_rows,
+        &moving->boundary_done);
+  if (!surfaces.any_placed()) return queue_successively(key, steps, no_surfaces, queue_ghosts, queue_rows);
   surfaces.reserve_in_run(items_.device(), steps);
   const OpenStepQuery query = surface_query(r);
   queue_successively(
@@ -234,7 +235,7 @@ void StepQueue::queue_double(Index steps, const Event* loads_found) {
       [&](Device on) { surfaces.find_loads_in_run(on, kernels, query, h_); }, queue_ghosts, queue_rows);
 }
 
-void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
+void StepQueue::queue_mixed(Index steps) {
   if (!mixed_) convert_to_mixed();
   DeviceHalo& halo = items_.halo_stream.halo;
   MixedRequest r{};
@@ -269,7 +270,7 @@ void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   const std::string key =
       key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
   queue_successively(
-      key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
+      key, steps, [](Device) {}, queue_ghosts, queue_rows);
 }
 
 }  // namespace scree

@@ -13,7 +13,13 @@ namespace scree {
 // Workspace kept from one run to the next.
 struct RunWorkspace {
   StepGraph graph;
-  Event step_queued;
+  Event step_queued, boundary_done;
+};
+
+// What orders a step and the contacts of moving surfaces, which are evaluated on a stream of their own.
+struct MovingSurfaces {
+  const Event& loads_found;  // the boundary rows wait for it
+  Event& boundary_done;      // recorded after the boundary rows: the surfaces' next contacts need no others
 };
 
 class StepQueue {
@@ -22,10 +28,10 @@ class StepQueue {
       : items_(items), list_(list), control_(control), workspace_(workspace), h_(h) {}
 
   // Queues that many steps after each other, each with its halo exchange; each is closed and the next opened.
-  // Those after a stop do nothing. loads_found: for moving surfaces, when their contacts with the particles
-  // have been evaluated; null for static surfaces only, whose contacts are queued with each step.
-  void queue(Index steps, const Event* loads_found = nullptr) {
-    items_.in_mixed ? queue_mixed(steps, loads_found) : queue_double(steps, loads_found);
+  // Those after a stop do nothing. moving: null for static surfaces only, whose contacts are queued with each
+  // step.
+  void queue(Index steps, const MovingSurfaces* moving = nullptr) {
+    items_.in_mixed ? queue_mixed(steps) : queue_double(steps, moving);
   }
   // Request of a step in double.
   VerletRequest request();
@@ -40,11 +46,12 @@ class StepQueue {
     Index start;  // number of closed steps when the state was converted to mixed precision
   };
   PrunedViews pruned_views(const Vec4* position);
-  void queue_double(Index steps, const Event* loads_found);
-  void queue_mixed(Index steps, const Event* loads_found);
+  void queue_double(Index steps, const MovingSurfaces* moving);
+  void queue_mixed(Index steps);
   template <class QueueSurfaces, class QueueGhosts, class QueueRows>
   void queue_successively(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
-                          const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
+                          const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
+                          Event* boundary_done = nullptr);
   template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
   void queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces, const QueueGhosts& queue_ghosts,
                         const QueueInterior& queue_interior, const QueueBoundary& queue_boundary);
