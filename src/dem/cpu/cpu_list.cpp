@@ -134,7 +134,9 @@ void CpuList::lay_out_items(Real skin) {
 
 void CpuList::set_body_motion(std::span<const BodyMotion> motion) {
   items_.side.set_motion(motion);
-  if (current_) surface_bound_ += items_.side.update_poses();
+  if (!current_) return;
+  items_.side.update_poses();
+  surface_bound_ += items_.side.last_displacement();
 }
 
 void CpuList::build(Real skin, StageTimers& timers) {

@@ -96,40 +96,63 @@ std::vector<Mat3> HostSurfaces::axes() const {
   return axes;
 }
 
+// What all surfaces of a parent share.
+void HostSurfaces::rotate_parents() {
+  rotations_.resize(motion_.size());
+  for (std::size_t p = 0; p < motion_.size(); ++p) {
+    ParentRotation& of = rotations_[p];
+    of.axes = rotation_matrix(orientation(motion_[p]));
+    of.start_axes = rotation_matrix(orientation(step_start_[p]));
+    of.spin = global_spin(motion_[p]);
+    if (tracks_displacement()) of.turn = rotation_between(step_start_[p], motion_[p]);
+  }
+}
+
 void HostSurfaces::rotate_frames() {
   for (Index s = 0; s < size(); ++s) {
     if (placed_[s].kind == SurfaceKind::sphere) continue;
     SurfaceFrame& frame = frames_[static_cast<std::size_t>(placed_[s].frame)];
-    const int parent = surfaces_.at(s).parent;
-    frame.axes = rotation_matrix(orientation(motion_[parent]));
-    frame.before = rotation_matrix(orientation(step_start_[parent]));
-    placed_[s].normal = frame.axes * frame.normal, frame.to_middle = to_middle(s);
+    const ParentRotation& parent = rotations_[static_cast<std::size_t>(surfaces_.at(s).parent)];
+    frame.axes = parent.axes, frame.before = parent.start_axes;
+    placed_[s].normal = frame.axes * frame.normal;
+    if (placed_[s].kind == SurfaceKind::mesh)
+      frame.to_middle = snap(frame.axes * frame.middle, subdomain_.snap_constant());
   }
 }
 
-Real HostSurfaces::update_poses() {
-  const std::vector<Mat3> before = axes();
+void HostSurfaces::update_poses() {
+  axes_before_.clear();
+  for (const SurfaceFrame& frame : frames_) axes_before_.push_back(frame.axes);
+  rotate_parents();
+  const auto arm_of = [](const BodyMotion& body, const Mat3& axes, Vec3 point) {
+    return body.kind == BodyKind::spatial ? axes * point : body_arm(body, point);
+  };
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
-    const BodyMotion& body = motion_[surface.parent];
-    const Vec3 arm = body_arm(body, surface.point);
+    const BodyMotion &body = motion_[surface.parent], &start = step_start_[surface.parent];
+    const ParentRotation& parent = rotations_[static_cast<std::size_t>(surface.parent)];
+    const Vec3 arm = arm_of(body, parent.axes, surface.point);
     const ImageCount image = image_[s];
     const Vec3 with_body = snap(body.position + arm, subdomain_.snap_constant());
     const Vec3 point = moved_by_periods(with_body, {-image.x, -image.y, -image.z}, subdomain_.period());
     SurfacePose& placed = placed_[s];
     step_[s] = point - placed.point;
     const Vec3 previous_rotation = placed.turn;
-    placed = {surface.kind, surface.material, surface.radius,    point, surface.normal,
-              arm,          body.velocity,    global_spin(body), {},    {},
+    placed = {surface.kind, surface.material, surface.radius, point, surface.normal,
+              arm,          body.velocity,    parent.spin,    {},    {},
               placed.frame};
     if (!tracks_displacement()) continue;
-    placed.displacement = with_body - point_with(step_start_, s);
-    placed.turn = rotation_between(step_start_[surface.parent], body);
+    const Vec3 start_arm = arm_of(start, parent.start_axes, surface.point);
+    placed.displacement = with_body - snap(start.position + start_arm, subdomain_.snap_constant());
+    placed.turn = parent.turn;
     step_rotation_[s] =
         (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - previous_rotation);
   }
   rotate_frames();
-  return largest_displacement(step_, before, kMeshDisplacementWeight);
+}
+
+Real HostSurfaces::last_displacement() const {
+  return largest_displacement(step_, axes_before_, kMeshDisplacementWeight);
 }
 
 // Displacements are linear in the position, so that the largest one is at a corner of a box. For a plane it

@@ -45,9 +45,11 @@ class HostSurfaces {
   void bring_into_box();
   // Finds possible contacts of bodies until a surface has moved by half the skin.
   void build_list(Real skin);
-  // Updates the poses to the motion of the parents. Returns the largest displacement, weighted such that it
-  // counts as a particle's displacement for the list [m].
-  Real update_poses();
+  // Updates the poses to the motion of the parents.
+  void update_poses();
+  // Largest displacement by the last update_poses(), weighted such that it counts as a particle's
+  // displacement for the list [m].
+  Real last_displacement() const;
   // One entry per placed surface.
   const std::vector<SurfacePose>& placed() const { return placed_; }
   const std::vector<SurfaceFrame>& frames() const { return frames_; }
@@ -66,7 +68,7 @@ class HostSurfaces {
   void store_start();
   // Largest displacement of any point of a surface since then [m].
   Real step_displacement() const { return displacement_since(start_, start_axes_, 1); }
-  // Largest displacement since the list was built, weighted as in update_poses() [m].
+  // Largest displacement since the list was built, weighted as in last_displacement() [m].
   Real list_displacement() const {
     return displacement_since(listed_, listed_axes_, kMeshDisplacementWeight);
   }
@@ -123,6 +125,7 @@ class HostSurfaces {
   Real displacement_of(const SurfacePose& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
   void begin_step();
+  void rotate_parents();
   void rotate_frames();
   void span(const Surface& surface, SurfaceFrame& frame) const;
   // Whether displacements since the start of a step are needed.
@@ -144,7 +147,12 @@ class HostSurfaces {
   std::vector<MeshView> meshes_;
   std::vector<MeshBox> boxes_;  // bounding boxes of the meshes
   std::vector<SurfaceFrame> frames_;
-  std::vector<Mat3> start_axes_, listed_axes_;
+  std::vector<Mat3> start_axes_, listed_axes_, axes_before_;  // axes_before_: before the last update_poses()
+  struct ParentRotation {
+    Mat3 axes, start_axes;  // of the parent's frame, now and at the start of the step
+    Vec3 spin, turn;        // [rad/s], since the start of the step [rad]
+  };
+  std::vector<ParentRotation> rotations_;
   std::vector<Vec3> step_, step_rotation_;
   std::vector<InstantSums> loads_;  // of particles, then of shapes
   std::size_t particle_loads_ = 0;  // number of the particles' sums in loads_
