@@ -38,6 +38,20 @@ __global__ void close_kernel(VerletControl* c) {
   c->close(c->shared[0]);
 }
 
+// Reduces what each rank found, and closes the step. In one launch of a warp, with a lane per rank. The
+// largest displacement was rounded up to float by the last block of the step.
+__global__ void close_with_peers_kernel(VerletControl* c, const __grid_constant__ PeerLinks peers) {
+  if (c->stop) return;
+  const unsigned largest_bits = __float_as_uint(static_cast<float>(c->shared[0]));
+  const unsigned found = exchange_values(peers, largest_bits << 1 | (c->shared[1] != 0));
+  // Without their sign the bits of floats are ordered as the numbers, and a NaN's exceed them all.
+  const Real largest = __uint_as_float(__reduce_max_sync(~0u, found >> 1));
+  const bool outside = __any_sync(~0u, found & 1) != 0;
+  if (threadIdx.x > 0) return;
+  c->outside = outside;
+  c->close(largest);
+}
+
 // Continues after a stop: with another last step, or another list.
 __global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, bool new_list,
                               int position_parity, int velocity_parity) {
@@ -87,6 +101,14 @@ void RunControl::resume(Index last) {
   require_cuda(cudaGetLastError(), "explicit step");
 }
 
-void RunControl::close(Device on) { close_kernel<<<1, 1, 0, on.stream>>>(on_device()); }
+void RunControl::close(Device on) {
+  DeviceHalo& halo = items_.halo_stream.halo;
+  if (const Peers* peers = halo.peers()) {
+    close_with_peers_kernel<<<1, 32, 0, on.stream>>>(on_device(), peers->links());
+    return;
+  }
+  halo.max(on, on_device()->shared, 2);
+  close_kernel<<<1, 1, 0, on.stream>>>(on_device());
+}
 
 }  // namespace scree

@@ -23,7 +23,7 @@ class RunControl {
   const VerletControl& wait();
   // Queued after a stop: continues the run until `last` steps are closed, with the present list.
   void resume(Index last = kEndless);
-  // Queued with several ranks after the reduction of what a step found: closes the step.
+  // Queued with several ranks after both parts of a step: reduces what the ranks found, and closes the step.
   void close(Device on);
 
   // Which arrays hold the open step's position and velocity: 0 those of the state, 1 the second ones.

@@ -1,60 +1,108 @@
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "cuda_step_queue.cuh"
 
 namespace scree {
 namespace {
 
-// Refreshes a ghost in the arrays of the open step.
+// Refreshes a ghost in the arrays of the open step. Field: `GhostField`, or `PeerField`, for which ghosts are
+// also taken out of the mailbox. Without padding, because graphs are found by the bytes of their arguments.
+template <template <class> class Field>
 struct RunGhostItem {
   const Ghost* ghosts;
-  GhostField<Vec4> position[2], velocity[2];
   const VerletControl* control;
+  Field<Vec4> position[2], velocity[2], spin[2];  // spin: empty where particles do not rotate
 
-  __device__ void operator()(Index entry) const {
-    MotionGhostItem{ghosts, control->parity[0] == 0 ? position[0] : position[1],
-                    control->parity[1] == 0 ? velocity[0] : velocity[1]}(entry);
+  __device__ const Field<Vec4>& open(const Field<Vec4> (&of)[2], int which) const {
+    return control->parity[which] == 0 ? of[0] : of[1];
   }
+  __device__ void put(Index entry) const {
+    const Ghost ghost = ghosts[entry];
+    const Field<Vec4>&positions = open(position, 0), &velocities = open(velocity, 1);
+    positions.put(entry, moved(ghost, positions.field[ghost.source]));
+    velocities.put(entry, velocities.field[ghost.source]);
+    if (spin[0].field == nullptr) return;
+    const Field<Vec4>& spins = open(spin, 1);
+    spins.put(entry, spins.field[ghost.source]);
+  }
+  __device__ void take(Index k) const {
+    open(position, 0).take(k), open(velocity, 1).take(k);
+    if (spin[0].field != nullptr) open(spin, 1).take(k);
+  }
+  __device__ void operator()(Index entry) const { put(entry); }
 };
 
-struct RunSpinGhostItem {
-  const Ghost* ghosts;
-  GhostField<Vec4> spin[2];
-  const VerletControl* control;
-
-  __device__ void operator()(Index entry) const {
-    SpinGhostItem{ghosts, control->parity[1] == 0 ? spin[0] : spin[1]}(entry);
-  }
-};
-
+template <template <class> class Field>
 struct MixedGhostItem {
   const Ghost* ghosts;
-  GhostField<FixedPointPosition> position[2];
-  GhostField<MixedMotion> motion[2];
+  const VerletControl* control;
+  Field<FixedPointPosition> position[2];
+  Field<MixedMotion> motion[2];
+  Field<MixedSpin> spin[2];
   QuantumGrid grid;
-  const VerletControl* control;
 
-  __device__ void operator()(Index entry) const {
-    const bool first = control->parity[0] == 0;
+  template <class T>
+  __device__ const Field<T>& open(const Field<T> (&of)[2]) const {
+    return control->parity[0] == 0 ? of[0] : of[1];
+  }
+  __device__ void put(Index entry) const {
     const Ghost ghost = ghosts[entry];
-    const GhostField<FixedPointPosition>& places = first ? position[0] : position[1];
-    const GhostField<MixedMotion>& motions = first ? motion[0] : motion[1];
-    places.put(entry, shifted(grid, places.field[ghost.source], ghost.shift));
+    const Field<FixedPointPosition>& positions = open(position);
+    const Field<MixedMotion>& motions = open(motion);
+    positions.put(entry, shifted(grid, positions.field[ghost.source], ghost.shift));
     motions.put(entry, motions.field[ghost.source]);
+    if (spin[0].field == nullptr) return;
+    const Field<MixedSpin>& spins = open(spin);
+    spins.put(entry, spins.field[ghost.source]);
   }
+  __device__ void take(Index k) const {
+    open(position).take(k), open(motion).take(k);
+    if (spin[0].field != nullptr) open(spin).take(k);
+  }
+  __device__ void operator()(Index entry) const { put(entry); }
 };
 
-struct MixedSpinGhostItem {
-  const Ghost* ghosts;
-  GhostField<MixedSpin> spin[2];
-  const VerletControl* control;
-
-  __device__ void operator()(Index entry) const {
-    const GhostField<MixedSpin>& spins = control->parity[0] == 0 ? spin[0] : spin[1];
-    spins.put(entry, spins.field[ghosts[entry].source]);
+// field(number, pointer): the `Field` of an array.
+template <template <class> class Field, class MakeField>
+RunGhostItem<Field> ghost_item(const VerletRequest& r, const Ghost* ghosts, bool rotates,
+                               const MakeField& field) {
+  RunGhostItem<Field> item{};
+  item.ghosts = ghosts, item.control = r.control;
+  for (int k = 0; k < 2; ++k) {
+    item.position[k] = field(0, r.position[k]), item.velocity[k] = field(1, r.velocity[k]);
+    if (rotates) item.spin[k] = field(2, r.spin[k]);
   }
-};
+  return item;
+}
+
+template <template <class> class Field, class MakeField>
+MixedGhostItem<Field> ghost_item(const MixedRequest& r, const Ghost* ghosts, bool rotates,
+                                 const MakeField& field) {
+  MixedGhostItem<Field> item{};
+  item.ghosts = ghosts, item.control = r.control, item.grid = r.grid;
+  for (int k = 0; k < 2; ++k) {
+    item.position[k] = field(0, r.state.position[k]), item.motion[k] = field(1, r.state.motion[k]);
+    if (rotates) item.spin[k] = field(2, r.state.spin[k]);
+  }
+  return item;
+}
+
+// Messages of the fields that a step reads, by the parities of the step. All ranks have as many.
+std::vector<HaloMessage> messages_of(const RunGhostItem<GhostField>& item, bool rotates, int position,
+                                     int velocity) {
+  std::vector<HaloMessage> messages{item.position[position].message(), item.velocity[velocity].message()};
+  if (rotates) messages.push_back(item.spin[velocity].message());
+  return messages;
+}
+
+std::vector<HaloMessage> messages_of(const MixedGhostItem<GhostField>& item, bool rotates, int position,
+                                     int) {
+  std::vector<HaloMessage> messages{item.position[position].message(), item.motion[position].message()};
+  if (rotates) messages.push_back(item.spin[position].message());
+  return messages;
+}
 
 }  // namespace
 
@@ -159,7 +207,7 @@ void StepQueue::queue_successively(const std::string& key, Index steps, const Qu
     const auto queue_interior = [&](Device on) {
       if (parts.interior().launched > 0) queue_rows(on, parts.interior());
     };
-    return queue_with_ranks(steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
+    return queue_with_ranks(key, steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
   }
   workspace_.graph.queue(items_.stream, key, steps, [&] {
     queue_ghosts(rows, 0);
@@ -172,54 +220,67 @@ void StepQueue::queue_successively(const std::string& key, Index steps, const Qu
 }
 
 // The same for several ranks. After each step they reduce what decides whether the next one may be taken.
+// With peers the host takes no part in a step, so that steps are launched as graphs, too; a graph cannot
+// time.
 template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
-void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces,
+void StepQueue::queue_with_ranks(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
                                  const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
                                  const QueueBoundary& queue_boundary) {
   const Device halo{items_.halo_stream.stream};
-  items_.halo_after_rows();
-  for (Index k = 0; k < steps; ++k) {
+  const bool by_peers = items_.halo_stream.halo.peers() != nullptr;
+  const auto queue_step = [&](Index k, HaloClock* clock) {
     if (!items_.parts.apart()) queue_surfaces(items_.device()), items_.halo_after_rows();
-    // The clock measures the second step: the first one waits for the host, and later ones may be past a
-    // stop, where nothing hides the halo exchange.
-    HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.halo_stream.clock : nullptr;
-    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_interior, queue_boundary, clock);
-    items_.halo_stream.halo.max(halo, control_.on_device()->shared, 2);
+    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_interior, queue_boundary, clock,
+                             by_peers);
     control_.close(halo);
     items_.rows_after_halo();
-  }
+  };
+  // The clock measures the second step: the first one waits for the host, and later ones may be past a stop,
+  // where nothing hides the halo exchange.
+  constexpr Index kTimed = 2;
+  const Index in_graphs =
+                  by_peers && steps > kTimed ? (steps - kTimed) / StepGraph::kSteps * StepGraph::kSteps : 0,
+              one_by_one = steps - in_graphs;
+  items_.halo_after_rows();
+  for (Index k = 0; k < one_by_one; ++k)
+    queue_step(k, k == std::min<Index>(kTimed, steps) - 1 ? &items_.halo_stream.clock : nullptr);
+  workspace_.graph.queue(items_.stream, key, in_graphs,
+                         [&] { items_.halo_after_rows(), queue_step(0, nullptr); });
   require_cuda(cudaGetLastError(), "explicit step");
 }
 
-// The host knows where queued steps read their ghosts: after a stop nothing is read any more.
-void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
+// What refreshes the ghosts of the k-th step from now; adds to the key what its launches depend on. r: the
+// request of a step in double or in mixed precision. The host knows which arrays hold the ghosts that queued
+// steps read: after a stop nothing is read any more.
+template <class Request>
+auto StepQueue::ghost_queue(const Request& r, std::string& key) {
   DeviceHalo& halo = items_.halo_stream.halo;
-  const VerletRequest r = request();
-  const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
-    return halo.field(buffer, of[parity], items_.owned);
-  };
-  const RunGhostItem ghosts{halo.ghosts(),
-                            {field(0, r.position, 0), field(0, r.position, 1)},
-                            {field(1, r.velocity, 0), field(1, r.velocity, 1)},
-                            r.control};
+  const Peers* const peers = halo.peers();
   const bool rotates = items_.model.rotates();
-  RunSpinGhostItem spins{halo.ghosts(), {}, r.control};
-  if (rotates) spins.spin[0] = field(2, r.spin, 0), spins.spin[1] = field(2, r.spin, 1);
-  const auto queue_ghosts = [&](Device on, Index k) {
-    for_each(on, halo.entries(), ghosts);
-    const auto& position = ghosts.position[(control_.position_parity() + k) % 2];
-    const Index parity = (control_.velocity_parity() + k) % 2;
-    if (!rotates) return halo.exchange(on, position, ghosts.velocity[parity]);
-    for_each(on, halo.entries(), spins);
-    halo.exchange(on, position, ghosts.velocity[parity], spins.spin[parity]);
+  const auto in_message = [&](int number, auto* of) { return halo.field(number, of, items_.owned); };
+  const auto in_mailbox = [&](int number, auto* of) { return peers->field(number, of, items_.owned); };
+  const auto sent = ghost_item<GhostField>(r, halo.ghosts(), rotates, in_message);
+  decltype(ghost_item<PeerField>(r, nullptr, rotates, in_mailbox)) written{};
+  if (peers != nullptr) written = ghost_item<PeerField>(r, halo.ghosts(), rotates, in_mailbox);
+  key += key_of(sent) + key_of(written) + key_of(halo.entries()) + key_of(halo.size());
+  return [this, &halo, peers, rotates, sent, written](Device on, Index k) {
+    if (peers != nullptr) return peers->exchange(on, written, &control_.on_device()->stop);
+    for_each(on, halo.entries(), sent);
+    const int position = (control_.position_parity() + k) % 2,
+              velocity = (control_.velocity_parity() + k) % 2;
+    halo.exchange(on, messages_of(sent, rotates, position, velocity));
   };
+}
+
+void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
+  const VerletRequest r = request();
+  std::string key = key_of(r) + key_of(items_.parts.interior());
+  const auto queue_ghosts = ghost_queue(r, key);
   const auto queue_rows = [&](Device on, const StepRows& rows) {
     VerletRequest of_rows = r;
     of_rows.rows = rows;
     items_.kernels->verlet_advance(on, of_rows);
   };
-  const std::string key =
-      key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
   const DeviceContactKernels& kernels = *items_.kernels;
   DeviceSurfaces& surfaces = items_.surfaces;
   const auto no_surfaces = [](Device) {};
@@ -237,7 +298,6 @@ void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
 
 void StepQueue::queue_mixed(Index steps) {
   if (!mixed_) convert_to_mixed();
-  DeviceHalo& halo = items_.halo_stream.halo;
   MixedRequest r{};
   r.in = pruned_views(items_.now.position.data()), r.rows = items_.parts.whole();
   r.active = items_.layout.active;
@@ -246,29 +306,13 @@ void StepQueue::queue_mixed(Index steps) {
   r.orientation = items_.now.orientation.data();
   r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
   r.first_step = items_.history.first_step();
-  const auto field = [&](int buffer, auto* of) { return halo.field(buffer, of, items_.owned); };
-  const MixedGhostItem ghosts{halo.ghosts(),
-                              {field(0, r.state.position[0]), field(0, r.state.position[1])},
-                              {field(1, r.state.motion[0]), field(1, r.state.motion[1])},
-                              r.grid,
-                              r.control};
-  const bool rotates = items_.model.rotates();
-  MixedSpinGhostItem spins{halo.ghosts(), {}, r.control};
-  if (rotates) spins.spin[0] = field(2, r.state.spin[0]), spins.spin[1] = field(2, r.state.spin[1]);
-  const auto queue_ghosts = [&](Device on, Index k) {
-    for_each(on, halo.entries(), ghosts);
-    const Index parity = (control_.position_parity() + k) % 2;
-    if (!rotates) return halo.exchange(on, ghosts.position[parity], ghosts.motion[parity]);
-    for_each(on, halo.entries(), spins);
-    halo.exchange(on, ghosts.position[parity], ghosts.motion[parity], spins.spin[parity]);
-  };
+  std::string key = key_of(r) + key_of(items_.parts.interior());
+  const auto queue_ghosts = ghost_queue(r, key);
   const auto queue_rows = [&](Device on, const StepRows& rows) {
     MixedRequest of_rows = r;
     of_rows.rows = rows;
     items_.kernels->mixed_advance(on, of_rows);
   };
-  const std::string key =
-      key_of(r) + key_of(items_.parts.interior()) + key_of(ghosts) + key_of(halo.entries());
   queue_successively(
       key, steps, [](Device) {}, queue_ghosts, queue_rows);
 }

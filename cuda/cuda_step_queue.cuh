@@ -53,8 +53,11 @@ class StepQueue {
                           const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
                           Event* boundary_done = nullptr);
   template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
-  void queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces, const QueueGhosts& queue_ghosts,
-                        const QueueInterior& queue_interior, const QueueBoundary& queue_boundary);
+  void queue_with_ranks(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                        const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
+                        const QueueBoundary& queue_boundary);
+  template <class Request>
+  auto ghost_queue(const Request& request, std::string& key);
   OpenStepQuery surface_query(const VerletRequest& step);
   Vec4* spins() const;
   MixedViews mixed_views() { return items_.mixed.views(items_.other); }

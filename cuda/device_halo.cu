@@ -26,10 +26,20 @@ struct TargetItem {
 }  // namespace
 
 DeviceHalo::DeviceHalo(const Ranks& ranks, Transport transport)
-    : transport_(ranks.alone() ? nullptr : make_halo_transport(ranks, transport)) {}
+    : transports_(make_halo_transports(ranks, transport)) {}
+
+std::string DeviceHalo::transport() const {
+  if (peers() != nullptr) return "peer memory";
+  return messages() != nullptr ? messages()->name() : "";
+}
 
 void DeviceHalo::count(Device device, const HaloPlan& plan, const Vec4* position, Index n) {
   plan_ = plan;
+  count_entries(device, position, n);
+  if (transports_.peers) transports_.peers->set_plan(plan_);
+}
+
+void DeviceHalo::count_entries(Device device, const Vec4* position, Index n) {
   const std::vector<HaloTarget>& targets = plan_.targets();
   std::vector<std::size_t> sent(plan_.neighbors().size());
   if (targets.empty()) return plan_.set_counts(0, sent);

@@ -74,9 +74,12 @@ class DeviceHalo {
   DeviceHalo(const Ranks& ranks, Transport transport);
 
   // Empty for one rank.
-  std::string transport() const { return transport_ ? transport_->name() : ""; }
-  // Whether every exchange waits for the device on the host.
-  bool waits() const { return transport_ && transport_->waits(); }
+  std::string transport() const;
+  // Whether every exchange of explicit steps waits for the device on the host.
+  bool waits() const { return peers() == nullptr && messages() != nullptr && messages()->waits(); }
+  // How explicit steps exchange ghosts and what they found; null unless the ranks write into each other's
+  // memory. A plan for it is set by count().
+  const Peers* peers() const { return transports_.peers.get(); }
 
   // Stage exchange_halo: counts the ghosts among the items at position[0 ... n-1], and tells the neighbouring
   // ranks. Waits for the stream. Collective.
@@ -97,7 +100,7 @@ class DeviceHalo {
   }
   // Sends what was written into fields, and receives the ghosts. messages: those of these fields.
   void exchange(Device device, std::span<const HaloMessage> messages) {
-    if (transport_) transport_->exchange(plan_, messages, device.stream);
+    if (transports_.messages) transports_.messages->exchange(plan_, messages, device.stream);
   }
   template <class... T>
   void exchange(Device device, const GhostField<T>&... fields) {
@@ -110,13 +113,15 @@ class DeviceHalo {
 
   // Queues the maxima over all ranks of n values >= 0 in device memory. Collective.
   void max(Device device, Real* values, Index n) {
-    if (transport_) transport_->max(values, n, device.stream);
+    if (messages() != nullptr) messages()->max(values, n, device.stream);
   }
 
  private:
+  HaloTransport* messages() const { return transports_.messages.get(); }
+  void count_entries(Device device, const Vec4* position, Index n);
   void visit_targets(Device device, const Vec4* position, Index n, Ghost* ghosts);
 
-  std::unique_ptr<HaloTransport> transport_;  // null for one rank
+  HaloTransports transports_;
   HaloPlan plan_;
   DeviceArray<Ghost> ghost_;
   DeviceArray<HaloTarget> targets_;

@@ -143,32 +143,59 @@ std::string cuda_aware_error(const Ranks& ranks) {
   return ranks.any(!Ranks::mpi_takes_device_memory()) ? "this MPI library does not take device memory" : "";
 }
 
+struct PeerConnection {
+  std::unique_ptr<Peers> peers;
+  std::string error;  // why there are none
+};
+
+// shared: whether two ranks use the same GPU. They would wait for each other there, so it is not tried.
+PeerConnection connect_peers(const Ranks& ranks, bool shared) {
+  if (ranks.size() > kMostPeers)
+    return {nullptr, "it is for at most " + std::to_string(kMostPeers) + " ranks"};
+  if (ranks.any(ranks.sum_on_host(1) < ranks.size())) return {nullptr, "the ranks are on several hosts"};
+  if (shared) return {nullptr, "two ranks share a GPU"};
+  try {
+    return {std::make_unique<Peers>(ranks), ""};
+  } catch (const DeviceError& error) {  // on all ranks alike
+    cudaGetLastError();                 // otherwise the next launch would report it as its own
+    return {nullptr, std::string("the GPUs cannot write each other's memory (") + error.what() + ")"};
+  }
+}
+
+// messages: one that works here.
+std::unique_ptr<HaloTransport> make_messages(const Ranks& ranks, Transport messages) {
+  if (messages == Transport::cuda_aware) return std::make_unique<CudaAwareTransport>(ranks);
+#ifdef SCREE_NCCL
+  if (messages == Transport::nccl) return std::make_unique<NcclTransport>(ranks);
+#endif
+  return std::make_unique<StagedTransport>(ranks);
+}
+
 }  // namespace
 
-std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport transport) {
-  const std::string no_nccl = nccl_error(gpus_are_shared(ranks)), no_mpi = cuda_aware_error(ranks);
-  const auto refuse = [&](Transport refused, const std::string& why) {
+HaloTransports make_halo_transports(const Ranks& ranks, Transport transport) {
+  if (ranks.alone()) return {};
+  const bool shared = gpus_are_shared(ranks), automatic = transport == Transport::automatic;
+  const std::string no_nccl = nccl_error(shared), no_mpi = cuda_aware_error(ranks);
+  PeerConnection connection;
+  if (automatic || transport == Transport::peer) connection = connect_peers(ranks, shared);
+  const std::string error = transport == Transport::peer         ? connection.error
+                            : transport == Transport::cuda_aware ? no_mpi
+                            : transport == Transport::nccl       ? no_nccl
+                                                                 : "";
+  if (!error.empty()) {
     std::string allowed = "\"auto\"";
+    if (transport != Transport::peer && connect_peers(ranks, shared).peers) allowed += ", \"peer\"";
     if (no_mpi.empty()) allowed += ", \"cuda-aware\"";
     if (no_nccl.empty()) allowed += ", \"nccl\"";
-    throw TransportError("parallel.transport = \"" + word_of(refused) + "\": " + why +
+    throw TransportError("parallel.transport = \"" + word_of(transport) + "\": " + error +
                          "; allowed here: " + allowed + ", \"staged\"");
-  };
-  if (transport == Transport::automatic)
+  }
+  if (automatic || transport == Transport::peer)
     transport = no_mpi.empty()    ? Transport::cuda_aware
                 : no_nccl.empty() ? Transport::nccl
                                   : Transport::staged;
-  if (transport == Transport::cuda_aware) {
-    if (!no_mpi.empty()) refuse(transport, no_mpi);
-    return std::make_unique<CudaAwareTransport>(ranks);
-  }
-  if (transport == Transport::nccl) {
-    if (!no_nccl.empty()) refuse(transport, no_nccl);
-#ifdef SCREE_NCCL
-    return std::make_unique<NcclTransport>(ranks);
-#endif
-  }
-  return std::make_unique<StagedTransport>(ranks);
+  return {make_messages(ranks, transport), std::move(connection.peers)};
 }
 
 }  // namespace scree

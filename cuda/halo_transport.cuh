@@ -1,5 +1,5 @@
 // How ghosts travel between the GPUs of the ranks, and the maxima over all ranks that the middle of a step
-// needs.
+// needs: as messages, or in explicit steps as writes into each other's memory (`Peers`).
 #pragma once
 
 #include <memory>
@@ -10,6 +10,7 @@
 #include "device.cuh"
 #include "model/data/model.hpp"
 #include "partition/halo_plan.hpp"
+#include "peers.cuh"
 
 namespace scree {
 
@@ -26,9 +27,15 @@ class HaloTransport {
   virtual void max(Real* values, Index n, cudaStream_t stream) = 0;
 };
 
-// The transport that the deck names or, for automatic, the first that works here: MPI if it takes device
-// memory, NCCL if the program was built with it and no two ranks share a GPU, else copies in host memory.
-// Collective. Throws `TransportError` where the named one does not work here.
-std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport transport);
+struct HaloTransports {
+  std::unique_ptr<HaloTransport> messages;  // null for one rank
+  std::unique_ptr<Peers> peers;             // null where explicit steps send messages, too
+};
+
+// The transport that the deck names or, for automatic, the first that works here: writes into the memory of
+// the other ranks, MPI if it takes device memory, NCCL if the program was built with it and no two ranks
+// share a GPU, else copies in host memory. Beside peers, what is no explicit step uses the first of the
+// others. Collective. Throws `TransportError` where the named one does not work here.
+HaloTransports make_halo_transports(const Ranks& ranks, Transport transport);
 
 }  // namespace scree

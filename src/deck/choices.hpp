@@ -309,9 +309,10 @@ inline constexpr auto kWords<DistributionKind> =
 // ---- ranks and devices ------------------------------------------------------------------------------------
 
 // How ghost data are sent between the GPUs of several ranks.
-enum class Transport { automatic, cuda_aware, nccl, staged };
+enum class Transport { automatic, peer, cuda_aware, nccl, staged };
 template <>
 inline constexpr auto kWords<Transport> = std::to_array<Word<Transport>>({{"auto", Transport::automatic},
+                                                                          {"peer", Transport::peer},
                                                                           {"cuda-aware",
                                                                            Transport::cuda_aware},
                                                                           {"nccl", Transport::nccl},

@@ -320,9 +320,11 @@ const TableKeys& parallel_keys() {
                   "more than this fraction."),
        choice<Transport>("transport")
            .otherwise_choice(Transport::automatic)
-           .about("How ghost data are sent between GPUs: by an MPI library that accepts device memory, by "
-                  "NCCL, or through host memory. auto: the first of these that works on this machine. A "
-                  "choice that does not work ends a run on the GPUs of several ranks.")},
+           .about(
+               "How ghost data are sent between GPUs. peer: in explicit steps each GPU writes into the "
+               "memory of the others, which are those of one host. Otherwise by an MPI library that accepts "
+               "device memory, by NCCL, or through host memory. auto: the first of these that works on this "
+               "machine. A choice that does not work ends a run on the GPUs of several ranks.")},
       ""};
   return keys;
 }
