@@ -76,7 +76,7 @@ struct CudaItems {
   void queue_overlapping_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
   template <class QueueGhosts, class QueueInterior, class QueueBoundary>
   void queue_around_halo(const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
-                         const QueueBoundary& queue_boundary, HaloClock* clock, bool by_peers = false);
+                         const QueueBoundary& queue_boundary, HaloClock* clock);
 
   // Queues sums of terms over the particles; see `DeviceResults::totals`.
   template <int N, class Item>
@@ -167,16 +167,14 @@ void CudaItems::queue_overlapping_halo(const QueueGhosts& queue_ghosts, const Qu
 // The same for several ranks, where queue_interior(device) queues the interior and queue_boundary(device) the
 // boundary. At the call both streams are ordered after what the pass reads; afterwards the halo stream is
 // ordered after the interior, so that the next halo exchange starts before the next rows fill the GPU. clock:
-// measures the exchange, if not null. Peers exchange without the host: their kernel is queued before the
-// interior fills the GPU.
+// measures the exchange, if not null.
 template <class QueueGhosts, class QueueInterior, class QueueBoundary>
 void CudaItems::queue_around_halo(const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
-                                  const QueueBoundary& queue_boundary, HaloClock* clock, bool by_peers) {
+                                  const QueueBoundary& queue_boundary, HaloClock* clock) {
   if (clock != nullptr) clock->begin(halo_stream.stream);
-  if (by_peers) queue_ghosts(Device{halo_stream.stream});
   queue_interior(device());
   if (clock != nullptr) clock->interior_done(stream);
-  if (!by_peers) queue_ghosts(Device{halo_stream.stream});
+  queue_ghosts({halo_stream.stream});
   if (clock != nullptr) clock->end(halo_stream.stream);
   queue_boundary({halo_stream.stream});
   fork_halo_stream();

@@ -104,6 +104,10 @@ std::vector<HaloMessage> messages_of(const MixedGhostItem<GhostField>& item, boo
   return messages;
 }
 
+// The step of a batch that the clock of the halo measures: the second, because the first one waits for the
+// host, and later ones may be past a stop, where nothing hides the halo exchange.
+Index timed_step(Index steps) { return std::min<Index>(1, steps - 1); }
+
 }  // namespace
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
@@ -207,7 +211,9 @@ void StepQueue::queue_successively(const std::string& key, Index steps, const Qu
     const auto queue_interior = [&](Device on) {
       if (parts.interior().launched > 0) queue_rows(on, parts.interior());
     };
-    return queue_with_ranks(key, steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
+    if (items_.halo_stream.halo.peers() != nullptr)
+      return queue_with_peers(key, steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
+    return queue_with_ranks(steps, queue_surfaces, queue_ghosts, queue_interior, queue_boundary);
   }
   workspace_.graph.queue(items_.stream, key, steps, [&] {
     queue_ghosts(rows, 0);
@@ -220,32 +226,46 @@ void StepQueue::queue_successively(const std::string& key, Index steps, const Qu
 }
 
 // The same for several ranks. After each step they reduce what decides whether the next one may be taken.
-// With peers the host takes no part in a step, so that steps are launched as graphs, too; a graph cannot
-// time.
 template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
-void StepQueue::queue_with_ranks(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces,
                                  const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
                                  const QueueBoundary& queue_boundary) {
   const Device halo{items_.halo_stream.stream};
-  const bool by_peers = items_.halo_stream.halo.peers() != nullptr;
-  const auto queue_step = [&](Index k, HaloClock* clock) {
+  items_.halo_after_rows();
+  for (Index k = 0; k < steps; ++k) {
     if (!items_.parts.apart()) queue_surfaces(items_.device()), items_.halo_after_rows();
-    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_interior, queue_boundary, clock,
-                             by_peers);
+    HaloClock* clock = k == timed_step(steps) ? &items_.halo_stream.clock : nullptr;
+    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_interior, queue_boundary, clock);
+    control_.close(halo);
+    items_.rows_after_halo();
+  }
+  require_cuda(cudaGetLastError(), "explicit step");
+}
+
+// The same where the GPUs exchange ghosts without the host. A step is then a fixed set of launches, so that
+// batches are graphs as on one rank, after a step that is timed, which a graph cannot be. The exchange is
+// queued before the interior fills the GPU, and does not wait for the contacts with surfaces.
+template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
+void StepQueue::queue_with_peers(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                                 const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
+                                 const QueueBoundary& queue_boundary) {
+  const Device rows = items_.device(), halo{items_.halo_stream.stream};
+  const auto queue_step = [&](HaloClock* clock) {
+    items_.halo_after_rows();
+    if (clock != nullptr) clock->begin(halo.stream);
+    queue_ghosts(halo, 0);
+    if (clock != nullptr) clock->end(halo.stream);
+    if (!items_.parts.apart()) queue_surfaces(rows), items_.halo_after_rows();
+    queue_interior(rows);
+    if (clock != nullptr) clock->interior_done(rows.stream);
+    queue_boundary(halo);
+    items_.halo_after_rows();
     control_.close(halo);
     items_.rows_after_halo();
   };
-  // The clock measures the second step: the first one waits for the host, and later ones may be past a stop,
-  // where nothing hides the halo exchange.
-  constexpr Index kTimed = 2;
-  const Index in_graphs =
-                  by_peers && steps > kTimed ? (steps - kTimed) / StepGraph::kSteps * StepGraph::kSteps : 0,
-              one_by_one = steps - in_graphs;
-  items_.halo_after_rows();
-  for (Index k = 0; k < one_by_one; ++k)
-    queue_step(k, k == std::min<Index>(kTimed, steps) - 1 ? &items_.halo_stream.clock : nullptr);
-  workspace_.graph.queue(items_.stream, key, in_graphs,
-                         [&] { items_.halo_after_rows(), queue_step(0, nullptr); });
+  const Index timed = timed_step(steps), one_by_one = timed + 1 + (steps - timed - 1) % StepGraph::kSteps;
+  for (Index k = 0; k < one_by_one; ++k) queue_step(k == timed ? &items_.halo_stream.clock : nullptr);
+  workspace_.graph.queue(items_.stream, key, steps - one_by_one, [&] { queue_step(nullptr); });
   require_cuda(cudaGetLastError(), "explicit step");
 }
 

@@ -53,7 +53,10 @@ class StepQueue {
                           const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
                           Event* boundary_done = nullptr);
   template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
-  void queue_with_ranks(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+  void queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces, const QueueGhosts& queue_ghosts,
+                        const QueueInterior& queue_interior, const QueueBoundary& queue_boundary);
+  template <class QueueSurfaces, class QueueGhosts, class QueueInterior, class QueueBoundary>
+  void queue_with_peers(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
                         const QueueGhosts& queue_ghosts, const QueueInterior& queue_interior,
                         const QueueBoundary& queue_boundary);
   template <class Request>

@@ -29,8 +29,8 @@ DeviceHalo::DeviceHalo(const Ranks& ranks, Transport transport)
     : transports_(make_halo_transports(ranks, transport)) {}
 
 std::string DeviceHalo::transport() const {
-  if (peers() != nullptr) return "peer memory";
-  return messages() != nullptr ? messages()->name() : "";
+  if (messages() == nullptr) return "";
+  return (peers() != nullptr ? "peer memory and " : "") + messages()->name();
 }
 
 void DeviceHalo::count(Device device, const HaloPlan& plan, const Vec4* position, Index n) {

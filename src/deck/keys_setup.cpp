@@ -320,11 +320,9 @@ const TableKeys& parallel_keys() {
                   "more than this fraction."),
        choice<Transport>("transport")
            .otherwise_choice(Transport::automatic)
-           .about(
-               "How ghost data are sent between GPUs. peer: in explicit steps each GPU writes into the "
-               "memory of the others, which are those of one host. Otherwise by an MPI library that accepts "
-               "device memory, by NCCL, or through host memory. auto: the first of these that works on this "
-               "machine. A choice that does not work ends a run on the GPUs of several ranks.")},
+           .about("How ghost data are sent between GPUs: into each other's memory within one host (peer, "
+                  "explicit steps), by an MPI library that takes device memory, by NCCL, or through host "
+                  "memory. auto: the first that works. Another one that does not work ends the run.")},
       ""};
   return keys;
 }

@@ -349,7 +349,7 @@ class RunTest(CommandLineTest):
     def test_a_transport_between_gpus_is_not_used_on_the_cpu(self):
         both = (*self.SHORT, "--backend", "cpu")
         self.assertNotIn("transport", self.run_deck(DONE, "auto", *both).stdout)
-        for transport in ("cuda-aware", "nccl", "staged"):
+        for transport in ("peer", "cuda-aware", "nccl", "staged"):
             text = self.run_deck(DONE, "other", *both, "--set", f"parallel.transport={transport}").stdout
             self.assertIn(f'parallel.transport = "{transport}" is for GPUs', text)
             self.assert_same_history("other", "auto")

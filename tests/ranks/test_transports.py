@@ -6,10 +6,11 @@ import os
 import subprocess
 import unittest
 
-from mpi_case import BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, IMPLICIT, INPUT, LIMIT, RanksTest, gpus
+from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, HERE, IMPLICIT, INPUT, LIMIT, RanksTest,
+                      gpus)
 
 BUILT_WITH_NCCL = os.environ.get("BUILT_WITH_NCCL", "1") == "1"
-NAMES = {"cuda-aware": "CUDA-aware MPI", "nccl": "NCCL", "staged": "copies in host memory"}
+NAMES = {"peer": "peer memory and ", "cuda-aware": "CUDA-aware MPI", "nccl": "NCCL", "staged": "copies in host memory"}
 # So many that --backend auto would give each of two ranks a GPU.
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=5000", "output.snapshot_interval=1.0"]
 CASES = {
@@ -18,6 +19,11 @@ CASES = {
     "gas, implicit": [*GAS, *IMPLICIT, "time.end=0.002"],
     "gas, explicit": [*GAS, *EXPLICIT, "time.end=0.01"],
 }
+# 10,000 steps with lists at irregular times, for which particles and ghosts change their places and numbers: as
+# rarely as each 100 steps, so that most of them are in graphs, and as often as each fourth.
+LONG = {f"gas, skin {skin}": [*GAS, *EXPLICIT, "time.end=0.2", "output.history_interval=0.05", f"contact.skin={skin}"]
+        for skin in (2e-2, 5e-4)}
+LONG["friction"] = [HERE / "friction.toml", *EXPLICIT, "time.step=2e-5", "time.end=0.2", "output.history_interval=0.05"]
 NO_GPU, ONE_GPU = ["env", "CUDA_VISIBLE_DEVICES="], ["env", "CUDA_VISIBLE_DEVICES=0"]
 
 
@@ -62,25 +68,28 @@ class NoGpuTest(ForcedTransportTest):
 class TransportTest(ForcedTransportTest):
     def setUp(self):
         super().setUp()
-        self.mpi_takes_device_memory = self.cuda_aware_works()
+        self.mpi_takes_device_memory = self.is_taken("cuda-aware")
+        self.memory_is_shared = gpus() > 1 and self.is_taken("peer")
 
-    def cuda_aware_works(self):
-        words = self.command(2, DAM[0], "trial", [*EXPLICIT, "time.end=1e-3", forced("cuda-aware")])
+    def is_taken(self, transport):
+        words = self.command(2, DAM[0], "trial", [*EXPLICIT, "time.end=1e-3", forced(transport)])
         result = subprocess.run(words, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
         self.assertIn(result.returncode, (DONE, BAD_INPUT), result.stdout + result.stderr)
         return result.returncode == DONE
 
     def working(self, visible):
         """The transports that two ranks can have on so many GPUs, in the order in which auto looks for them."""
-        works = {"cuda-aware": self.mpi_takes_device_memory, "nccl": BUILT_WITH_NCCL and visible > 1, "staged": True}
+        works = {"peer": self.memory_is_shared and visible > 1, "cuda-aware": self.mpi_takes_device_memory,
+                 "nccl": BUILT_WITH_NCCL and visible > 1, "staged": True}
         return [transport for transport in NAMES if works[transport]]
 
     def assert_runs(self, transport, name, overrides, output, **how):
         """On two ranks, with ghosts on the way of that name, in the log and in the record; returns the hash."""
         deck, *settings = overrides
         log = self.run_deck(DONE, 2, deck, output, [*settings, forced(transport)], **how).stdout
+        used = NAMES[name] + (NAMES[self.working(gpus())[1]] if name == "peer" else "")
         for text in (log, self.record(output)["run"]["backend"]):
-            self.assertIn(f"precision double, 2 ranks, halo by {NAMES[name]})", text)
+            self.assertIn(f"precision double, 2 ranks, halo by {used})", text)
         return self.hash(output)
 
     def test_every_transport_gives_the_bits_of_one_rank(self):
@@ -103,9 +112,30 @@ class TransportTest(ForcedTransportTest):
                                              before=ONE_GPU)
                     self.assertEqual(found, self.hash("one"))
 
+    @unittest.skipIf(gpus() < 2, "needs two GPUs")
+    def test_many_steps_through_peer_memory_have_the_bits_of_one_rank(self):
+        if not self.memory_is_shared:
+            self.skipTest("these GPUs do not write each other's memory")
+        for case, (deck, *settings) in LONG.items():
+            self.run_deck(DONE, 1, deck, "one", settings)
+            for ranks in [n for n in (2, 3, 4, 8) if n <= gpus()]:
+                with self.subTest(case=case, ranks=ranks):
+                    self.run_deck(DONE, ranks, deck, "many", [*settings, forced("peer")])
+                    self.assertIn(f"{ranks} ranks, halo by peer memory and ", self.record("many")["run"]["backend"])
+                    self.assertEqual(self.hash("many"), self.hash("one"))
+
+    @unittest.skipIf(gpus() < 2, "needs two GPUs")
+    def test_mixed_precision_has_the_bits_of_other_transports(self):
+        deck, *settings = [*LONG["friction"], "integrator.precision=mixed", "time.end=0.04"]
+        hashes = {}
+        for transport in self.working(gpus()):
+            self.run_deck(DONE, 2, deck, "mixed", [*settings, forced(transport)])
+            hashes[transport] = self.hash("mixed")
+        self.assertEqual(len(set(hashes.values())), 1, hashes)
+
     def test_a_transport_that_cannot_be_had_ends_the_run(self):
         no_nccl = "two ranks share a GPU" if BUILT_WITH_NCCL else "this program was built without NCCL"
-        refused = [("nccl", no_nccl)]
+        refused = [("nccl", no_nccl), ("peer", "two ranks share a GPU")]
         if not self.mpi_takes_device_memory:
             refused.append(("cuda-aware", "this MPI library does not take device memory"))
         expected = ", ".join(f'"{transport}"' for transport in ("auto", *self.working(1)))
