@@ -185,16 +185,35 @@ struct MixedRequest {
   const Real* first_step;
 };
 
-// State of the open step for contacts with static surfaces in a run: only the device knows which arrays hold
-// it.
+// Poses of surfaces with prescribed motion at the ends of the next steps of a run. The rows are a ring: a
+// step has the row of the number of steps closed before it.
+struct PosesInRun {
+  const SurfacePose* placed = nullptr;   // [rows][surfaces]; null: the surfaces are static
+  const SurfaceFrame* frames = nullptr;  // [rows][frame_count]
+  Index surfaces = 0, frame_count = 0, rows = 1;
+  Index* opened = nullptr;  // row of the step whose contacts were evaluated last; -1: the run had stopped
+
+  // Points `in` at the row of the open step. Kernels beside those that close the step read *opened.
+  __device__ void open(SurfaceViews& in, const VerletControl& control) const {
+    if (placed == nullptr) return;
+    const Index row = control.stop ? -1 : control.closed % rows;
+    if (blockIdx.x == 0 && threadIdx.x == 0) *opened = row;
+    if (row < 0) return;
+    in.placed = placed + row * surfaces, in.frames = frames + row * frame_count;
+  }
+};
+
+// State of the open step for contacts with surfaces in a run: only the device knows which arrays hold it.
 struct OpenStepQuery {
   const VerletControl* control;
   const Real* first_step;  // as in VerletRequest
   const Vec4 *position[2], *velocity[2], *spin[2];
   HistoryViews history[2];  // the double-buffered history, which switches with the velocities
+  PosesInRun poses;
 
   // Points `in` at the open step's arrays; false where the run has stopped.
   __device__ bool open(SurfaceViews& in) const {
+    poses.open(in, *control);
     if (control->stop) return false;
     const int p = control->parity[0], v = control->parity[1];
     in.position = p == 0 ? position[0] : position[1];

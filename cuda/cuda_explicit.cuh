@@ -15,6 +15,9 @@ class CudaExplicitRun : public ExplicitRun {
   CudaExplicitRun& operator=(const CudaExplicitRun&) = delete;
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
+  // This and its parts are defined in cuda_driven.cu.
+  StepsTaken take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
+                               std::vector<BodyWrench>& wrenches, StageTimers& timers) override;
   void shape_contacts() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
     bodies_.side().reduce(wrench, contacts);
@@ -28,6 +31,9 @@ class CudaExplicitRun : public ExplicitRun {
   bool renew_list(StageTimers& timers);
   Index steps_ahead(const VerletControl& control) const;
   void finish();
+  bool renew_list_beside_walls(StageTimers& timers);
+  void queue_driven(std::span<const BodyMotion> motion, Index most);
+  void close_driven(Index step, std::vector<BodyWrench>& wrenches, StageTimers& timers);
   // Defined in cuda_coupled.cu.
   StepsTaken take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers);
   bool step_with_bodies(bool keep_open, StageTimers& timers);
@@ -40,7 +46,7 @@ class CudaExplicitRun : public ExplicitRun {
   RunControl control_;
   StepQueue queue_;
   const Real h_;
-  Index closed_ = 0;             // with bodies: closed steps since the start of the run
+  Index closed_ = 0;             // where steps are taken one by one: closed steps since the start of the run
   bool boundary_apart_ = false;  // with bodies: the previous step's boundary rows were queued apart
   // Positions as the last closed step left them, with the velocities at which its law was evaluated.
   struct {

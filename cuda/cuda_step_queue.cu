@@ -152,7 +152,8 @@ OpenStepQuery StepQueue::surface_query(const VerletRequest& r) {
           {r.position[0], r.position[1]},
           {r.velocity[0], r.velocity[1]},
           {r.spin[0], r.spin[1]},
-          {items_.history.surface_views_in_run(false), items_.history.surface_views_in_run(true)}};
+          {items_.history.surface_views_in_run(false), items_.history.surface_views_in_run(true)},
+          workspace_.driven ? workspace_.driven->poses() : PosesInRun{}};
 }
 
 // Null unless particles rotate.
@@ -296,24 +297,31 @@ void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
   const VerletRequest r = request();
   std::string key = key_of(r) + key_of(items_.parts.interior());
   const auto queue_ghosts = ghost_queue(r, key);
+  DeviceSurfaces& surfaces = items_.surfaces;
+  const bool in_run = moving == nullptr && surfaces.any_placed();
+  DrivenSurfaces* const driven = in_run ? workspace_.driven.get() : nullptr;
   const auto queue_rows = [&](Device on, const StepRows& rows) {
     VerletRequest of_rows = r;
     of_rows.rows = rows;
     items_.kernels->verlet_advance(on, of_rows);
+    if (driven != nullptr) driven->join(on);
   };
   const DeviceContactKernels& kernels = *items_.kernels;
-  DeviceSurfaces& surfaces = items_.surfaces;
   const auto no_surfaces = [](Device) {};
   if (moving != nullptr)
     return queue_successively(
         key, steps, [&](Device on) { moving->loads_found.hold(on.stream); }, queue_ghosts, queue_rows,
         &moving->boundary_done);
-  if (!surfaces.any_placed()) return queue_successively(key, steps, no_surfaces, queue_ghosts, queue_rows);
+  if (!in_run) return queue_successively(key, steps, no_surfaces, queue_ghosts, queue_rows);
   surfaces.reserve_in_run(items_.device(), steps);
   const OpenStepQuery query = surface_query(r);
+  const auto queue_surfaces = [&](Device on) {
+    surfaces.find_loads_in_run(on, kernels, query, h_);
+    if (driven != nullptr) driven->queue_sums(on);
+  };
   queue_successively(
-      key + surfaces.key_of_loads(kernels, query, h_), steps,
-      [&](Device on) { surfaces.find_loads_in_run(on, kernels, query, h_); }, queue_ghosts, queue_rows);
+      key + surfaces.key_of_loads(kernels, query, h_) + (driven != nullptr ? driven->key() : ""), steps,
+      queue_surfaces, queue_ghosts, queue_rows);
 }
 
 void StepQueue::queue_mixed(Index steps) {

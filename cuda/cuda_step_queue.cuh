@@ -1,11 +1,13 @@
 // Queues explicit steps on the device, in double or in mixed precision.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "cuda_control.cuh"
 #include "dem/explicit/mixed_items.hpp"
+#include "driven_surfaces.cuh"
 #include "step_graph.cuh"
 
 namespace scree {
@@ -14,6 +16,7 @@ namespace scree {
 struct RunWorkspace {
   StepGraph graph;
   Event step_queued, boundary_done;
+  std::unique_ptr<DrivenSurfaces> driven;  // null unless the motion of the surfaces is known ahead
 };
 
 // What orders a step and the contacts of moving surfaces, which are evaluated on a stream of their own.
@@ -28,8 +31,8 @@ class StepQueue {
       : items_(items), list_(list), control_(control), workspace_(workspace), h_(h) {}
 
   // Queues that many steps after each other, each with its halo exchange; each is closed and the next opened.
-  // Those after a stop do nothing. moving: null for static surfaces only, whose contacts are queued with each
-  // step.
+  // Those after a stop do nothing. moving: null for surfaces that are static or in RunWorkspace::driven,
+  // whose contacts are queued with each step.
   void queue(Index steps, const MovingSurfaces* moving = nullptr) {
     items_.in_mixed ? queue_mixed(steps) : queue_double(steps, moving);
   }

@@ -56,12 +56,18 @@ class DeviceSurfaces {
   // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
   // poses, and the copy of the sums to the host.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query);
-  // For static surfaces in a run of explicit steps of length h: queues the loads of the step that is open
-  // when the kernels run, and the losses at triangles. key: everything that the launches depend on.
+  // For surfaces at rest or with prescribed motion in a run of explicit steps of length h: queues the loads
+  // of the step that is open when the kernels run, and the losses at triangles. key: everything that the
+  // launches depend on.
   void reserve_in_run(Device device, Index steps);  // before that many steps are queued
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepQuery& query,
                          Real h);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepQuery& query, Real h) const;
+  // For kernels that sum the loads of the step, evaluated last.
+  SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
+  std::span<const SurfaceChunk> chunks() const { return h_chunks_; }  // on the host, ordered by surface
+  const Index* by_surface() const { return by_surface_.order(); }
+  const SurfaceLoad* loads() const { return loads_[0].data(); }
   // Over an implicit step; `query` is its end, with the history that results if the step is accepted.
   void find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
                   const SurfaceQuery& query);
@@ -99,7 +105,6 @@ class DeviceSurfaces {
  private:
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
-  SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
 
   PeriodicBox box_;

@@ -90,14 +90,46 @@ void BodyCoupling::account_walls(MultibodyState& bodies, Real t, Real end,
                                  const std::vector<BodyWrench>& wrench) {
   if (!has_driven_walls() || !ranks_.is_root()) return;
   walls_.at(t, walls_before_), walls_.at(end, walls_after_);
+  add_work_of_walls(bodies, end - t, wrench);
+}
+
+// From walls_before_ to walls_after_, over a step of length h.
+void BodyCoupling::add_work_of_walls(MultibodyState& bodies, Real h,
+                                     const std::vector<BodyWrench>& wrench) const {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     BodyWrench& start = bodies.wrench[bodies_ + w];
     if (walls_.run())
       start.belt_power = bodies.belt_power[w], bodies.belt_power[w] = end_wrench_[bodies_ + w].belt_power;
-    bodies.driver_work -=
-        work_between(walls_before_[w], start, walls_after_[w], wrench[bodies_ + w], end - t);
+    bodies.driver_work -= work_between(walls_before_[w], start, walls_after_[w], wrench[bodies_ + w], h);
     start = end_wrench_[bodies_ + w];
   }
+}
+
+std::vector<BodyMotion> BodyCoupling::motion_of_walls(std::span<const Real> instants) {
+  std::vector<BodyMotion> motion;
+  motion.reserve(instants.size() * motion_.size());
+  for (const Real t : instants) {
+    if (walls_.move() && ranks_.is_root()) walls_.at(t, motion_);
+    motion.insert(motion.end(), motion_.begin(), motion_.end());
+  }
+  if (walls_.move()) ranks_.broadcast(std::span(motion));
+  return motion;
+}
+
+void BodyCoupling::account_driven_walls(MultibodyState& bodies, std::span<const Real> instants,
+                                        std::span<const BodyMotion> motion,
+                                        std::span<const BodyWrench> wrenches) {
+  const std::size_t steps = instants.size() - 1;
+  walls_.at(instants.front(), walls_after_);
+  for (std::size_t k = 0; k < steps; ++k) {
+    const auto of_step = motion.subspan(k * walls_.size(), walls_.size());
+    const auto loads = wrenches.subspan(k * walls_.size(), walls_.size());
+    walls_before_.swap(walls_after_), walls_after_.assign(of_step.begin(), of_step.end());
+    end_wrench_.assign(loads.begin(), loads.end());
+    if (ranks_.is_root()) add_work_of_walls(bodies, instants[k + 1] - instants[k], end_wrench_);
+  }
+  motion_ = walls_after_;
+  take_wrench(bodies);
 }
 
 void BodyCoupling::check_reactions() {

@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,13 @@ class BodyCoupling {
   // walls replaces them.
   void account_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench);
   const std::vector<BodyWrench>& step_wrench() const { return step_wrench_.wrench; }
+  // In a model without bodies. Rank 0 -> all: motion of the walls at each of these instants [s],
+  // [instant][wall].
+  std::vector<BodyMotion> motion_of_walls(std::span<const Real> instants);
+  // Adds their work over steps between successive instants [s]. motion, wrenches: at the end of each step,
+  // [step][wall]; motion() and end_wrench() are then those of the last step.
+  void account_driven_walls(MultibodyState& bodies, std::span<const Real> instants,
+                            std::span<const BodyMotion> motion, std::span<const BodyWrench> wrenches);
   void check_reactions();
   std::string trouble_on_root() const { return multibody_->trouble(); }
   // On every rank.
@@ -114,6 +122,7 @@ class BodyCoupling {
   std::string of_root(const std::function<std::string()>& tell);
   template <class Action, class... Values>
   void broadcast(RankList& list, Real t, const Action& set_bodies, Values... values);
+  void add_work_of_walls(MultibodyState& bodies, Real h, const std::vector<BodyWrench>& wrench) const;
   void set_poses(const std::vector<BodyMotion>& bodies);
 
   Ranks ranks_;

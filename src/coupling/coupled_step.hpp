@@ -86,6 +86,9 @@ class CoupledStep {
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
   void correct_bodies(BodyIterations& iterations);
   void evaluate_contacts(ExplicitRun& run, BodyIterations& iterations);
+  // Beside walls with prescribed motion, without bodies; defined in driven_steps.cpp.
+  std::vector<Real> instants_of(const std::vector<Real>& times, Real h, Real end) const;
+  std::size_t driven_steps(ExplicitRun& run, MultibodyState& bodies, const std::vector<Real>& instants);
 
   const Model& model_;
   Backend& backend_;

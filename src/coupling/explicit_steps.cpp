@@ -36,7 +36,9 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
     run = backend_.start_run(h / substeps);
   }
   std::size_t taken = 0;
-  if (body_coupling_.has_bodies() || body_coupling_.has_driven_walls()) {
+  if (!body_coupling_.has_bodies() && body_coupling_.has_driven_walls()) {
+    taken = driven_steps(*run, bodies, instants_of(times, h, end));
+  } else if (body_coupling_.has_bodies()) {
     for (bool open = true; open; ++taken) {
       const bool last = taken + 1 == times.size();
       open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/timer.hpp"
@@ -37,6 +38,11 @@ class ExplicitRun {
   // moves or is a conveyor. Every Integrator::substeps from the start of the run a step of the bodies ends:
   // the run stops there, closed, if a particle is outside the domain.
   virtual StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) = 0;
+  // The same in a model without bodies, for surfaces whose motion is known ahead. motion: of their parents at
+  // the end of each step, [step][parent]; its length gives `most`. wrenches: of the contacts on the parents
+  // at the end of each closed step, [step][parent]; on rank 0, zero elsewhere.
+  virtual StepsTaken take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
+                                       std::vector<BodyWrench>& wrenches, StageTimers& timers) = 0;
   // Evaluates the contacts of the bodies' shapes at their current poses, with the particles of the last
   // closed step.
   virtual void shape_contacts() = 0;

@@ -60,6 +60,27 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
   return {taken, open_};
 }
 
+StepsTaken CpuExplicitRun::take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
+                                             std::vector<BodyWrench>& wrenches, StageTimers& timers) {
+  const std::size_t parents = items_.side.surfaces().parents();
+  std::vector<BodyWrench> of_step(parents);
+  std::vector<std::int64_t> contacts;
+  StepsTaken taken{0, true};
+  wrenches.clear();
+  for (; !motion.empty() && taken.open; ++taken.closed) {
+    {
+      const auto scope = timers.time(Stage::broadcast_motion);
+      list_.set_body_motion(motion.first(parents));
+    }
+    motion = motion.subspan(parents);
+    taken.open = take_steps(1, keep_open || !motion.empty(), timers).open;
+    const auto scope = timers.time(Stage::reduce_wrench);
+    reduce_wrench(of_step, contacts);
+    wrenches.insert(wrenches.end(), of_step.begin(), of_step.end());
+  }
+  return taken;
+}
+
 // Uses the particles as of the last closed step, with the velocities that the law used. The history of the
 // step is that of the bodies' last poses, at which the next step begins.
 void CpuExplicitRun::shape_contacts() {

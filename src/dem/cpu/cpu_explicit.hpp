@@ -11,6 +11,8 @@ class CpuExplicitRun : public ExplicitRun {
   CpuExplicitRun(CpuItems& items, CpuList& list, Real h);
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
+  StepsTaken take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
+                               std::vector<BodyWrench>& wrenches, StageTimers& timers) override;
   void shape_contacts() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
     items_.side.reduce(wrench, contacts);

@@ -188,6 +188,12 @@ void HostSurfaces::close_step() {
   begin_step();
 }
 
+void HostSurfaces::return_to(std::span<const BodyMotion> motion) {
+  set_motion(motion);
+  update_poses();
+  begin_step();
+}
+
 void HostSurfaces::begin_step() {
   if (!tracks_displacement()) return;
   start_before_ = step_start_, step_start_ = motion_;

@@ -41,6 +41,7 @@ class HostSurfaces {
   Index size() const { return surfaces_.placed(); }
   // Motion of the parents: the bodies, then the placed walls.
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
+  const std::vector<BodyMotion>& motion() const { return motion_; }
   // Chooses the periodic image of each surface for a new list. Called before update_poses().
   void bring_into_box();
   // Finds possible contacts of bodies until a surface has moved by half the skin.
@@ -63,6 +64,8 @@ class HostSurfaces {
   // reopen_step(): reopens the last explicit step from its start to the current poses.
   void close_step();
   void reopen_step();
+  // For walls alone: returns to the end of an earlier explicit step, at which the parents had this motion.
+  void return_to(std::span<const BodyMotion> motion);
 
   // Stores the start of an implicit step.
   void store_start();

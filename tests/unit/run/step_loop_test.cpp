@@ -63,6 +63,10 @@ class WatchedRun : public ExplicitRun {
     before_steps_(most);
     return run_->take_steps(most, keep_open, timers);
   }
+  StepsTaken take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
+                               std::vector<BodyWrench>& wrenches, StageTimers& timers) override {
+    return run_->take_driven_steps(motion, keep_open, wrenches, timers);
+  }
   void shape_contacts() override { run_->shape_contacts(); }
   void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
     run_->reduce_wrench(wrench, contacts);
