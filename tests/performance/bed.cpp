@@ -193,7 +193,7 @@ std::string title_of(const Options& options) {
   if (!implicit && !options.with_bodies())
     title +=
         options.rebuild > 0 ? fmt::format(", list every {} steps", options.rebuild) : ", list where needed";
-  if (options.friction > 0) title += fmt::format(", friction {}", options.friction);
+  title += contact_text(options.contact);
   if (!options.ranks.alone()) title += fmt::format(", {} ranks", options.ranks.size());
   if (options.wall && options.ranks.alone() && !options.on_gpu()) title += ", wall";
   return title + (options.per_rank ? ", per rank" : "");
@@ -206,6 +206,11 @@ void measure_all(const Options& options) {
     throw InputError("--net, --plough: allowed for --integrator verlet");
   if (options.precision == "mixed" && (!options.on_gpu() || options.integrator == "hht"))
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
+  if (options.contact.rolling > 0 && !(options.contact.friction > 0))
+    throw InputError("--rolling: needs --friction");
+  if ((options.contact.rolling > 0 || options.contact.hertz) && options.integrator == "hht")
+    throw InputError("--rolling, --hertz: allowed for --integrator verlet");
+  if (options.contact.hertz && options.dimension == 2) throw InputError("--hertz: allowed for --dimension 3");
   if (options.on_gpu()) choose_device(options.ranks);
   if (options.on_gpu() && !device_error().empty()) throw InputError("--backend cuda: " + device_error());
   fmt::print("commit {}, {}, {}, {}{}{}{}\n", commit(),
@@ -213,8 +218,7 @@ void measure_all(const Options& options) {
              : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
                                      : fmt::format("{} ranks, wall seconds", options.ranks.size()),
              options.precision, options.dimension == 3 ? "spheres" : "discs",
-             options.integrator == "hht" ? ", implicit" : ", explicit",
-             options.friction > 0 ? fmt::format(", friction {}", options.friction) : "",
+             options.integrator == "hht" ? ", implicit" : ", explicit", contact_text(options.contact),
              options.integrator == "hht" || options.with_bodies() ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
@@ -227,7 +231,7 @@ void measure_all(const Options& options) {
       options.csv,
       fmt::format("{},\"{}\",{},{},{},{},{},{}", commit(),
                   options.on_gpu() ? device_name() : processor_name(), options.backend, options.precision,
-                  options.dimension, options.integrator, rebuild, options.friction),
+                  options.dimension, options.integrator, rebuild, options.contact.friction),
       title_of(options), options.ranks);
   // Bodies are positioned in the complete bed.
   const RankShare share(options.with_bodies() ? Ranks() : options.ranks);
@@ -237,7 +241,7 @@ void measure_all(const Options& options) {
     const std::int64_t particles = options.per_rank ? size * options.ranks.size() : size;
     Model bed =
         options.dimension == 3 ? sphere_bed(options.tile, particles, share) : disc_bed(discs, particles);
-    if (options.friction > 0) add_friction(bed, options.friction);
+    set_contact(bed, options.contact, share);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
     if (options.with_bodies())
       measure_bodies(std::move(bed), options, report);
@@ -261,8 +265,16 @@ ExitCode run(int count, char** values) {
       ->check(CLI::IsMember({"verlet", "hht"}));
   app.add_option("--particles", options.particles,
                  "sizes, multiples of 10000 (default: 10000 100000 1000000)");
-  app.add_option("--friction", options.friction, "coefficient of friction; 0: no friction and no rotation")
+  app.add_option("--friction", options.contact.friction,
+                 "coefficient of friction; 0: no friction and no rotation")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--rolling", options.contact.rolling,
+                 "coefficient of rolling resistance; twisting is resisted with that of friction; 0: neither")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--hertz", options.contact.hertz, "Hertz' and Mindlin's laws in place of linear ones");
+  app.add_option("--materials", options.contact.materials,
+                 "number of materials, all alike: contacts look up the law of their pair")
+      ->check(CLI::PositiveNumber);
   app.add_option("--rebuild", options.rebuild, "explicit steps per list rebuild; 0: the backend decides")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--repeats", options.repeats, "samples per size")->check(CLI::PositiveNumber);

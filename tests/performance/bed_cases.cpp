@@ -189,9 +189,41 @@ void add_plough(Model& bed) {
   bed.time.end = (bed.space.max.y - bed.space.min.y - 2 * kPloughMargin) / kPloughSpeed;
 }
 
-void add_friction(Model& bed, Real friction) {
-  bed.contact.friction = {{friction, Real(2) / 7 * bed.contact.laws[0].normal_stiffness, 0, 0}};
-  bed.particles.dimension = bed.space.dimension;
+std::string contact_text(const BedContact& contact) {
+  std::string text;
+  if (contact.hertz) text += ", Hertz";
+  if (contact.friction > 0) text += fmt::format(", friction {}", contact.friction);
+  if (contact.rolling > 0) text += fmt::format(", rolling {}", contact.rolling);
+  if (contact.materials > 1) text += fmt::format(", {} materials", contact.materials);
+  return text;
+}
+
+void set_contact(Model& bed, const BedContact& contact, const Share& share) {
+  Contact& laws = bed.contact;
+  // Stiffness of the tangential spring over that of the normal one: 2/7, with Mindlin 4 G* / E*.
+  constexpr Real kModulus = 4e7, kShearModulus = kModulus / 14, kDampingRatio = 0.04;
+  const Friction friction = contact.hertz
+                                ? Friction{contact.friction, 0, kShearModulus, 0}
+                                : Friction{contact.friction, Real(2) / 7 * laws.laws[0].normal_stiffness};
+  if (contact.hertz) laws.laws = {{0, 0, 1, false, kModulus, kDampingRatio}};
+  const auto pairs =
+      static_cast<std::size_t>(contact.materials) * static_cast<std::size_t>(contact.materials);
+  laws.laws.assign(pairs, NormalLawParameters(laws.laws[0]));
+  if (contact.friction > 0) {
+    laws.friction.assign(pairs, friction);
+    bed.particles.dimension = bed.space.dimension;
+  }
+  if (contact.rolling > 0) {
+    const bool discs = bed.space.dimension == 2;
+    laws.rolling.assign(pairs,
+                        {contact.rolling, discs ? 3 : Real(2.25), 0, 0, 0, discs ? 0 : contact.friction});
+  }
+  for (int m = 1; m < contact.materials; ++m)
+    laws.material_names.push_back(fmt::format("{}.{}", laws.material_names[0], m));
+  ParticleSet& set = bed.particles;
+  for (std::size_t i = 0; i < set.material.size(); ++i)
+    set.material[i] = static_cast<int>((set.first_id + static_cast<GlobalId>(i)) % contact.materials);
+  if (contact.materials > 1) count_particles(set, contact.materials, share);
 }
 
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles) {

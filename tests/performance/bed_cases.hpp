@@ -27,9 +27,16 @@ void add_net(Model& bed);
 // thousand steps. The bed's time ends where the plough comes near the wall.
 void add_plough(Model& bed);
 
-// All contacts have friction, with a tangential stiffness of 2/7 of the normal one, and the particles
-// rotate.
-void add_friction(Model& bed, Real friction);
+// Contact laws of a bed beyond those that it is settled with.
+struct BedContact {
+  Real friction = 0;   // with a tangential stiffness of 2/7 of the normal one; 0: the particles do not rotate
+  Real rolling = 0;    // coefficient, with twisting resistance, as decks have it; 0: neither
+  bool hertz = false;  // Hertz and Mindlin, about as stiff as the linear law at the bottom of the bed
+  int materials = 1;   // all alike; particles take turns
+};
+// ", Hertz, friction 0.5, rolling 0.1, 2 materials"
+std::string contact_text(const BedContact& contact);
+void set_contact(Model& bed, const BedContact& contact, const Share& share = {});
 
 // Discs, periodic in x, tiles in a row. tile: of settled_discs.
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles);

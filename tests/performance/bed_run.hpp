@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bed_cases.hpp"
 #include "bed_report.hpp"
 #include "coupling/coupled_step.hpp"
 
@@ -21,7 +22,7 @@ struct Options {
   int repeats = 5;
   Index steps = 0;
   double seconds = 0.5;
-  Real friction = 0;
+  BedContact contact;
   bool net = false, plough = false, wall = false, per_rank = false;
   std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;
   Ranks ranks = Ranks::world();
