@@ -17,25 +17,22 @@ struct RootAndInverse {
 #ifdef __CUDA_ARCH__
 
 // The compiler's double-precision root and division branch for special cases, which keeps a GPU from
-// overlapping two of them. These functions do not branch: Newton's iteration starts from the hardware's
-// estimate, and its last step has the form that rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990).
-// Arguments and results must be normal numbers.
+// overlapping two of them. These functions do not branch, but take the same steps: one of third order from
+// the hardware's estimate, which knows some 20 bits, and a last one in the form that rounds correctly
+// (Markstein, IBM J. Res. Dev. 34, 1990). Arguments and results must be normal numbers.
 
 // The only divisor for which that form can be wrong has a mantissa of ones: its reciprocal lies just above
 // the midpoint between a power of two and the next number, and is rounded to the latter.
 __device__ inline Real rounded_reciprocal(Real x, Real near) {
-  constexpr long long kMantissa = (1ll << 52) - 1;
-  const bool ones = (__double_as_longlong(x) & kMantissa) == kMantissa;
-  return __longlong_as_double(__double_as_longlong(near) | static_cast<long long>(ones));
+  const bool ones = (__double2loint(x) & (__double2hiint(x) | ~0xfffff)) == ~0;
+  return __hiloint2double(__double2hiint(near), __double2loint(near) | static_cast<int>(ones));
 }
 
 __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
-  Real y;  // 1 / sqrt(x), about 20 bits at first
+  Real y;  // 1 / sqrt(x)
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-  for (int pass = 0; pass < 2; ++pass) {
-    const Real error = __fma_rn(-x * y, y, 1.0);
-    y = __fma_rn(y * error, __fma_rn(error, 0.375, 0.5), y);
-  }
+  const Real error = __fma_rn(-x * y, y, 1.0);
+  y = __fma_rn(y * error, __fma_rn(error, 0.375, 0.5), y);
   Real root = x * y;
   root = __fma_rn(__fma_rn(-root, root, x), 0.5 * y, root);
   Real inverse = __fma_rn(__fma_rn(-root, y, 1.0), y, y);
@@ -52,8 +49,11 @@ __device__ inline RootAndInverse<float> root_and_inverse(float x) {
 __device__ inline Real reciprocal(Real x) {
   Real y;
   asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-  for (int pass = 0; pass < 3; ++pass) y = __fma_rn(__fma_rn(-x, y, 1.0), y, y);
-  return rounded_reciprocal(x, y);
+  // Low bits as in the compiler's division: the last step then needs no exception for a mantissa of ones.
+  y = __hiloint2double(__double2hiint(y), __double2hiint(x) + 0x300402);
+  const Real error = __fma_rn(-x, y, 1.0);
+  y = __fma_rn(y, __fma_rn(error, error, error), y);
+  return __fma_rn(y, __fma_rn(-x, y, 1.0), y);
 }
 
 #else
