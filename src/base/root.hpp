@@ -56,6 +56,21 @@ __device__ inline Real reciprocal(Real x) {
   return __fma_rn(y, __fma_rn(-x, y, 1.0), y);
 }
 
+// The same without these limits where contact laws meet them: the root of zero, and reciprocals and quotients
+// of infinite divisors. Other arguments and results must be normal numbers.
+__device__ inline Real root(Real x) {
+  const Real of_normal = root_and_inverse(x).root;
+  return __double2hiint(x) > 0 ? of_normal : 0;
+}
+__device__ inline Real inverse(Real x) {
+  const Real of_finite = reciprocal(x);
+  return __double2hiint(x) == 0x7ff00000 ? 0 : of_finite;
+}
+__device__ inline Real quotient(Real a, Real b) {
+  const Real near = reciprocal(b), q = a * near, of_finite = __fma_rn(__fma_rn(-b, q, a), near, q);
+  return __double2hiint(b) == 0x7ff00000 ? 0 : of_finite;
+}
+
 #else
 
 template <class T>
@@ -65,7 +80,13 @@ SCREE_HD RootAndInverse<T> root_and_inverse(T x) {
 }
 
 SCREE_HD Real reciprocal(Real x) { return 1 / x; }
+SCREE_HD Real root(Real x) { return std::sqrt(x); }
+SCREE_HD Real inverse(Real x) { return 1 / x; }
+SCREE_HD Real quotient(Real a, Real b) { return a / b; }
 
 #endif
+
+SCREE_HD float root(float x) { return std::sqrt(x); }
+SCREE_HD float inverse(float x) { return 1 / x; }
 
 }  // namespace scree

@@ -45,8 +45,8 @@ struct PairSizeOf {
   T radius_i, radius_j;  // [m]; infinite for a plane
   T mass_i, mass_j;      // [kg]; infinite for immovable partners
 
-  SCREE_HD T effective_radius() const { return 1 / (1 / radius_i + 1 / radius_j); }
-  SCREE_HD T effective_mass() const { return 1 / (1 / mass_i + 1 / mass_j); }
+  SCREE_HD T effective_radius() const { return inverse(inverse(radius_i) + inverse(radius_j)); }
+  SCREE_HD T effective_mass() const { return inverse(inverse(mass_i) + inverse(mass_j)); }
 };
 using PairSize = PairSizeOf<Real>;
 

@@ -14,6 +14,7 @@ struct NormalContact {
   Real friction_load;
   Real radius, radius0;        // contact radius [m]
   Real stiffness, stiffness0;  // elastic stiffness of the normal force [N/m]
+  Real effective_radius;       // R* [m]
 };
 
 // Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
@@ -22,6 +23,8 @@ struct NormalContact {
 //   formation_loss()       with kHysteretic: energy that the formation of a contact dissipates [J]
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
+//   slope_of(radius)       slope(d) from contact_radius(d), which is a root less; default: slope(d)
+//   radius                 R*, where the law uses it itself
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
 //   cohesion(d)            adhesive part of energy(d) [J]; default: 0
 
@@ -58,22 +61,34 @@ SCREE_HD Real cohesion_of(const Pair& pair, Real d) {
     return 0;
 }
 
+// R* [m].
 template <class NormalLaw>
-SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d) {
+SCREE_HD Real effective_radius(const NormalLaw& law, const PairSize& size) {
+  if constexpr (requires { law.radius; })
+    return law.radius;
+  else
+    return size.effective_radius();
+}
+
+template <class NormalLaw>
+SCREE_HD Real contact_radius(const NormalLaw& law, Real effective_radius, Real d) {
   if constexpr (kIsHysteretic<NormalLaw>)
     return d > -law.interaction_range() ? law.contact_radius(d) : 0;
   else if constexpr (requires { law.contact_radius(d); })
     return d > 0 ? law.contact_radius(d) : 0;
   else
-    return d > 0 ? std::sqrt(size.effective_radius() * d) : 0;
+    return d > 0 ? root(effective_radius * d) : 0;
 }
 
+// radius: of the contact at this overlap [m].
 template <class NormalLaw>
-SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
+SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d, [[maybe_unused]] Real radius) {
   if constexpr (kIsHysteretic<NormalLaw>)
     return d > -law.interaction_range() ? law.contact_stiffness(d) : 0;
   else if constexpr (requires { law.contact_stiffness(d); })
     return law.contact_stiffness(d);
+  else if constexpr (requires { law.slope_of(radius); })
+    return d > 0 ? law.slope_of(radius) : 0;
   else
     return d > 0 ? law.slope(d) : 0;
 }
@@ -85,8 +100,14 @@ SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size
                                       Real d0) {
   Real load = force;
   if constexpr (requires { law.adhesion(d); }) load += law.adhesion(d);
-  return {load > 0 ? load : 0, contact_radius(law, size, d), contact_radius(law, size, d0),
-          contact_stiffness(law, d), contact_stiffness(law, d0)};
+  const Real r = effective_radius(law, size), radius = contact_radius(law, r, d),
+             radius0 = contact_radius(law, r, d0);
+  return {load > 0 ? load : 0,
+          radius,
+          radius0,
+          contact_stiffness(law, d, radius),
+          contact_stiffness(law, d0, radius0),
+          r};
 }
 
 }  // namespace scree

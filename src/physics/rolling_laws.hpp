@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/hd.hpp"
+#include "base/root.hpp"
 #include "physics/contact_geometry.hpp"
 #include "physics/contact_parameters.hpp"
 #include "physics/contact_parts.hpp"
@@ -19,10 +20,11 @@ namespace scree {
 
 // Effective inertia of rolling about the contact: 1/I_r = sum 1/(I + m R^2) [kg m^2].
 SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
-  const auto inverse = [](Real inertia, Real mass, Real arm) {
-    return inertia < kInfinity ? 1 / (inertia + mass * arm * arm) : 0;
+  const auto inverse_of = [](Real inertia, Real mass, Real arm) {
+    return inertia < kInfinity ? reciprocal(inertia + mass * arm * arm) : 0;
   };
-  return 1 / (inverse(c.inertia_i, size.mass_i, c.arm_i) + inverse(c.inertia_j, size.mass_j, c.arm_j));
+  return reciprocal(inverse_of(c.inertia_i, size.mass_i, c.arm_i) +
+                    inverse_of(c.inertia_j, size.mass_j, c.arm_j));
 }
 
 // Elastic-plastic spring and dashpot, "EPSD": M' = k_r w while |M| < mu_r R* F_n, w the rolling rate; dashpot
@@ -39,14 +41,18 @@ struct ElasticPlasticRolling {
 
   // k_r [N m]; of_contact: stiffness of the contact [N/m].
   SCREE_HD Real stiffness_at(const PairSize& size, Real of_contact) const {
-    const Real arm = friction * size.effective_radius();
+    return stiffness_at(friction * size.effective_radius(), of_contact);
+  }
+  // arm: mu_r R* [m].
+  SCREE_HD Real stiffness_at(Real arm, Real of_contact) const {
     return stiffness + stiffness_factor * arm * arm * of_contact;
   }
   SCREE_HD SpringSlider slider(const RollingContact& c) const {
-    const Real k = stiffness_at(c.size, c.normal.stiffness), k0 = stiffness_at(c.size, c.normal.stiffness0);
+    const Real arm = friction * c.normal.effective_radius, k = stiffness_at(arm, c.normal.stiffness),
+               k0 = stiffness_at(arm, c.normal.stiffness0);
     const Real dashpot =
         damping_ratio > 0 ? dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k) : 0;
-    return {k, k0, dashpot, friction * c.size.effective_radius() * c.normal.friction_load};
+    return {k, k0, dashpot, arm * c.normal.friction_load};
   }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
     return spring_step(slider(c), old, c.motion.rolling, c.motion.h);

@@ -68,33 +68,35 @@ SCREE_HD Real spring_energy(Vec3 force, Real stiffness) {
   return stiffness > 0 ? dot(force, force) / (2 * stiffness) : 0;
 }
 
-// Mean over the overlap of a stiffness that grows over a step with the contact radius, that is with the root
-// of the overlap.
-SCREE_HD Real mean_stiffness(Real k0, Real k1) {
-  return Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * reciprocal(k1 + k0);
-}
-
 // Effect of a change of the stiffness on a spring over a step.
 struct StiffnessStep {
   Real step_stiffness;  // force per displacement [N/m]
   Real remaining;       // fraction of the old force that remains [-]
+  Real inverse0;        // 1 / k0 where k shrinks
 };
+// One reciprocal for both directions: in a warp some contacts grow and others shrink.
 SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
-  if (p.stiffness > p.stiffness0) return {mean_stiffness(p.stiffness0, p.stiffness), 1};
-  if (p.stiffness < p.stiffness0) return {p.stiffness, p.stiffness * reciprocal(p.stiffness0)};
-  return {p.stiffness, 1};
+  const Real k0 = p.stiffness0, k1 = p.stiffness;
+  const bool grows = k1 > k0, shrinks = k1 < k0;
+  if (!grows && !shrinks) return {k1, 1, 0};
+  const Real inverse = reciprocal(grows ? k1 + k0 : k0);
+  // Where it grows, the mean over the overlap of a stiffness in proportion to the contact radius, that is to
+  // the root of the overlap.
+  return {grows ? Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * inverse : k1, grows ? 1 : k1 * inverse,
+          inverse};
 }
 
 // Energy that a change of the stiffness dissipates [J]: `spring_energy()` before and after the step, less the
 // work of the displacement at the effective stiffness.
 SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3 old, Vec3 spring) {
-  if (p.stiffness < p.stiffness0) return dot(old, old) / 2 * (1 - k.remaining) * reciprocal(p.stiffness0);
-  if (!(p.stiffness > p.stiffness0)) return 0;
+  const bool grows = p.stiffness > p.stiffness0, shrinks = p.stiffness < p.stiffness0;
+  if (!grows && !shrinks) return 0;
+  const Real before = dot(old, old);
+  if (shrinks) return before / 2 * (1 - k.remaining) * k.inverse0;
   const Real after =
       dot(spring, spring) * (p.stiffness - k.step_stiffness) * reciprocal(p.stiffness * k.step_stiffness);
   if (!(p.stiffness0 > 0)) return after / 2;
-  return (after +
-          dot(old, old) * (k.step_stiffness - p.stiffness0) * reciprocal(p.stiffness0 * k.step_stiffness)) /
+  return (after + before * (k.step_stiffness - p.stiffness0) * reciprocal(p.stiffness0 * k.step_stiffness)) /
          2;
 }
 

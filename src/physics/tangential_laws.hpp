@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/hd.hpp"
+#include "base/root.hpp"
 #include "physics/contact_geometry.hpp"
 #include "physics/contact_parameters.hpp"
 #include "physics/contact_parts.hpp"
@@ -21,13 +22,13 @@ namespace scree {
 
 // Effective mass of the slip: 1/m_t = 1/m* + R_i^2/I_i + R_j^2/I_j [kg]; 2/7 of m* for spheres.
 SCREE_HD Real slip_mass(const PairSize& size, const ContactMotion& c) {
-  return 1 / ((1 / size.mass_i + 1 / size.mass_j) +
-              (c.arm_i * c.arm_i / c.inertia_i + c.arm_j * c.arm_j / c.inertia_j));
+  return inverse((inverse(size.mass_i) + inverse(size.mass_j)) +
+                 (quotient(c.arm_i * c.arm_i, c.inertia_i) + quotient(c.arm_j * c.arm_j, c.inertia_j)));
 }
 
 // Dashpot of a damping ratio, 2 zeta sqrt(m k) [N s/m].
 SCREE_HD Real dashpot_of(Real damping_ratio, Real mass, Real stiffness) {
-  return 2 * damping_ratio * std::sqrt(mass * stiffness);
+  return 2 * damping_ratio * root(mass * stiffness);
 }
 
 // Tangential dashpot [N s/m]; skipped without damping, as in most runs.
