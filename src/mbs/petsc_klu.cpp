@@ -10,12 +10,6 @@ namespace {
 
 constexpr PetscErrorCode kSuccess{};
 
-PetscErrorCode factors_of(Mat factor, KluFactors** factors) {
-  PetscFunctionBegin;
-  PetscCall(MatShellGetContext(factor, factors));
-  PetscFunctionReturn(kSuccess);
-}
-
 // The name under which a matrix carries its pattern.
 constexpr const char* kPattern = "scree_pattern";
 
@@ -140,6 +134,12 @@ PetscErrorCode make_factor(Mat matrix, MatFactorType type, Mat* factor) {
 }
 
 }  // namespace
+
+PetscErrorCode factors_of(Mat factor, KluFactors** factors) {
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(factor, factors));
+  PetscFunctionReturn(kSuccess);
+}
 
 PetscErrorCode attach_pattern(Mat matrix, const SparsePattern& pattern) {
   PetscContainer container = nullptr;

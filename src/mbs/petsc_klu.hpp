@@ -8,6 +8,8 @@
 
 namespace scree {
 
+class KluFactors;
+
 inline constexpr const char* kKluRefactor = "klu_refactor";
 
 // Registers the package with PETSc, for LU of sequential matrices. It takes the options of PETSc's own
@@ -17,5 +19,8 @@ PetscErrorCode register_klu_refactor();
 
 // Attaches the matrix' own pattern, which marks its weak diagonals and must outlive it.
 PetscErrorCode attach_pattern(Mat matrix, const SparsePattern& pattern);
+
+// The factors behind a factor matrix of this package, which owns them.
+PetscErrorCode factors_of(Mat factor, KluFactors** factors);
 
 }  // namespace scree

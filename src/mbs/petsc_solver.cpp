@@ -12,6 +12,7 @@
 #include "mbs/petsc_session.hpp"
 #include "mbs/single_solution.hpp"
 #if SCREE_REFACTORS
+#include "mbs/klu_factors.hpp"
 #include "mbs/petsc_klu.hpp"
 #endif
 
@@ -123,6 +124,12 @@ struct PetscSolver::Impl {
   void choose_package();
   bool is_available(const char* package);
   bool solve(bool refactor);
+  bool solve_by_petsc(bool refactor);
+  bool is_finite() const;
+#if SCREE_REFACTORS
+  bool solve_directly(bool refactor);
+  void find_factors();
+#endif
   void multiply(bool back);
   static std::string likely_description();
 
@@ -132,6 +139,10 @@ struct PetscSolver::Impl {
   Vec rhs_vector = nullptr, solution_vector = nullptr;
   KSP solver = nullptr;
   PC preconditioner = nullptr;  // owned by the solver
+#if SCREE_REFACTORS
+  KluFactors* factors =
+      nullptr;  // of the solver; null while it has none, or where PETSc must do each solution
+#endif
 };
 
 PetscSolver::Impl::~Impl() {
@@ -231,8 +242,21 @@ bool PetscSolver::solve(bool refactor) {
   return solved;
 }
 
+bool PetscSolver::Impl::is_finite() const {
+  bool finite = true;
+  for (const Real x : solution) finite = finite && std::isfinite(x);
+  return finite;
+}
+
 bool PetscSolver::Impl::solve(bool refactor) {
   if (solver == nullptr) return solve_once(pattern, values, rhs, solution);
+#if SCREE_REFACTORS
+  if (factors != nullptr) return solve_directly(refactor);
+#endif
+  return solve_by_petsc(refactor);
+}
+
+bool PetscSolver::Impl::solve_by_petsc(bool refactor) {
   // Taking and returning an array tells PETSc that its contents changed.
   Real* array = nullptr;
   if (refactor) {
@@ -250,10 +274,39 @@ bool PetscSolver::Impl::solve(bool refactor) {
   check(KSPSolve(solver, rhs_vector, solution_vector));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(solver, &reason));
-  bool finite = true;
-  for (const Real x : solution) finite = finite && std::isfinite(x);
-  return reason > 0 && finite;
+#if SCREE_REFACTORS
+  find_factors();
+#endif
+  return reason > 0 && is_finite();
 }
+
+#if SCREE_REFACTORS
+// With the defaults a solution is one with the factors, and the calls of PETSc around it take longer than the
+// factors of a small matrix need. Options of the user act within these calls.
+void PetscSolver::Impl::find_factors() {
+  char* options = nullptr;
+  check(PetscOptionsGetAll(nullptr, &options));
+  const bool given = std::string(options).find(fmt::format("-{}", kPrefix)) != std::string::npos;
+  check(PetscFree(options));
+  MatSolverType package = nullptr;
+  check(PCFactorGetMatSolverType(preconditioner, &package));
+  if (given || package == nullptr || package != std::string(kKluRefactor)) return;
+  Mat factor = nullptr;
+  check(PCFactorGetMatrix(preconditioner, &factor));
+  check(factors_of(factor, &factors));
+}
+
+bool PetscSolver::Impl::solve_directly(bool refactor) {
+  if (refactor) {
+    const KluFactors::Result result = factors->factor(values);
+    if (result == KluFactors::Result::singular) return false;
+    if (result == KluFactors::Result::out_of_memory) throw SimulationError("KLU, rank 0: out of memory");
+  }
+  std::copy(rhs.begin(), rhs.end(), solution.begin());
+  if (!factors->solve(solution)) throw SimulationError("KLU, rank 0: it cannot solve");
+  return is_finite();
+}
+#endif
 
 // Description of a solver without a session, by PETSc's configuration and the order of the packages.
 std::string PetscSolver::Impl::likely_description() {
