@@ -193,7 +193,7 @@ const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state,
 bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Real> values,
                               std::span<Real> rhs) {
   const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
-  system_.evaluate(at, terms_);
+  system_.evaluate_forces(at, terms_);  // Phi_q is that of the state's position
   if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
   const std::vector<Real> zero(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement

@@ -60,19 +60,28 @@ void JointForce::find_coordinates() {
   for (std::size_t i = 0; i < hessian_.size(); ++i) coordinates_.push_back(hessian_.column(i));
   std::sort(coordinates_.begin(), coordinates_.end());
   coordinates_.erase(std::unique(coordinates_.begin(), coordinates_.end()), coordinates_.end());
+  in_gradient_ = local_indices(gradient_), in_hessian_ = local_indices(hessian_);
+  for (RotationColumns& turn : rotations_) {
+    const auto found = std::find(coordinates_.begin(), coordinates_.end(), turn.first);
+    turn.is_read = found != coordinates_.end();
+    turn.at = scree::at(static_cast<int>(found - coordinates_.begin()));
+  }
 }
 
-std::size_t JointForce::local_index(int coordinate) const {
-  return scree::at(static_cast<int>(std::lower_bound(coordinates_.begin(), coordinates_.end(), coordinate) -
-                                    coordinates_.begin()));
+std::vector<std::size_t> JointForce::local_indices(const SparseTerm& term) const {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < term.size(); ++i)
+    indices.push_back(scree::at(static_cast<int>(
+        std::lower_bound(coordinates_.begin(), coordinates_.end(), term.column(i)) - coordinates_.begin())));
+  return indices;
 }
 
 // A rotation in space has all three of its columns among the coordinates, or none.
 void JointForce::pull_back(const BodyPoses& poses) {
   displaced_ = along_;
   for (const RotationColumns& turn : rotations_) {
-    const std::size_t k = local_index(turn.first);
-    if (k == coordinates_.size() || coordinates_[k] != turn.first) continue;
+    if (!turn.is_read) continue;
+    const std::size_t k = turn.at;
     const Vec3 g =
         transposed_times(poses.spatial[turn.body].inverse_tangent, {along_[k], along_[k + 1], along_[k + 2]});
     displaced_[k] = g.x, displaced_[k + 1] = g.y, displaced_[k + 2] = g.z;
@@ -88,11 +97,9 @@ void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at
   coordinate_->hessian(poses, &one, hessian_);
   if (coordinates_.empty()) find_coordinates();
   along_.assign(coordinates_.size(), 0), rotation_rate_.assign(coordinates_.size(), 0);
-  for (std::size_t i = 0; i < gradient_.size(); ++i)
-    along_[local_index(gradient_.column(i))] += gradient_.value(i);
+  for (std::size_t i = 0; i < gradient_.size(); ++i) along_[in_gradient_[i]] += gradient_.value(i);
   for (std::size_t i = 0; i < hessian_.size(); ++i) {
-    rotation_rate_[local_index(hessian_.column(i))] +=
-        hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
+    rotation_rate_[in_hessian_[i]] += hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
     stiffness.add(hessian_.row(i), hessian_.column(i), -effort_.effort * hessian_.value(i));
   }
   pull_back(poses);

@@ -30,7 +30,7 @@ class JointForce {
   JointForce(std::string name, std::unique_ptr<Constraint> coordinate, std::unique_ptr<JointLaw> law);
 
   // Adds a body of the joint with spatial rotation, whose three columns begin at `column`.
-  void rotates_in_space(int body, int column) { rotations_.push_back({body, column}); }
+  void rotates_in_space(int body, int column) { rotations_.push_back({body, column, 0, false}); }
 
   // Sets the rows of Phi whose multipliers are the components of the force that the joint transmits, along
   // perpendicular axes.
@@ -78,10 +78,12 @@ class JointForce {
  private:
   Real load_of(const SystemInstant& at) const;
   void find_coordinates();
-  std::size_t local_index(int coordinate) const;
+  std::vector<std::size_t> local_indices(const SparseTerm& term) const;
   void pull_back(const BodyPoses& poses);
   struct RotationColumns {
     int body, first;
+    std::size_t at = 0;    // of its first coordinate among coordinates_
+    bool is_read = false;  // c depends on it
   };
 
   std::string name_;
@@ -100,6 +102,7 @@ class JointForce {
   SparseTerm gradient_;
   // Scratch of add_derivatives(): the coordinates that c depends on, and g, H^T v and T^-T g there.
   std::vector<int> coordinates_;
+  std::vector<std::size_t> in_gradient_, in_hessian_;  // the coordinates of their entries, by column
   std::vector<Real> along_, rotation_rate_, displaced_;
   SparseTerm hessian_;
 };

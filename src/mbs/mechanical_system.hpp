@@ -79,6 +79,8 @@ class MechanicalSystem {
 
   // terms: the same object in every call; constant terms are written once.
   virtual void evaluate(const SystemInstant& at, SystemTerms& terms) = 0;
+  // The forces of evaluate() alone, where Phi_q is already that of the positions.
+  virtual void evaluate_forces(const SystemInstant& at, SystemTerms& terms) { evaluate(at, terms); }
   // Derivatives at the instant of the last evaluate().
   virtual void differentiate(const SystemInstant& at, const SystemIterate& iterate,
                              SystemDerivatives& derivatives) = 0;

@@ -66,7 +66,7 @@ struct Multibody::Impl {
   void open_step(const MultibodyState& state, Real t, Real h) {
     const SystemInstant at{t, state.position, state.velocity, &state.multipliers, &state.acceleration};
     if (!system.joint_forces().empty())
-      system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
+      system.joint_forces().open_step(system.passing_poses(at), at, h, state.memory);
   }
   void solve_acceleration(MultibodyState& state, Real t);
   MultibodyState state_after(const MultibodyState& state, Real tau) const;

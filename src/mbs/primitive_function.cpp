@@ -63,6 +63,12 @@ Real primitive_rate(const PrimitiveFunction& primitive, const SpatialMotion& mot
 
 void add_block(SparseTerm& term, int row, int column, const Mat3& block) {
   if (row < 0 || column < 0) return;
+  if (Real* const out = term.next(9)) {
+    const Vec3 rows[] = {block.x, block.y, block.z};
+    for (std::size_t i = 0; i < 3; ++i)
+      out[3 * i] = rows[i].x, out[3 * i + 1] = rows[i].y, out[3 * i + 2] = rows[i].z;
+    return;
+  }
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) term.add(row + i, column + j, component(row_of(block, i), j));
 }
@@ -72,7 +78,12 @@ void add_gradient(const PrimitiveFunction& primitive, const PairGradient& gradie
   for (int k = 0; k < 4; ++k) {
     const int column = primitive.column(k);
     if (column < 0 || !primitive.has_block(k)) continue;
-    for (int j = 0; j < 3; ++j) out.add(row, column + j, component(gradient[static_cast<std::size_t>(k)], j));
+    const Vec3 block = gradient[static_cast<std::size_t>(k)];
+    if (Real* const values = out.next(3)) {
+      values[0] = block.x, values[1] = block.y, values[2] = block.z;
+      continue;
+    }
+    for (int j = 0; j < 3; ++j) out.add(row, column + j, component(block, j));
   }
 }
 

@@ -139,6 +139,7 @@ void RigidBodySystem::add_group(ConstraintGroup group, std::vector<std::unique_p
   group.kind = kind, group.body = joint.body[0], group.marker = joint.marker[0];
   group.first = static_cast<int>(constraints_.size()), group.first_row = constraints();
   for (std::unique_ptr<Constraint>& part : parts) {
+    if (group.drives) drivers_.push_back(constraints_.size());
     first_row_.push_back(constraints());
     for (int row = 0; row < part->rows(); ++row) {
       is_angle_.push_back(part->is_angle());
@@ -153,6 +154,15 @@ void RigidBodySystem::add_group(ConstraintGroup group, std::vector<std::unique_p
 }
 
 void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
+  evaluate_forces(at, terms);
+  terms.constraint_jacobian.begin();
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->value(poses_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
+    constraints_[i]->jacobian(poses_, first_row_[i], terms.constraint_jacobian);
+  }
+}
+
+void RigidBodySystem::evaluate_forces(const SystemInstant& at, SystemTerms& terms) {
   set_poses(at.position, at.velocity, poses_);
   if (terms.mass.size() == 0) {  // it is constant
     terms.mass.begin();
@@ -169,11 +179,6 @@ void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   for (const auto& kind : kinds_)
     terms.force_scale = std::max({terms.force_scale, kind->add_inertial_force(poses_, terms.applied_force),
                                   kind->add_contact(poses_, wrench_, length_scale_, terms.applied_force)});
-  terms.constraint_jacobian.begin();
-  for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    constraints_[i]->value(poses_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
-    constraints_[i]->jacobian(poses_, first_row_[i], terms.constraint_jacobian);
-  }
 }
 
 void RigidBodySystem::set_contacts(const ContactWrenches& contacts) {
@@ -260,6 +265,11 @@ BodyPoses RigidBodySystem::poses_at(const SystemInstant& at) const {
   return poses;
 }
 
+const BodyPoses& RigidBodySystem::passing_poses(const SystemInstant& at) {
+  set_poses(at.position, at.velocity, scratch_);
+  return scratch_;
+}
+
 void RigidBodySystem::velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->velocity_rhs(at.time, &rhs[static_cast<std::size_t>(first_row_[i])]);
@@ -282,10 +292,10 @@ std::string RigidBodySystem::constraint_name(int constraint) const {
 }
 
 Powers RigidBodySystem::powers(const SystemInstant& at, const std::vector<Real>& multipliers) {
-  set_poses(at.position, at.velocity, scratch_);
   Powers powers;
+  if (!elements_.empty()) set_poses(at.position, at.velocity, scratch_);
   for (const auto& element : elements_) element->add_powers(scratch_, at.time, powers);
-  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+  for (const std::size_t i : drivers_) {
     powers.drivers += constraints_[i]->power(at.time, &multipliers[static_cast<std::size_t>(first_row_[i])]);
   }
   return powers;

@@ -45,6 +45,7 @@ class RigidBodySystem final : public MechanicalSystem {
   int coordinates() const override { return layout_.columns(); }
   int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override;
+  void evaluate_forces(const SystemInstant& at, SystemTerms& terms) override;
   void differentiate(const SystemInstant& at, const SystemIterate& iterate,
                      SystemDerivatives& derivatives) override;
   void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
@@ -94,6 +95,8 @@ class RigidBodySystem final : public MechanicalSystem {
 
   // Poses of any instant, without use of earlier evaluations.
   BodyPoses poses_at(const SystemInstant& at) const;
+  // The same, valid until the next call of this or of powers().
+  const BodyPoses& passing_poses(const SystemInstant& at);
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
   // memory: as in the state.
   Real elastic_energy(const SystemInstant& at, const std::vector<Real>& memory) const;
@@ -142,9 +145,10 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<BodyWrench> wrench_;
   std::vector<PairStiffness> pairs_;
   std::vector<std::unique_ptr<Constraint>> constraints_;
-  std::vector<int> first_row_;  // per constraint object
-  std::vector<bool> is_angle_;  // per row
-  std::vector<int> group_;      // per row
+  std::vector<int> first_row_;        // per constraint object
+  std::vector<std::size_t> drivers_;  // the constraint objects whose f may depend on time
+  std::vector<bool> is_angle_;        // per row
+  std::vector<int> group_;            // per row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
   std::size_t springs_ = 0;                      // number of spring-dampers, the first of elements_

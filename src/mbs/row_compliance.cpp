@@ -24,19 +24,28 @@ RowCompliance::RowCompliance(const SparseTerm& jacobian, const SparseTerm& inver
     coordinates = std::max(coordinates, inverse_mass.row(i) + 1);
   const Entries of_constraint = entries_by_row(jacobian, of_row_.size()),
                 of_coordinate = entries_by_row(inverse_mass, static_cast<std::size_t>(coordinates));
-  for (std::size_t row = 0; row < of_constraint.size(); ++row)
+  first_.push_back(0);
+  for (std::size_t row = 0; row < of_constraint.size(); ++row) {
     for (const std::size_t one : of_constraint[row])
       for (const std::size_t m : of_coordinate[static_cast<std::size_t>(jacobian.column(one))])
         for (const std::size_t other : of_constraint[row])
-          if (jacobian.column(other) == inverse_mass.column(m))
-            products_.push_back(
-                {static_cast<int>(row), one, other, kRelativeCompliance * inverse_mass.value(m)});
+          if (jacobian.column(other) == inverse_mass.column(m) && inverse_mass.value(m) != 0)
+            products_.push_back({static_cast<int>(one), static_cast<int>(other),
+                                 kRelativeCompliance * inverse_mass.value(m)});
+    first_.push_back(products_.size());
+  }
 }
 
 void RowCompliance::update(const SparseTerm& jacobian) {
-  std::fill(of_row_.begin(), of_row_.end(), 0);
-  for (const Product& p : products_)
-    of_row_[static_cast<std::size_t>(p.row)] += p.weight * jacobian.value(p.one) * jacobian.value(p.other);
+  for (std::size_t row = 0; row < of_row_.size(); ++row) {
+    Real sum = 0;
+    for (std::size_t i = first_[row]; i < first_[row + 1]; ++i) {
+      const Product& p = products_[i];
+      sum += p.weight * jacobian.value(static_cast<std::size_t>(p.one)) *
+             jacobian.value(static_cast<std::size_t>(p.other));
+    }
+    of_row_[row] = sum;
+  }
 }
 
 }  // namespace scree

@@ -28,11 +28,11 @@ class RowCompliance {
 
  private:
   struct Product {
-    int row;
-    std::size_t one, other;  // entries of the Jacobian
-    Real weight;             // eps times the corresponding entry of M^-1
+    int one, other;  // entries of the Jacobian
+    Real weight;     // eps times the corresponding entry of M^-1, other than 0
   };
-  std::vector<Product> products_;
+  std::vector<Product> products_;   // row by row
+  std::vector<std::size_t> first_;  // of every row, and their number
   std::vector<Real> of_row_;
 };
 

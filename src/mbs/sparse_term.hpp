@@ -41,6 +41,14 @@ class SparseTerm {
     cursor_ += n * n;
   }
 
+  // The values of the next n entries, to be written; null in the first filling, which takes add() alone.
+  Real* next(std::size_t n) {
+    if (recording_) return nullptr;
+    Real* out = values_.data() + cursor_;
+    cursor_ += n;
+    return out;
+  }
+
   std::size_t size() const { return values_.size(); }
   int row(std::size_t i) const { return rows_[i]; }
   int column(std::size_t i) const { return columns_[i]; }
