@@ -225,7 +225,9 @@ struct OpenStepQuery {
   }
 };
 
-// Entries of one surface on a body, by_surface[first ... end - 1], which one thread block evaluates and sums.
+// Entries of one surface on a body, by_surface[first ... end - 1], which one thread block evaluates and sums;
+// at most kChunkEntries.
+inline constexpr int kChunkEntries = 128;
 struct SurfaceChunk {
   Index surface;  // number among the surfaces on bodies
   Index first, end;

@@ -128,9 +128,10 @@ struct GroupItem {
   }
 };
 
-constexpr int kTouchThreads = 128;
-constexpr int kTouchBlocks = 4;    // blocks per multiprocessor: with more, registers spill
+constexpr int kTouchThreads = 64;
+constexpr int kTouchBlocks = 6;    // blocks per multiprocessor: with more, registers spill
 constexpr int kLanesPerGroup = 8;  // rows have about ten triangles
+constexpr Index kTeams = kTouchThreads / kLanesPerGroup;
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // Contacts at an instant.
@@ -138,55 +139,58 @@ struct StateQuery {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Most particles keep their contact of the last step, which is cheap to confirm. Those of a block that must
-// search their triangles are redistributed over its lanes, so that no warp waits for a few of its lanes:
-// smooth rows by lane groups, each of which searches one row of triangles together; the full search of other
-// rows by single lanes.
+// Groups, and how many of them a block has: where they are few, no more than it has teams, because the time
+// is then that of one search; where they are many, as many more as let all blocks run at once.
+struct TouchShares {
+  Index groups, per_block;
+
+  TouchShares(Index of, Index multiprocessors) : groups(of) {
+    const Index searched_at_once = multiprocessors * kTouchBlocks * kTeams,
+                rounds = (of + searched_at_once - 1) / searched_at_once;
+    per_block = std::min<Index>(rounds * kTeams, kTouchThreads);
+  }
+};
+
+// Most particles keep their contact of the last step, which one thread confirms. Groups of a block whose
+// triangles must be searched are redistributed over teams of lanes, so that no warp waits for a few of its
+// lanes.
 template <bool kHasRange, bool kOpenSurfaces, class Query>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
-    touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Query query,
+    touch_kernel(const TouchShares shares, const __grid_constant__ SurfaceViews views, const Query query,
                  MeshTouch* touches, CachedContact* cached_contacts) {
   __shared__ TouchRecords::Shared shared;
-  // Groups of triangles that must be searched: those for lane groups from the front, those for single lanes
-  // from the back.
-  __shared__ Index pending[kTouchThreads], for_lane_groups, for_lanes;
+  __shared__ Index pending[kTouchThreads], pending_count;
   SurfaceViews now = views;
   if (!query.open(now)) return;
-  if (threadIdx.x == 0) for_lane_groups = for_lanes = 0;
+  const auto thread = static_cast<Index>(threadIdx.x);
+  if (thread == 0) pending_count = 0;
   __syncthreads();
   const MeshTouchItem<kHasRange, kOpenSurfaces> item{now, touches, cached_contacts};
   const TouchRecords records(shared);
-  const Index g = thread_index();
+  const Index g = static_cast<Index>(blockIdx.x) * shares.per_block + thread;
   Index entry = -1;
-  if (g < groups) {
+  if (thread < shares.per_block && g < shares.groups) {
     const Nearest found = item.use_cached(g, records.own());
-    const MeshGroup& group = now.meshes.groups[g];
-    if (found == Nearest::one) entry = group.entry;
-    if (found == Nearest::unclear) {
-      const bool smooth = group.kind == RowKind::smooth;
-      pending[smooth ? atomicAdd(&for_lane_groups, 1) : kTouchThreads - 1 - atomicAdd(&for_lanes, 1)] = g;
-    }
+    if (found == Nearest::one) entry = now.meshes.groups[g].entry;
+    if (found == Nearest::unclear) pending[atomicAdd(&pending_count, 1)] = g;
   }
   records.store(touches, entry);
   __syncthreads();
-  const auto thread = static_cast<Index>(threadIdx.x);
-  if (thread < for_lanes) item.query(pending[kTouchThreads - 1 - thread], SingleLane{});
-  using LaneGroup = LaneTeam<kLanesPerGroup>;
-  for (Index k = thread / kLanesPerGroup; k < for_lane_groups; k += kTouchThreads / kLanesPerGroup)
-    item.query(pending[k], LaneGroup{});
+  for (Index k = thread / kLanesPerGroup; k < pending_count; k += kTeams)
+    item.query(pending[k], LaneTeam<kLanesPerGroup>{});
 }
 
 template <bool kOpenSurfaces, class Query>
-void queue_touches(Device device, Index groups, const SurfaceViews& views, const Query& query,
+void queue_touches(Device device, const TouchShares& shares, const SurfaceViews& views, const Query& query,
                    MeshTouch* touches, CachedContact* cached_contacts) {
-  if (groups == 0) return;
-  const unsigned blocks = blocks_for(groups, kTouchThreads);
+  if (shares.groups == 0) return;
+  const unsigned blocks = blocks_for(shares.groups, shares.per_block);
   if (views.interaction_range > 0)
     touch_kernel<true, kOpenSurfaces>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, cached_contacts);
+        <<<blocks, kTouchThreads, 0, device.stream>>>(shares, views, query, touches, cached_contacts);
   else
     touch_kernel<false, kOpenSurfaces>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, query, touches, cached_contacts);
+        <<<blocks, kTouchThreads, 0, device.stream>>>(shares, views, query, touches, cached_contacts);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
@@ -316,16 +320,20 @@ void DeviceMeshes::reserve_over_step(Index entries) {
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
   if (open_surfaces_)
-    queue_touches<true>(device, count_, views, StateQuery{}, touches_.data(), cached_contacts_.data());
+    queue_touches<true>(device, {count_, multiprocessors_}, views, StateQuery{}, touches_.data(),
+                        cached_contacts_.data());
   else
-    queue_touches<false>(device, count_, views, StateQuery{}, touches_.data(), cached_contacts_.data());
+    queue_touches<false>(device, {count_, multiprocessors_}, views, StateQuery{}, touches_.data(),
+                         cached_contacts_.data());
 }
 
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query) {
   if (open_surfaces_)
-    queue_touches<true>(device, count_, views, query, touches_.data(), cached_contacts_.data());
+    queue_touches<true>(device, {count_, multiprocessors_}, views, query, touches_.data(),
+                        cached_contacts_.data());
   else
-    queue_touches<false>(device, count_, views, query, touches_.data(), cached_contacts_.data());
+    queue_touches<false>(device, {count_, multiprocessors_}, views, query, touches_.data(),
+                         cached_contacts_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

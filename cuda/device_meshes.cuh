@@ -110,6 +110,7 @@ class DeviceMeshes {
   DeviceArray<MeshView> views_;
   SurfaceSet surfaces_;
   bool open_surfaces_;
+  Index multiprocessors_ = static_cast<Index>(multiprocessors());
   std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
   Index count_ = 0;               // number of groups
   DeviceArray<CellsNear> cells_;

@@ -10,7 +10,6 @@ namespace scree {
 namespace {
 
 constexpr int kSearchThreads = 128;
-constexpr Index kChunk = 128;  // entries
 
 // Input of the search for surfaces near particles.
 struct EntrySearch {
@@ -239,8 +238,8 @@ void DeviceSurfaces::group_by_surface(Device device) {
   placed_entries_ = starts[static_cast<std::size_t>(placed_count_)];
   h_chunks_.clear();
   for (Index s = 0; s < placed_count_; ++s)
-    for (Index first = starts[s]; first < starts[s + 1]; first += kChunk)
-      h_chunks_.push_back({s, first, std::min(first + kChunk, starts[s + 1])});
+    for (Index first = starts[s]; first < starts[s + 1]; first += kChunkEntries)
+      h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
   for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
   steps_.resize(entries);

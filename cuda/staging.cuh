@@ -83,6 +83,8 @@ class WarpRecords {
       : records_(reinterpret_cast<T*>(shared.bytes) + threadIdx.x / warpSize * warpSize) {}
 
   __device__ T& own() const { return records_[lane()]; }
+  // Another lane's record, after store().
+  __device__ const T& of(Index lane) const { return records_[lane]; }
   // All lanes of a warp call this: the lane's record is written to to[at]; at = -1: the lane has none.
   __device__ void store(T* to, Index at) const {
     static_assert(sizeof(T) % sizeof(double) == 0);

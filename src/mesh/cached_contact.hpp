@@ -46,8 +46,9 @@ struct CachedContactRow {
   Real search_range;
   LaneGroup team{};
 
-  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `search_range` or,
-  // on a smooth row, farther away than the plane of t.
+  // Safe displacement over triangle t, from outside. Other triangles must stay beyond `search_range`; or, on
+  // a smooth row, farther away than the plane of t; or, on another row, c outside the regions of their
+  // features.
   SCREE_HD CachedContact over(Index t) const {
     const MeshTriangle& triangle = mesh.triangles[t];
     const MeshPart& part = mesh.parts[triangle.part];
@@ -97,6 +98,9 @@ struct CachedContactRow {
   SCREE_HD static void shrink(Real& safe_distance, Real to) {
     if (!(safe_distance < to)) safe_distance = to;
   }
+  SCREE_HD static void grow(Real& safe_distance, Real to) {
+    if (safe_distance < to) safe_distance = to;
+  }
   SCREE_HD CachedContact cached(Real safe_distance, Index t) const {
     const Real sure = safe_distance - mesh_detail::uncertainty(mesh);
     return {c, sure > 0 ? sure : 0, t, t < 0 ? -1 : mesh.triangles[t].part};
@@ -132,11 +136,56 @@ struct CachedContactRow {
       if (!(farther < enough) && !(same_side < enough)) return farther;
     }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_range = away - search_range;
-    if (kind == RowKind::any) return beyond_range;
+    if (kind == RowKind::any)
+      return beyond_range < enough && other.features > 0 ? outside_regions(other, below, beyond_range)
+                                                         : beyond_range;
     const Real by_distance = Real(0.5) * (away - below.distance);
     if (farther < by_distance) farther = by_distance;
     shrink(farther, same_side);
     return farther > beyond_range ? farther : beyond_range;
+  }
+  // Displacement of c for which it stays outside the regions in which a search finds the face and the edges
+  // and vertices of another triangle, or beyond their reach; at least `least`.
+  SCREE_HD Real outside_regions(const MeshTriangle& other, const Below& below, Real least) const {
+    Real safe_distance = beside_face(other, below);
+    for (Index row = other.first_feature; row < other.first_feature + other.features; ++row) {
+      const MeshFeature& feature = mesh.features[row];
+      shrink(safe_distance, feature.b < 0 ? outside_vertex(feature) : outside_edge(feature));
+    }
+    return safe_distance > least ? safe_distance : least;
+  }
+  // Beyond one of its edges; or under it, inside a closed mesh, and deeper than c is over the plane below.
+  SCREE_HD Real beside_face(const MeshTriangle& other, const Below& below) const {
+    const MeshPart& part = mesh.parts[other.part];
+    const Real height = dot(c - part.point, part.normal);
+    Real most = !mesh.sheet && height < 0 ? Real(0.5) * (-height - below.distance) : 0;
+    for (int k = 0; k < 3; ++k) grow(most, -edge_of(other, part.normal, k).inside);
+    return most;
+  }
+  // Past one of its ends, or over one of its faces.
+  SCREE_HD Real outside_edge(const MeshFeature& edge) const {
+    const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
+    const Real along = dot(d, e), square = dot(e, e);
+    Real most = along - square > -along ? along - square : -along;
+    for (Index i = edge.first_test; i < edge.first_test + edge.tests; ++i) {
+      const Index test = mesh.tests[i];
+      const Real left = left_of_edge(d, e, mesh.parts[test < 0 ? ~test : test].normal);
+      grow(most, test < 0 ? -left : left);
+    }
+    most /= std::sqrt(square);
+    grow(most, std::sqrt(squared_distance(a, b, c)) - search_range);
+    return most;
+  }
+  // Along one of its edges, by more than the tolerance of cone_of_vertex().
+  SCREE_HD Real outside_vertex(const MeshFeature& vertex) const {
+    const Vec3 v = mesh.vertices[vertex.a], d = c - v;
+    Real most = std::sqrt(dot(d, d)) - search_range;
+    for (Index i = vertex.first_test; i < vertex.first_test + vertex.tests; ++i) {
+      const Vec3 e = mesh.vertices[mesh.tests[i]] - v;
+      const Real tolerance = mesh_detail::kWeakRoundOff * rough_length(e) + 8 * mesh.flatness;
+      grow(most, (dot(d, e) - rough_length(d) * tolerance) / (std::sqrt(dot(e, e)) + 2 * tolerance));
+    }
+    return most;
   }
   // Displacement of c for which a triangle beyond an edge stays farther away than the plane below; 0: it is
   // beyond no edge. Derived in src/mesh/README.md, "Cached narrow-phase queries".

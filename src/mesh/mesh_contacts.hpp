@@ -292,11 +292,10 @@ class MeshContactSearch : TriangleQuery<MeshContactSearch> {
   SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real search_range, MeshContact* out)
       : TriangleQuery(mesh, c, search_range), out_(out) {}
 
-  // likely: a triangle that c may be over; -1: unknown.
-  SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
-    if (MeshContact face; stays_over(mesh_, likely, c_, search_range_, face))
+  SCREE_HD int contacts_of(const TriangleRow& row) {
+    if (MeshContact face; stays_over(mesh_, row.likely, c_, search_range_, face))
       well_over_ = face.feature, add(face);
-    query_all(triangles, count);
+    query_all(row);
     const Real weak = other_findings_.nearest_round_off_vertex;
     const Real nearest = found_ > 0 && out_[0].distance < weak ? out_[0].distance : weak;
     if (is_inside(nearest)) {
@@ -306,16 +305,17 @@ class MeshContactSearch : TriangleQuery<MeshContactSearch> {
     const bool any_weak = weak < search_range_;
     keep();
     well_over_ = -1;  // its face may have been dropped
-    for (; left_out_ && kept_ < kMeshSlots; keep()) query_all(triangles, count);
-    if (any_weak && kept_ < kMeshSlots) add_weak(triangles, count);
+    for (; left_out_ && kept_ < kMeshSlots; keep()) query_all(row);
+    if (any_weak && kept_ < kMeshSlots) add_weak(row);
     return kept_;
   }
 
  private:
   // Finds the nearest candidates for the free slots, in order.
-  SCREE_HD void query_all(const Index* triangles, Index count) {
+  SCREE_HD void query_all(const TriangleRow& row) {
     left_out_ = false;
-    for (Index i = 0; i < count; ++i) query_triangle(triangles[i]);
+    for (Index i = 0; i < row.count; ++i)
+      if (row.is_chosen(i)) query_triangle(row.triangles[i]);
   }
 
   SCREE_HD Real range_at(const MeshPart&, Real) const { return search_range_; }
@@ -356,11 +356,11 @@ class MeshContactSearch : TriangleQuery<MeshContactSearch> {
   }
 
   // Adds vertices that are outside all regions by round-off, where nothing else counts.
-  SCREE_HD void add_weak(const Index* triangles, Index count) {
+  SCREE_HD void add_weak(const TriangleRow& row) {
     weak_pass_ = true;
     const int strict = kept_;
     do {
-      query_all(triangles, count);
+      query_all(row);
       keep();
     } while (left_out_ && kept_ < kMeshSlots);
     for (int i = strict; i < kept_; ++i) {
@@ -378,13 +378,12 @@ class MeshContactSearch : TriangleQuery<MeshContactSearch> {
 };
 
 // Finds the contacts less than `search_range` from c [m], in order of distance, type (face, edge, vertex) and
-// feature; the nearest kMeshSlots, if there are more. triangles: all that are within `search_range` of c;
-// further ones do not change the result. Returns the number of contacts; entries of `out` behind them are
-// undefined. Inside a closed mesh the only contact is the nearest face, with a negative distance. likely: a
-// triangle that c may be over; it affects the run time only.
-SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real search_range, const Index* triangles,
-                                Index count, MeshContact out[kMeshSlots], Index likely = -1) {
-  return MeshContactSearch(mesh, c, search_range, out).contacts_of(triangles, count, likely);
+// feature; the nearest kMeshSlots, if there are more. row: all triangles within `search_range` of c; further
+// ones do not change the result. Returns the number of contacts; entries of `out` behind them are undefined.
+// Inside a closed mesh the only contact is the nearest face, with a negative distance.
+SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real search_range, const TriangleRow& row,
+                                MeshContact out[kMeshSlots]) {
+  return MeshContactSearch(mesh, c, search_range, out).contacts_of(row);
 }
 
 }  // namespace scree

@@ -72,4 +72,17 @@ struct MeshView {
   Real flatness;   // largest distance of a part's vertices from its plane [m]
 };
 
+// The triangles near a sphere that a search reads.
+struct TriangleRow {
+  static constexpr Index kBits = 64;
+
+  const Index* triangles;
+  Index count;
+  Index likely = -1;  // a triangle that the centre may be over; -1: unknown. It affects the run time only
+  // Bit i: whether the i-th triangle is read; those beyond the bits always are.
+  std::uint64_t chosen = ~std::uint64_t{0};
+
+  SCREE_HD bool is_chosen(Index i) const { return i >= kBits || (chosen >> i & 1) != 0; }
+};
+
 }  // namespace scree

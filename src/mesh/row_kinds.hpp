@@ -72,32 +72,33 @@ SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, bool one_sided, co
 // Result of a search: no contact, one, or a case for find_mesh_contacts().
 enum class Nearest { none, one, unclear };
 
-// Search equivalent to find_mesh_contacts() for smooth rows: contacts from one side are one contact, so that
-// the nearest suffices, and no slots are needed for others. Unclear: contacts from both sides, or a result
-// that depends on round-off.
+// Search equivalent to find_mesh_contacts() where that has one contact at most, so that no slots are needed
+// for others. On a smooth row contacts from one side are one contact, and the nearest suffices; on other rows
+// a single feature counts. Unclear: contacts from both sides of a smooth row, several features of another
+// one, or a result that depends on round-off.
 class NearestContact : TriangleQuery<NearestContact> {
   friend TriangleQuery<NearestContact>;
 
  public:
-  SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real search_range)
-      : TriangleQuery(mesh, c, search_range) {}
+  SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real search_range, RowKind kind)
+      : TriangleQuery(mesh, c, search_range), kind_(kind) {}
 
-  // likely: as for find_mesh_contacts(). All lanes of the group get the same result.
+  // All lanes of the group get the same result.
   SCREE_HD_CALLER template <class LaneGroup>
-  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const LaneGroup& team,
-                        MeshContact& out) {
-    if (MeshContact face; stays_over(mesh_, likely, c_, search_range_, face))
+  SCREE_HD Nearest find(const TriangleRow& row, const LaneGroup& team, MeshContact& out) {
+    if (MeshContact face; stays_over(mesh_, row.likely, c_, search_range_, face))
       well_over_ = face.feature, best_ = face;
-    for (Index i = team.first(); i < count; i += team.stride()) query_triangle(triangles[i]);
-    take(team.reduce(Found{best_, other_findings_, both_sides_}, [&](const Found& a, const Found& b) {
+    for (Index i = team.first(); i < row.count; i += team.stride()) query_triangle(row.triangles[i]);
+    take(team.reduce(Found{best_, other_findings_, several_}, [&](const Found& a, const Found& b) {
       take(a), join(b);
-      return Found{best_, other_findings_, both_sides_};
+      return Found{best_, other_findings_, several_};
     }));
     // A vertex that counts but for round-off is one contact with the nearest feature, if it is on the same
     // side.
     const bool is_found = best_.feature >= 0;
     const Real weak = other_findings_.nearest_round_off_vertex;
-    if (both_sides_ != 0 || (weak < search_range_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
+    const bool weak_counts = kind_ == RowKind::any || mesh_.sheet || !is_found;
+    if (several_ != 0 || (weak < search_range_ && weak_counts)) return Nearest::unclear;
     if (is_inside(is_found && best_.distance < weak ? best_.distance : weak))
       return out = inside(), Nearest::one;
     if (!is_found) return Nearest::none;
@@ -108,19 +109,20 @@ class NearestContact : TriangleQuery<NearestContact> {
   struct Found {
     MeshContact best;
     OtherFindings beside;
-    std::int64_t both_sides;
+    std::int64_t several;
   };
   SCREE_HD void take(const Found& found) {
-    best_ = found.best, other_findings_ = found.beside, both_sides_ = found.both_sides;
+    best_ = found.best, other_findings_ = found.beside, several_ = found.several;
   }
   SCREE_HD void join(const Found& found) {
     if (found.best.feature >= 0) add(found.best);
-    other_findings_.add(found.beside), both_sides_ |= found.both_sides;
+    other_findings_.add(found.beside), several_ |= found.several;
   }
   SCREE_HD bool known(Index part, Index t) const { return best_.feature == part && best_.triangle <= t; }
   // Features on the side of the contact belong to the same contact, and count only if they are nearer.
   SCREE_HD Real range_at(const MeshPart& part, Real height) const {
-    if (best_.feature < 0 || (mesh_.sheet && (height < 0) != (dot(best_.normal, part.normal) < 0)))
+    if (kind_ == RowKind::any || best_.feature < 0 ||
+        (mesh_.sheet && (height < 0) != (dot(best_.normal, part.normal) < 0)))
       return search_range_;
     const Real nearer = best_.distance + mesh_.round_off;
     return nearer < search_range_ ? nearer : search_range_;
@@ -128,8 +130,9 @@ class NearestContact : TriangleQuery<NearestContact> {
   SCREE_HD void add(const MeshContact& contact) {
     if (best_.feature < 0) {
       best_ = contact;
-    } else if (!(dot(contact.normal, best_.normal) > 0)) {
-      both_sides_ = 1;
+    } else if (kind_ == RowKind::any ? contact.feature != best_.feature
+                                     : !(dot(contact.normal, best_.normal) > 0)) {
+      several_ = 1;
     } else if (contact.feature == best_.feature) {
       if (contact.triangle < best_.triangle) best_.triangle = contact.triangle;
     } else if (mesh_detail::comes_before(mesh_, contact, best_)) {
@@ -137,8 +140,46 @@ class NearestContact : TriangleQuery<NearestContact> {
     }
   }
 
+  RowKind kind_;
   MeshContact best_{-1, -1, 0, {}, {}};
-  std::int64_t both_sides_ = 0;  // 0 or 1
+  std::int64_t several_ = 0;  // 0 or 1: contacts that may not be one
 };
+
+// Whether a search finds anything at a triangle: a candidate, a vertex that counts but for round-off, or a
+// face behind the centre.
+class TriangleProbe : TriangleQuery<TriangleProbe> {
+  friend TriangleQuery<TriangleProbe>;
+
+ public:
+  SCREE_HD TriangleProbe(const MeshView& mesh, Vec3 c, Real search_range)
+      : TriangleQuery(mesh, c, search_range) {}
+
+  SCREE_HD bool finds_at(Index t) {
+    is_candidate_ = false, other_findings_ = {search_range_, search_range_};
+    query_triangle(t);
+    return is_candidate_ || other_findings_.behind >= 0 ||
+           other_findings_.nearest_round_off_vertex < search_range_;
+  }
+
+ private:
+  SCREE_HD static bool known(Index, Index) { return false; }
+  SCREE_HD Real range_at(const MeshPart&, Real) const { return search_range_; }
+  SCREE_HD void add(const MeshContact&) { is_candidate_ = true; }
+
+  bool is_candidate_ = false;
+};
+
+// The row for find_mesh_contacts() without triangles at which it finds nothing. What a search finds at a
+// triangle depends on what it found before only in being left out, so that the result is the same.
+SCREE_HD_CALLER template <class LaneGroup>
+SCREE_HD TriangleRow with_contacts_only(const MeshView& mesh, Vec3 c, Real search_range, TriangleRow row,
+                                        const LaneGroup& team) {
+  TriangleProbe probe(mesh, c, search_range);
+  std::uint64_t chosen = 0;
+  for (Index i = team.first(); i < row.count && i < TriangleRow::kBits; i += team.stride())
+    chosen |= std::uint64_t{probe.finds_at(row.triangles[i])} << i;
+  row.chosen = team.reduce(chosen, [](std::uint64_t a, std::uint64_t b) { return a | b; });
+  return row;
+}
 
 }  // namespace scree

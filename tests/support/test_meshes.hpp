@@ -167,7 +167,7 @@ inline std::vector<MeshContact> contacts_of_row(const SurfaceMesh& mesh, Vec3 c,
   std::vector<MeshContact> contacts(kMeshSlots);
   const MeshView view = mesh.view();
   contacts.resize(
-      find_mesh_contacts(view, c, reach, row.data(), static_cast<Index>(row.size()), contacts.data()));
+      find_mesh_contacts(view, c, reach, {row.data(), static_cast<Index>(row.size())}, contacts.data()));
   return contacts;
 }
 

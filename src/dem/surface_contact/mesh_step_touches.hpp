@@ -25,11 +25,11 @@ struct MeshStepTouchItem {
                position0 = position - (xyz(p) - xyz(start_position[i]));
     const SphereInMesh end{frame.axes, transposed_times(frame.axes, position - surface.point), p.w},
         start{frame.before, transposed_times(frame.before, position0 - surface0.point), p.w};
-    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    const TriangleRow row{in.meshes.triangles + group.first_triangle, group.triangles};
     MeshContact now[kMeshSlots];
     PreviousTouches old;
-    int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
-    old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
+    int count = find_mesh_contacts(mesh, end.c, p.w, row, now);
+    old.count = find_mesh_contacts(mesh, start.c, p.w, row, old.contact);
     if (is_open_surface<kOpenSurfaces>(mesh))
       count = track_sides(group, {mesh, end.c, start.c}, now, count, old);
     for (int k = 0; k < old.count; ++k)

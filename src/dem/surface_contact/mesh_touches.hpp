@@ -138,24 +138,25 @@ struct MeshTouchItem {
     const Sphere sphere = sphere_of(group);
     const MeshView& mesh = sphere.mesh;
     const Real range = searched(sphere.radius);
-    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    TriangleRow row{in.meshes.triangles + group.first_triangle, group.triangles,
+                    touches[group.entry].triangle};
     QueryResult result{Nearest::unclear, {}};
-    if (group.kind != RowKind::any)
-      result.found =
-          NearestContact(mesh, sphere.c, range)
-              .find(triangles, group.triangles, touches[group.entry].triangle, team, result.contact);
+    result.found = NearestContact(mesh, sphere.c, range, group.kind).find(row, team, result.contact);
+    // One lane searches in full, as far as the others have not excluded triangles.
+    if (result.found == Nearest::unclear && team.stride() > 1)
+      row = with_contacts_only(mesh, sphere.c, range, row, team);
     if (team.is_leader()) {
-      if (result.found != Nearest::unclear &&
-          !write(group, sphere, result.found, result.contact, touches[group.entry]))
-        result.found = Nearest::unclear;
-      if (result.found == Nearest::unclear) result.found = query_in_full(group, sphere, result.contact);
+      if (result.found == Nearest::unclear)
+        result.found = query_in_full(group, sphere, row, result.contact);
+      else if (!write(group, sphere, result.found, result.contact, touches[group.entry]))
+        result.found = write_all(group, sphere, &result.contact, result.found == Nearest::one ? 1 : 0);
     }
     result = team.from_leader(result);
-    const CachedContactRow<LaneGroup> row{mesh,     group.kind, triangles, group.triangles,
-                                          sphere.c, range,      team};
+    const CachedContactRow<LaneGroup> cache{mesh,     group.kind, row.triangles, row.count,
+                                            sphere.c, range,      team};
     const bool on_face = result.found == Nearest::one && is_face(mesh, result.contact.feature);
-    const CachedContact cached = result.found == Nearest::none ? row.clear()
-                                 : on_face                     ? row.over(result.contact.triangle)
+    const CachedContact cached = result.found == Nearest::none ? cache.clear()
+                                 : on_face                     ? cache.over(result.contact.triangle)
                                                                : kNoCachedContact;
     if (team.is_leader()) cached_contacts[g] = cached;
   }
@@ -204,20 +205,25 @@ struct MeshTouchItem {
     to.from = -1;
   }
   // Full search for several contacts; a single one is also returned.
-  SCREE_HD Nearest query_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
-    const MeshView& mesh = sphere.mesh;
+  SCREE_HD Nearest query_in_full(const MeshGroup& group, const Sphere& sphere, const TriangleRow& row,
+                                 MeshContact& only_one) const {
     MeshContact found[kMeshSlots];
-    int count = min_of(find_mesh_contacts(mesh, sphere.c, searched(sphere.radius),
-                                          in.meshes.triangles + group.first_triangle, group.triangles, found,
-                                          touches[group.entry].triangle),
-                       static_cast<int>(group.entries));
+    const int count = find_mesh_contacts(sphere.mesh, sphere.c, searched(sphere.radius), row, found);
+    const Nearest kept = write_all(group, sphere, found, min_of(count, static_cast<int>(group.entries)));
+    if (kept == Nearest::one) only_one = found[0];
+    return kept;
+  }
+  // Writes these contacts as the result of a group, with the sides and the history that they continue; the
+  // sides change `found`. Returns how many are left; several are unclear.
+  SCREE_HD Nearest write_all(const MeshGroup& group, const Sphere& sphere, MeshContact* found,
+                             int count) const {
+    const MeshView& mesh = sphere.mesh;
     if (is_open_surface<kOpenSurfaces>(mesh))
       count = SideTracker(mesh, sphere.c, memory().of(group)).keep(found, count);
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].set_none();
     for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
     if (is_open_surface<kOpenSurfaces>(mesh) && in.h > 0) store_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
-    if (count == 1) only_one = found[0];
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
   }
   // Contact with the plane of the cached triangle. Returns whether it is within range.
@@ -262,24 +268,28 @@ struct MeshTouchItem {
   };
   SCREE_HD Before before_of(const MeshGroup& group) const {
     Before before;
-    for (Index e = group.entry; e < group.entry + group.entries; ++e)
-      if (memory().has_history(e))
-        ++before.entries, before.entry = e, before.feature = in.history.features[e];
+    // Without branches, so that a GPU loads from all entries at once.
+    for (Index e = group.entry; e < group.entry + group.entries; ++e) {
+      const bool has = memory().has_history(e);
+      before.entries += has, before.entry = has ? e : before.entry;
+    }
+    if (before.entries > 0) before.feature = in.history.features[before.entry];
     return before;
   }
   // Whether the contact continues its own history, or none exists. Sets the side on which a contact with an
-  // open surface began.
+  // open surface began, where that has sides.
   SCREE_HD static bool continues(const MeshView& mesh, const Before& before, MeshContact& contact) {
     if (before.entries == 0) return true;
     if (!is_open_surface<kOpenSurfaces>(mesh)) return before.feature == contact.feature;
     if (without_side(before.feature) != contact.feature) return false;
-    if (before.feature != side_feature(mesh, contact)) flip_side(contact);
+    if (before.feature != side_feature(mesh, contact) && !is_open(mesh, contact.feature)) flip_side(contact);
     return true;
   }
   SCREE_HD static void continue_sides_only(MeshTouch& touch, const Sphere& sphere, const Before& before,
                                            const MeshContact& contact) {
     touch.from = before.entry;
-    const bool has_side = is_open_surface<kOpenSurfaces>(sphere.mesh) && before.entries > 0;
+    const bool has_side = is_open_surface<kOpenSurfaces>(sphere.mesh) && before.entries > 0 &&
+                          !is_open(sphere.mesh, contact.feature);
     touch.normal0 = sphere.normal0_of(
         contact.feature, has_side ? side_direction(sphere.mesh, before.feature) : contact.normal);
   }

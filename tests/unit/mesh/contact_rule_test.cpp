@@ -106,7 +106,7 @@ TEST_CASE("where a face was touched last changes no contact") {
       const auto contacts = contacts_of_row(surface, c, 0.25, row);
       for (Index likely = -1; likely <= view.triangle_count; likely += 1 + view.triangle_count / 40) {
         std::vector<MeshContact> found(kMeshSlots);
-        found.resize(find_mesh_contacts(view, c, 0.25, row.data(), n, found.data(), likely));
+        found.resize(find_mesh_contacts(view, c, 0.25, {row.data(), n, likely}, found.data()));
         // Near one plane alone that face is all.
         MeshContact face;
         if (one_plane && stays_over(view, likely, c, 0.25, face)) wrong += !same_contacts({face}, contacts);
@@ -166,8 +166,8 @@ TEST_CASE("the last touched triangle changes no contact, also with many nearer o
     with_floor += contacts.size() > 1;
     for (const Index likely : row) {
       std::vector<MeshContact> found(kMeshSlots);
-      found.resize(find_mesh_contacts(surface.view(), c, kReach, row.data(), static_cast<Index>(row.size()),
-                                      found.data(), likely));
+      found.resize(find_mesh_contacts(surface.view(), c, kReach,
+                                      {row.data(), static_cast<Index>(row.size()), likely}, found.data()));
       wrong += !same_contacts(found, contacts);
     }
   }

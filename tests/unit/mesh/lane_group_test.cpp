@@ -46,11 +46,13 @@ class ThreadLane {
 
 struct Queried {
   Nearest found;
+  std::uint64_t chosen = 0;
   MeshContact contact{-1, -1, 0, {}, {}};
   CachedContact cached = kNoCachedContact;
 
   friend bool operator==(const Queried& a, const Queried& b) {
-    return a.found == b.found && (a.found != Nearest::one || same_contacts({a.contact}, {b.contact})) &&
+    return a.found == b.found && a.chosen == b.chosen &&
+           (a.found != Nearest::one || same_contacts({a.contact}, {b.contact})) &&
            a.cached.safe_distance == b.cached.safe_distance && a.cached.triangle == b.cached.triangle;
   }
 };
@@ -66,12 +68,15 @@ std::vector<Queried> queries(const MeshView& view, const std::vector<Place>& pos
   std::vector<Queried> all;
   for (const Place& at : positions) {
     const auto n = static_cast<Index>(at.row.size());
+    const RowKind kind = kind_of_row(view, at.row.data(), n);
     Queried query{};
-    query.found = NearestContact(view, at.c, kRadius).find(at.row.data(), n, -1, team, query.contact);
-    const CachedContactRow<LaneGroup> row{
-        view, kind_of_row(view, at.row.data(), n), at.row.data(), n, at.c, kRadius, team};
+    query.found = NearestContact(view, at.c, kRadius, kind).find({at.row.data(), n}, team, query.contact);
+    if (query.found == Nearest::unclear)
+      query.chosen = with_contacts_only(view, at.c, kRadius, {at.row.data(), n}, team).chosen;
+    const CachedContactRow<LaneGroup> row{view, kind, at.row.data(), n, at.c, kRadius, team};
     if (query.found == Nearest::none) query.cached = row.clear();
-    if (query.found == Nearest::one) query.cached = row.over(query.contact.triangle);
+    if (query.found == Nearest::one && query.contact.feature < view.part_count)
+      query.cached = row.over(query.contact.triangle);
     all.push_back(query);
   }
   return all;
@@ -82,15 +87,14 @@ std::vector<Queried> queries(const MeshView& view, const std::vector<Place>& pos
 TEST_CASE("a team finds at the triangles of a row what one alone does, and all of it the same") {
   MeshRandom random(50);
   int touching = 0, unclear = 0;
-  for (const SurfaceMesh& surface : {sheet_mesh(hills(12, 0.005, 2)), closed_mesh(drum_shell(60, 0.5, 1, 3)),
-                                     closed_mesh(potato(4, 0.002, 5))}) {
+  for (const SurfaceMesh& surface :
+       {sheet_mesh(hills(12, 0.005, 2)), sheet_mesh(hills(6, 2, 3)), closed_mesh(drum_shell(60, 0.5, 1, 3)),
+        closed_mesh(potato(4, 0.002, 5)), closed_mesh(block({0, 0, 0}, {1, 1, 1}, 6))}) {
     const MeshView view = surface.view();
     std::vector<Place> positions;
     while (positions.size() < 2000) {
       const Vec3 c = position_near(surface, 1.2 * kRadius, random);
-      const auto row = triangles_near(surface, c, 1.2 * kRadius);
-      if (kind_of_row(view, row.data(), static_cast<Index>(row.size())) == RowKind::smooth)
-        positions.push_back({c, row});
+      positions.push_back({c, triangles_near(surface, c, 1.2 * kRadius)});
     }
     ThreadLane::Shared shared;
     std::array<std::vector<Queried>, kLanes> of_lane;

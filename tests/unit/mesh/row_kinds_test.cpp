@@ -52,8 +52,8 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
           static_cast<int>(contacts.size()) > slots_needed(view, kind, is_seen_from_one_side, row.data(), n);
       const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
       MeshContact nearest;
-      const Nearest found =
-          NearestContact(view, c, kRadius).find(row.data(), n, likely, SingleLane{}, nearest);
+      const Nearest found = NearestContact(view, c, kRadius, RowKind::smooth)
+                                .find({row.data(), n, likely}, SingleLane{}, nearest);
       all_unclear += found == Nearest::unclear;
       if (found == Nearest::none) wrong += !contacts.empty();
       if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
@@ -65,6 +65,48 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
   CHECK(one_sided < all_smooth);
   CHECK(all_unclear > 0);
   CHECK(all_unclear < all_smooth / 50);
+}
+
+// Slivers, rough and folded open surfaces, thin plates and solids from outside and inside.
+TEST_CASE("one feature alone on a row that is not smooth is what the search for all finds") {
+  TriangleMesh slivers = hills(6, 0.3, 5);
+  for (Vec3& v : slivers.vertices) v.y /= 500;
+  std::vector<SurfaceMesh> surfaces = meshes();
+  for (const SurfaceMesh& surface :
+       {sheet_mesh(slivers), sheet_mesh(hills(6, 2, 3)), sheet_mesh(hills(1, 1, 4)),
+        closed_mesh(drum_shell(12, 0.5, 1, 3)), closed_mesh(block({0, 0, 0}, {1, 1, 0.06}, 1)),
+        closed_mesh(block({0, 0, 0}, {1, 1, 1}, 1)), closed_mesh(potato(2, 0.3, 2))})
+    surfaces.push_back(surface);
+  MeshRandom random(45);
+  int found_one = 0, several = 0, excluded = 0;
+  for (const SurfaceMesh& surface : surfaces) {
+    const MeshView view = surface.view();
+    int wrong = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 c = position_near(surface, 1.2 * kRadius, random);
+      const auto triangles = triangles_near(surface, c, 1.2 * kRadius);
+      const auto n = static_cast<Index>(triangles.size());
+      const Index likely =
+          i % 3 == 0 || n == 0 ? -1 : triangles[static_cast<std::size_t>(i) % triangles.size()];
+      const TriangleRow row{triangles.data(), n, likely};
+      std::vector<MeshContact> contacts(kMeshSlots);
+      contacts.resize(find_mesh_contacts(view, c, kRadius, row, contacts.data()));
+      MeshContact only;
+      const Nearest found = NearestContact(view, c, kRadius, RowKind::any).find(row, SingleLane{}, only);
+      if (found == Nearest::none) wrong += !contacts.empty();
+      if (found == Nearest::one) ++found_one, wrong += !same_contacts({only}, contacts);
+      several += found == Nearest::unclear;
+      const TriangleRow narrowed = with_contacts_only(view, c, kRadius, row, SingleLane{});
+      for (Index k = 0; k < n; ++k) excluded += !narrowed.is_chosen(k);
+      std::vector<MeshContact> of_narrowed(kMeshSlots);
+      of_narrowed.resize(find_mesh_contacts(view, c, kRadius, narrowed, of_narrowed.data()));
+      wrong += !same_contacts(of_narrowed, contacts);
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(found_one > 10000);
+  CHECK(several > 2000);
+  CHECK(excluded > 100000);
 }
 
 TEST_CASE("as long as a sphere stays it touches the face that it was over, or nothing") {
