@@ -2,53 +2,67 @@
 // rest. The host computes the poses of the walls in these steps beforehand, and reads the sums of the
 // contacts afterwards.
 #include <algorithm>
+#include <utility>
 
 #include "cuda_explicit.cuh"
 
 namespace scree {
+namespace {
 
 // The motion of the walls' parents at the end of a step.
-static std::span<const BodyMotion> at_end(std::span<const BodyMotion> motion, std::size_t parents,
-                                          Index step) {
+std::span<const BodyMotion> at_end(std::span<const BodyMotion> motion, std::size_t parents, Index step) {
   return motion.subspan(static_cast<std::size_t>(step) * parents, parents);
 }
+
+}  // namespace
 
 StepsTaken CudaExplicitRun::take_driven_steps(std::span<const BodyMotion> motion, bool keep_open,
                                               std::vector<BodyWrench>& wrenches, StageTimers& timers) {
   HostSurfaces& side = bodies_.side();
   if (!workspace_.driven) workspace_.driven = std::make_unique<DrivenSurfaces>();
-  const std::vector<BodyMotion> before = side.motion();
-  const std::size_t parents = before.size();
-  const auto steps = static_cast<Index>(motion.size() / parents);
-  const VerletControl* c = &control_.wait();
-  const Index start = c->closed, last = start + steps - (keep_open ? 0 : 1);
+  const std::size_t parents = side.motion().size();
+  const Index start = closed_,
+              last = start + static_cast<Index>(motion.size() / parents) - (keep_open ? 0 : 1);
   std::vector<StepLoads> loads;
-  bool open = true;
-  while (open && c->closed - start < steps) {
-    const Index first = c->closed - start;
-    side.set_motion(at_end(motion, parents, first)), side.update_poses();
-    if (renew_list_beside_walls(timers)) c = &control_.wait();
-    open = c->closed < last + (keep_open ? 1 : 0) &&
-           !c->closed_steps[c->closed % VerletControl::kClosedSteps].leaves;
-    if (!open) break;
-    const auto scope = timers.time(Stage::contact_force);
-    control_.resume(last);
-    queue_driven(motion.subspan(static_cast<std::size_t>(first) * parents),
-                 std::min(last - c->closed, steps_ahead(*c)));
-    items_.idle();
-    c = &control_.wait();
-    const Index closed = c->closed - start;
-    for (Index step = first; step < closed; ++step) workspace_.driven->take(start + step, step, loads);
-    side.return_to(closed > 0 ? at_end(motion, parents, closed - 1) : std::span(before));
-  }
-  const Index closed = c->closed - start;
+  const bool open = closed_ == last || take_ahead(motion, last, loads, timers);
+  const Index closed = closed_ - start;
   {
     const auto scope = timers.time(Stage::reduce_wrench);
     wrenches = wrenches_of_steps(std::move(loads), closed, side.surfaces(), items_.ranks);
   }
-  if (open) return {closed, true};
-  close_driven(c->closed, wrenches, timers);
+  if (open && keep_open) return {closed, true};
+  side.set_motion(at_end(motion, parents, closed)), side.update_poses();
+  step_with_bodies(false, timers);
+  const auto scope = timers.time(Stage::reduce_wrench);
+  std::vector<BodyWrench> of_last(parents);
+  std::vector<std::int64_t> unused;
+  reduce_wrench(of_last, unused);
+  wrenches.insert(wrenches.end(), of_last.begin(), of_last.end());
   return {closed + 1, false};
+}
+
+// Closes steps until `last` are closed since the start of the run, and opens the next one after each. Returns
+// false if a particle is outside where the open step ends. motion: from the open step on.
+bool CudaExplicitRun::take_ahead(std::span<const BodyMotion> motion, Index last,
+                                 std::vector<StepLoads>& loads, StageTimers& timers) {
+  HostSurfaces& side = bodies_.side();
+  const std::vector<BodyMotion> before = side.motion();
+  const std::size_t parents = before.size();
+  const VerletControl* c = &control_.wait();
+  for (const Index start = closed_; closed_ < last;) {
+    const auto ahead = motion.subspan(static_cast<std::size_t>(closed_ - start) * parents);
+    side.set_motion(ahead.first(parents)), side.update_poses();
+    if (renew_list_beside_walls(timers)) c = &control_.wait();
+    if (c->closed_steps[closed_ % VerletControl::kClosedSteps].leaves) return false;
+    const auto scope = timers.time(Stage::contact_force);
+    control_.resume(last);
+    queue_driven(ahead, std::min({last - closed_, steps_ahead(*c), DrivenSurfaces::kRows}));
+    items_.idle();
+    c = &control_.wait();
+    for (; closed_ < c->closed; ++closed_) workspace_.driven->take(closed_, closed_ - start, loads);
+    side.return_to(closed_ > start ? at_end(motion, parents, closed_ - start - 1) : std::span(before));
+  }
+  return true;
 }
 
 // Like renew_list(), for the present poses of the walls.
@@ -66,7 +80,6 @@ void CudaExplicitRun::queue_driven(std::span<const BodyMotion> motion, Index mos
   HostSurfaces& side = bodies_.side();
   DrivenSurfaces& driven = *workspace_.driven;
   driven.prepare(side, items_.surfaces, list_.builds(), items_.stream);
-  const Index closed = control_.seen().closed;
   bool covered = true;
   for (Index first = 0; first < most && covered;) {
     Index n = 0;
@@ -74,25 +87,14 @@ void CudaExplicitRun::queue_driven(std::span<const BodyMotion> motion, Index mos
       side.set_motion(at_end(motion, side.motion().size(), first + n)), side.update_poses();
       covered = first + n == 0 || side.list_displacement() < list_.skin() / 2;
       if (!covered) break;
-      driven.put(closed + first + n, side);
+      driven.put(closed_ + first + n, side);
       side.close_step();
     }
     if (n == 0) return;
-    driven.upload(closed + first, n, items_.stream);
+    driven.upload(closed_ + first, n, items_.stream);
     queue_.queue(n);
     first += n;
   }
-}
-
-// Closes the open step, whose poses the walls have, without opening another. step: number of closed steps.
-void CudaExplicitRun::close_driven(Index step, std::vector<BodyWrench>& wrenches, StageTimers& timers) {
-  closed_ = step;
-  step_with_bodies(false, timers);
-  const auto scope = timers.time(Stage::reduce_wrench);
-  std::vector<BodyWrench> of_step(bodies_.side().surfaces().parents());
-  std::vector<std::int64_t> unused;
-  reduce_wrench(of_step, unused);
-  wrenches.insert(wrenches.end(), of_step.begin(), of_step.end());
 }
 
 }  // namespace scree

@@ -33,7 +33,8 @@ class CudaExplicitRun : public ExplicitRun {
   void finish();
   bool renew_list_beside_walls(StageTimers& timers);
   void queue_driven(std::span<const BodyMotion> motion, Index most);
-  void close_driven(Index step, std::vector<BodyWrench>& wrenches, StageTimers& timers);
+  bool take_ahead(std::span<const BodyMotion> motion, Index last, std::vector<StepLoads>& loads,
+                  StageTimers& timers);
   // Defined in cuda_coupled.cu.
   StepsTaken take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers);
   bool step_with_bodies(bool keep_open, StageTimers& timers);
@@ -46,7 +47,7 @@ class CudaExplicitRun : public ExplicitRun {
   RunControl control_;
   StepQueue queue_;
   const Real h_;
-  Index closed_ = 0;             // where steps are taken one by one: closed steps since the start of the run
+  Index closed_ = 0;             // beside surfaces that move: closed steps since the start of the run
   bool boundary_apart_ = false;  // with bodies: the previous step's boundary rows were queued apart
   // Positions as the last closed step left them, with the velocities at which its law was evaluated.
   struct {

@@ -9,10 +9,9 @@
 namespace scree {
 namespace {
 
-// Separate launches cost more than they save if fewer interior blocks than this run per multiprocessor.
-// Beside moving surfaces they save more: the host waits for the contacts with these, and the next ones need
-// the boundary rows alone.
-constexpr unsigned kLeastBlocks = 8, kLeastBlocksBesideMoving = 2;
+// Separate launches cost more than they save if fewer interior blocks than this run per multiprocessor. With few
+// blocks, interior rows also keep the contacts with surfaces waiting until the first of these blocks end.
+constexpr unsigned kLeastBlocks = 8;
 
 // Whether a block of particles has neither ghosts nor placed surfaces near it.
 struct InteriorItem {
@@ -47,8 +46,7 @@ void StepParts::find(Device device, const DeviceSurfaces& surfaces, Index owned,
         "partition");
   });
   const auto found = static_cast<unsigned>(count_.download(device.stream)[0]);
-  const unsigned least = surfaces.all_placed_static() ? kLeastBlocks : kLeastBlocksBesideMoving;
-  const bool pays = found >= least * multiprocessors_;
+  const bool pays = found >= kLeastBlocks * multiprocessors_;
   apart_ = found > 0 && found < all_ && launches().in_parts.value_or(pays);
   if (apart_) interior_blocks_ = found;
 }

@@ -48,6 +48,8 @@ constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts have adhesion
 // Bytes per placed surface, and per entry of the surfaces' rows where there are any: DeviceSurfaces.
 constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+// The same for walls with prescribed motion and conveyors, in explicit steps: the rows of DrivenSurfaces.
+constexpr double kDrivenArrays = 128 * (sizeof(SurfacePose) + sizeof(SurfaceFrame));
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
                                 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
 constexpr double kFrictionArraysPerEntry = sizeof(SurfaceFriction) + kFrictionArraysPerSlot;
@@ -202,7 +204,10 @@ double surface_bytes(const Model& model, const Sizes& n) {
   if (model.output.contacts) per_entry += sizeof(ShownContact);
   if (const HistoryContent content = packed_content(model, history_of(model.contact)); content.exists())
     per_entry += kSpareCapacity * (3 * records_of(content.values) * sizeof(Vec4) + 2 * sizeof(Index));
-  const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
+  const SurfaceSet surfaces(model);
+  const bool driven = !implicit && model.bodies.empty() && !surfaces.is_static();
+  const double bytes =
+      (kSurfaceArrays + (driven ? kDrivenArrays : 0)) * static_cast<double>(surfaces.placed());
   if (!model.meshes.empty())
     per_entry += kSpareCapacity * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
   return bytes + per_entry * n.entries +

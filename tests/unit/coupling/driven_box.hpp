@@ -24,7 +24,7 @@ gravity = [0.0, 0.0, -9.81]
 [space]
 dimension = 3
 min = [0.0, 0.0, -0.1]
-max = [0.231, 0.231, 0.5]
+max = [0.357, 0.357, 0.5]
 x_min = "wall"
 x_max = "wall"
 y_min = "wall"
@@ -50,7 +50,7 @@ name = "grains"
 kind = "lattice"
 origin = [0.015, 0.015, 0.011]
 spacing = [0.021, 0.021, 0.021]
-size = [10, 10, 12]
+size = [16, 16, 5]
 radius = 0.01
 random_velocity = 0.5
 material = "grain"
@@ -60,7 +60,7 @@ inline const std::string kMesh = R"(
 [[meshes]]
 name = "floor"
 kind = "rectangle"
-size = [0.6, 0.6]
+size = [1.2, 1.2]
 refine = 0.05
 [[walls]]
 name = "floor"
@@ -69,12 +69,12 @@ mesh = "floor"
 inline const std::string kShaken = R"(
 motions = [
   { type = "translation", direction = [0.3, 0.0, 1.0], displacement = { kind = "sine", amplitude = 2e-3, frequency = 40.0 } },
-  { type = "rotation", axis = [0.0, 1.0, 0.2], point = [0.1, 0.1, 0.0], angle = { kind = "sine", amplitude = 0.02, frequency = 30.0 } },
+  { type = "rotation", axis = [0.0, 1.0, 0.2], point = [0.18, 0.18, 0.0], angle = { kind = "sine", amplitude = 0.02, frequency = 30.0 } },
 ]
 )";
 inline const std::string kPlane = R"(
 [[walls]]
-name = "floor"
+name = "belt"
 point = [0.0, 0.0, 0.0]
 normal = [0.0, 0.0, 1.0]
 )";
