@@ -210,11 +210,14 @@ template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
-    if constexpr (LawOf<Laws>::kNeedsMotion)
-      prefer_cache(friction_advance_kernel<Laws>,
-                   kFrictionBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>));
-    else
+    if constexpr (LawOf<Laws>::kNeedsMotion) {
+      constexpr std::size_t kShared =
+          kFrictionBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>);
+      prefer_cache(friction_advance_kernel<Laws>, kShared);
+      prefer_cache(friction_finish_kernel<Laws>, kShared);
+    } else {
       prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
+    }
   }
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
@@ -345,8 +348,12 @@ class ContactKernelsOf : public DeviceContactKernels {
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
     if (r.rows.end == 0) return;
-    verlet_finish_kernel<Laws>
-        <<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
+    if constexpr (LawOf<Laws>::kNeedsMotion)
+      friction_finish_kernel<Laws>
+          <<<blocks_for(r.rows.end, kStepBlock), kStepBlock, 0, device.stream>>>(r, laws_, largest);
+    else
+      verlet_finish_kernel<Laws>
+          <<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
     require_cuda(cudaGetLastError(), "explicit step");
   }
 
@@ -386,9 +393,17 @@ class ContactKernelsOf : public DeviceContactKernels {
     require_cuda(cudaGetLastError(), "contacts with bodies");
   }
 
+  // The kernel of an explicit step.
+  static auto step_kernel() {
+    if constexpr (LawOf<Laws>::kNeedsMotion)
+      return friction_advance_kernel<Laws>;
+    else
+      return verlet_advance_kernel<0, Laws>;
+  }
+
   Laws laws_;
   // Kernels compiled for older generations do not wait for the previous step.
-  bool overlaps_ = generation_of(verlet_finish_kernel<Laws>) >= 90;
+  bool overlaps_ = generation_of(step_kernel()) >= 90;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 

@@ -265,10 +265,44 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
         {explicit_walk(at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws, r.state.h), r.gravity,
          r.force, r.state.loss_power, r.state.angular_acceleration},
         r.state};
-    item.forces.walk.in.spin = r.spin[v], item.state.spin = r.spin[1 - v];
     item.forces.walk.in.position = r.position[p], item.forces.walk.in.velocity = r.velocity[v];
     item.state.position = r.position[p], item.state.velocity = r.velocity[1 - v];
     a_squared = item(i);
+  }
+  block_max(a_squared, largest);
+}
+
+// The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts.
+template <class Laws>
+__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks)
+    friction_finish_kernel(const __grid_constant__ VerletRequest r, const Laws laws, Real* largest) {
+  const int p = r.control->parity[0], v = r.control->parity[1];
+  __shared__ WarpContactsOf<double, Laws> contacts[kStepBlock / kSlice];
+  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const bool idle = i >= r.rows.end;
+  VerletFinishItem<Laws, WarpRowsOf<double, Laws>> item{
+      {explicit_walk(
+           at_open_step<Laws>(warp_views(r.in, RowUse::all, 0, &contacts[threadIdx.x / kSlice], idle), r),
+           laws, r.state.h),
+       r.gravity, r.force, r.state.loss_power, r.state.angular_acceleration},
+      r.state};
+  auto& in = item.forces.walk.in;
+  in.position = p == 0 ? r.position[0] : r.position[1];
+  in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
+  in.spin = v == 0 ? r.spin[0] : r.spin[1];
+  item.state.velocity = v == 0 ? r.velocity[1] : r.velocity[0];
+  item.state.spin = v == 0 ? r.spin[1] : r.spin[0];
+  typename decltype(item)::Total force;
+  if (first < r.rows.end) {
+    auto self = item.forces.walk.self(idle ? r.rows.end - 1 : i);
+    self.i = i;
+    force = item.forces.weight(self);
+    item.forces.add_neighbors(self, force);
+  }
+  Real a_squared = 0;
+  if (!idle) {
+    item.forces.add_surfaces(item.forces.walk.self(i), force);
+    a_squared = item.finish(i, force);
   }
   block_max(a_squared, largest);
 }

@@ -257,8 +257,11 @@ struct VerletFinishItem {
   VerletViews state;
 
   // Returns |a|^2, which reveals a force that is not finite.
-  SCREE_HD Real operator()(Index i) const {
-    const auto total = forces.total(i);
+  SCREE_HD Real operator()(Index i) const { return finish(i, forces.total(i)); }
+
+  // Continues with the result of forces.total(i).
+  using Total = typename ContactForceItem<Laws, Rows, true>::Total;
+  SCREE_HD Real finish(Index i, const Total& total) const {
     forces.store(i, total);
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * forces.force[i];
