@@ -72,6 +72,8 @@ class Numbers(unittest.TestCase):
     def test_comparisons(self):
         rows = row("a", "7.5", "ms"), row("b", "500", "us"), row("c", "119.7", "us"), row("d", "112.1", "us")
         self.assertEqual(filled("{a|over b}, {c|above d}", *rows), ("15, +6.8 %", []))
+        self.assertEqual(filled("{a|optional}, {none|optional}, {a|optional over b}, {a|optional over none}", *rows),
+                         ("7.5 ms, -, 15, -", []))
         text, problems = filled("{a|over none}", *rows)
         self.assertEqual((text, problems), ("?", ["none: no such row"]))
 
@@ -114,6 +116,14 @@ class Tables(Folder):
         self.assertEqual(self.make(rows=more), (1, ["new/r: no table shows it"]))
         self.assertIn("page.md: must have once <!-- table one --> and <!-- end of table one -->",
                       self.make(**{"page.md": "# A\n"})[1])
+
+    def test_rows_of_which_nothing_was_measured_yet_are_left_out(self):
+        layout = self.LAYOUT.replace("{new/$}", "{new/$|optional}").replace("{old/$}", "{old/$|optional}")
+        layout += '[[one.rows]]\ntitle = "y"\nparts = ["r"]\n[[one.rows]]\ntitle = "z"\ncells = ["-", ""]\n'
+        self.assertEqual(self.make(**{"layout.toml": layout}, rows=[row("old/p", "1"), row("new/q", "4")],
+                                   **{"a.cpp": 'note("new/" + name, "", x);\n'}), (0, []))
+        self.assertEqual((self.folder / "page.md").read_text().splitlines()[4:6],
+                         ["| x | 1; - | -; 4 | 0123456, one |", "| z | - |  |  |"])
 
     def test_sources_and_data_agree(self):
         self.make()

@@ -14,7 +14,8 @@
 
 {KEY} is the number of the row with this key and its unit; {KEY|FORMAT} in another form: % (percent of one), a number
 of digits, "number" (without its unit), "over OTHER" (how many times the number of the row with the key OTHER) or "above
-OTHER" (by how many percent more).
+OTHER" (by how many percent more). "optional" in front of a form, or as one: "-" where there is no such row. A row of a
+table of which nothing was measured yet, because all of its places are optional, is left out.
 """
 import argparse
 import re
@@ -93,15 +94,17 @@ class Tables:
         self.unshown, self.kept = tuple(layout.pop("unshown", ())), tuple(layout.pop("kept", ()))
         self.layout, self.digits = layout, digits
         self.rows, self.used = {}, set()
+        self.absent = 0  # optional places without a row, so far
         for row in rows:
             self.rows.setdefault(row["key"], {})[row["backend"]] = row
         self.problems = []
 
-    def find(self, key):
+    def find(self, key, optional=False):
         """Its row, of the first backend that there is."""
         self.used.add(key)
         if key not in self.rows:
-            self.problems.append(f"{key}: no such row")
+            if not optional:
+                self.problems.append(f"{key}: no such row")
             return None
         return next(iter(self.rows[key].values()))
 
@@ -113,17 +116,22 @@ class Tables:
     def fill(self, template, found, what="measured"):
         """The text, with its places filled; the rows go into `found`."""
         def put(match):
-            comparison = re.fullmatch(r"(over|above) (.*)", match[2] or "")
-            rows = [self.find(key) for key in (match[1], *(comparison.groups()[1:] if comparison else ()))]
+            optional, form = re.fullmatch(r"(optional)? ?(.*)", match[2] or "").groups()
+            comparison = re.fullmatch(r"(over|above) (.*)", form)
+            keys = (match[1], *(comparison.groups()[1:] if comparison else ()))
+            rows = [self.find(key, optional) for key in keys]
             if None in rows:
-                return "?"
+                self.absent += bool(optional)
+                return "-" if optional else "?"
             found.extend(rows)
             if comparison:
                 return self.compared(comparison[1], *rows)
-            return getattr(Format(match[2], self.digits), what)(*rows)
+            return getattr(Format(form, self.digits), what)(*rows)
         return PLACE.sub(put, template)
 
     def cells(self, table, row):
+        """Of a row; None if nothing of it was measured yet."""
+        absent = self.absent
         titles, found = row["title"] if isinstance(row["title"], list) else [row["title"]], []
         if "shows" in row:
             texts = [self.fill(row["shows"], [], "demanded"), self.fill(row["shows"], found)]
@@ -132,6 +140,8 @@ class Tables:
             texts = ["; ".join(dict.fromkeys(self.fill(cell.replace("$", part), found) for part in parts))
                      for cell in row.get("cells", table.get("cells", []))]
         titles = [self.fill(title, found) for title in titles]
+        if not found and self.absent > absent:
+            return None
         machines = {}
         for one in found:
             machines.setdefault(short(one["commit"]), {})[one["machine"]] = True
@@ -143,6 +153,8 @@ class Tables:
         lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
         for row in table["rows"]:
             cells = self.cells(table, row)
+            if cells is None:
+                continue
             if len(cells) != len(columns):
                 self.problems.append(f"table {name}, {row['title']}: {len(cells)} cells for {len(columns)} columns")
             lines.append("| " + " | ".join(cells) + " |")
