@@ -139,7 +139,8 @@ struct RollingAndTwisting {
     RollingStep out{};
     if constexpr (Rolling::acts) static_cast<SpringStep&>(out) = rolling.rolling(c, old - along);
     if constexpr (Twisting::acts) {
-      const SpringStep twist = twisting.twisting(c, along);
+      SpringStep twist;  // assigned: gcc keeps an object that a function initializes in memory
+      twist = twisting.twisting(c, along);
       out.spring += twist.spring, out.acting += twist.acting, out.twisting = twist.losses;
     }
     return out;

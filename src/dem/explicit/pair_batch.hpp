@@ -6,12 +6,6 @@
 
 namespace scree {
 
-// A single law for all contacts, whose slider may have a dashpot.
-template <class Laws>
-inline constexpr bool kMayHaveDashpot = false;
-template <class Law>
-requires Law::Tangential::acts inline constexpr bool kMayHaveDashpot<OneLaw<Law>> = true;
-
 // Pairs gathered from their rows, with their history and results. For laws with `kNeedsMotion`.
 template <class Laws>
 class PairBatch {
@@ -22,24 +16,23 @@ class PairBatch {
   static constexpr Index kRecords = records_of(Law::kHistory);
   static constexpr std::int64_t first_record(Index slot) { return std::int64_t{slot} * kRecords; }
 
-  // Stores the k-th pair and its history records.
-  void put(Index k, const OverExplicitStep::Self& i, const OverExplicitStep::Self& j, const Vec4* records) {
+  // Stores the k-th pair and its history: that of zeros if the last accepted step, of this number, did not
+  // write the records.
+  void put(Index k, const OverExplicitStep::Self& i, const OverExplicitStep::Self& j, const Vec4* records,
+           Real step) {
     i_.put(k, i), j_.put(k, j);
-    for (Index r = 0; r < kRecords; ++r) records_[first_record(k) + r] = records[r];
+    const bool lasts = records->w == step;
+    for (Index r = 0; r < kRecords; ++r) records_[first_record(k) + r] = lasts ? records[r] : Vec4{};
   }
 
-  // Evaluates the first n pairs over a step. history: for the number of that step.
-  [[gnu::noinline, gnu::flatten]] void evaluate(Index n, const Laws& of, const OverExplicitStep& kinematics,
-                                                const HistoryViews& history) {
-    if constexpr (kMayHaveDashpot<Laws>) {
-      if (of.law.tangential.damping_ratio == 0) {
-        // A compile-time constant lets the compiler leave out the dashpot, which most runs do not have.
-        Laws without_dashpot = of;
-        without_dashpot.law.tangential.damping_ratio = 0;
-        return evaluate_by(without_dashpot, n, kinematics, history);
-      }
+  // Evaluates the first n pairs over a step of h [s], neighbours of one law together. step: number of the
+  // last accepted step.
+  void evaluate(Index n, const Laws& of, Real h, Real step) {
+    for (Index begin = 0, end = 1; begin < n; begin = end++) {
+      const Law& law = law_of(of, begin);
+      while (end < n && &law_of(of, end) == &law) ++end;
+      evaluate_by(law, begin, end, h, step);
     }
-    evaluate_by(of, n, kinematics, history);
   }
 
   // Results of the k-th pair: whether the contact is closed at the end of the step, and whether it has a
@@ -70,20 +63,38 @@ class PairBatch {
   const Side& of_j() const { return of_j_; }
 
  private:
-  void evaluate_by(const Laws& of, Index n, const OverExplicitStep& kinematics, const HistoryViews& views) {
-    const Laws laws = of;
-    const HistoryViews history = views;
-    const Real h = kinematics.h;
+  const Law& law_of(const Laws& of, Index k) const { return of.get(i_.material[k], j_.material[k]); }
+
+  // The compiler leaves out parts of a law that are compile-time constants: a dashpot beside the slider,
+  // which most runs do not have, and viscous rolling.
+  [[gnu::noinline, gnu::flatten]] void evaluate_by(const Law& of, Index begin, Index end, Real h, Real step) {
+    if constexpr (Law::Rolling::acts) {
+      if (of.rolling.rolling.viscous.damping == 0 && of.rolling.rolling.spring.friction > 0) {
+        Law law = of;
+        law.rolling.rolling.viscous.damping = 0;
+        return evaluate_pairs(law, begin, end, h, step);
+      }
+    } else if constexpr (Law::Tangential::acts) {
+      if (of.tangential.damping_ratio == 0) {
+        Law law = of;
+        law.tangential.damping_ratio = 0;
+        return evaluate_pairs(law, begin, end, h, step);
+      }
+    }
+    evaluate_pairs(of, begin, end, h, step);
+  }
+
+  void evaluate_pairs(const Law& of, Index begin, Index end, Real h, Real step) {
+    const Law law = of;
 #pragma GCC ivdep
-    for (Index k = 0; k < n; ++k) {
+    for (Index k = begin; k < end; ++k) {
       const Vec4 p = i_.position[k], u = i_.velocity[k], v = i_.spin[k];
       const Vec4 q = j_.position[k], w = j_.velocity[k], s = j_.spin[k];
       const PairState state = AtInstant::pair(p, u, q, w);
       // Not by a function that returns the pair, which gcc would copy as a whole.
       const MovingPair pair{state, OverExplicitStep{h}.motion(state, OverExplicitStep::partner(p, v),
                                                               OverExplicitStep::partner(q, s))};
-      const auto old = history.template read<Law>(records_, k);
-      const Law& law = laws.get(i_.material[k], j_.material[k]);
+      const ContactHistory old = history_of(k);
       if constexpr (kHasRange<Law>) {
         closed_[k] = law.closed(pair, old);
         acts_[k] = closed_[k] || Law::breaks(old);
@@ -92,8 +103,20 @@ class PairBatch {
       const auto outcome = law.load(pair, old);
       of_i_.put(k, Packed::Total::of(outcome.load, outcome.losses()));
       of_j_.put(k, Packed::Total::of(outcome.load.exchanged(), outcome.losses()));
-      history.template write<Law>(new_records_, k, outcome.history);
+      put_history(k, outcome.history, step + 1);
     }
+  }
+
+  // As `HistoryViews::read` and `write`, but without copies of whole records and without branches around
+  // reads, with which gcc does not vectorize the loop.
+  ContactHistory history_of(Index k) const {
+    const Vec4* const records = old_records(k);
+    return Law::read_history([&](int n) { return number_of(records, n); });
+  }
+  void put_history(Index k, const ContactHistory& history, Real step) {
+    Vec4* const records = new_records_ + first_record(k);
+    Law::write_history(history, [&](int n, Real value) { number_of(records, n) = value; });
+    records->w = step;
   }
 
   struct Items {

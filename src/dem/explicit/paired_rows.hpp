@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -93,9 +94,10 @@ class PairSweep {
   template <class Walk>
   [[gnu::noinline]] void evaluate(const Walk& walk, Index found) {
     const HistoryViews& history = walk.in.history;
+    sort_by_law(walk, found);
     for (Index k = 0; k < found; ++k)
-      batch_.put(k, walk.self(found_[k].i), walk.self(found_[k].j), found_[k].records);
-    batch_.evaluate(found, walk.laws, walk.kinematics, history);
+      batch_.put(k, walk.self(found_[k].i), walk.self(found_[k].j), found_[k].records, history.step);
+    batch_.evaluate(found, walk.laws, walk.kinematics.h, history.step);
     results_.reserve(2 * found);
     Index again = 0;
     for (Index k = 0; k < found; ++k) {
@@ -109,6 +111,16 @@ class PairSweep {
         found_[again++] = {pair.j, pair.i, pair.mirror, ListedPair::kNone, mirror_records(k, history)};
     }
     if (again > 0) evaluate(walk, again);
+  }
+
+  // Puts pairs of the same law side by side, to be evaluated together; a result does not depend on the order.
+  template <class Walk>
+  void sort_by_law(const Walk& walk, Index found) {
+    const auto law_of = [&](const Found& pair) {
+      return &walk.laws.get(walk.in.material[pair.i], walk.in.material[pair.j]);
+    };
+    const auto in_order = [&](const Found& a, const Found& b) { return std::less{}(law_of(a), law_of(b)); };
+    if (!std::is_sorted(found_, found_ + found, in_order)) std::sort(found_, found_ + found, in_order);
   }
 
   Vec4* records_of_pair(Index pair) { return pairs_->records.data() + Batch::first_record(pair); }
