@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/stage_trace.hpp"
 
 namespace scree {
 
@@ -33,6 +34,7 @@ inline void require_cuda(cudaError_t status, const char* what) {
 }
 
 inline void wait_for(cudaStream_t stream) {
+  const StageTrace::Wait wait;
   require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
 }
 
@@ -68,7 +70,10 @@ class Event {
   void hold(cudaStream_t stream) const {
     require_cuda(cudaStreamWaitEvent(stream, event_), "cudaStreamWaitEvent");
   }
-  void wait() const { require_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+  void wait() const {
+    const StageTrace::Wait traced;
+    require_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize");
+  }
 
  private:
   cudaEvent_t event_ = nullptr;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/stage_trace.hpp"
 #include "base/types.hpp"
 
 namespace scree {
@@ -43,24 +44,31 @@ class StageTimers {
     std::int64_t calls = 0;
   };
 
-  // Adds the lifetime of the returned object to the stage's time.
+  // Adds the lifetime of the returned object to the stage's time, and to the trace, if there is one.
   class Scope {
    public:
-    Scope(Entry& entry) : entry_(entry), start_(Clock::now()) {}
+    Scope(Entry& entry, Stage stage, StageTrace* trace)
+        : entry_(entry), stage_(stage), trace_(trace), start_(Clock::now()) {}
     ~Scope() {
-      entry_.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+      const Clock::time_point end = Clock::now();
+      entry_.seconds += std::chrono::duration<double>(end - start_).count();
       ++entry_.calls;
+      if (trace_ != nullptr) trace_->add(static_cast<std::int64_t>(stage_), start_, end);
     }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
-    using Clock = std::chrono::steady_clock;
+    using Clock = StageTrace::Clock;
     Entry& entry_;
+    Stage stage_;
+    StageTrace* trace_;
     Clock::time_point start_;
   };
 
-  Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)]); }
+  Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)], stage, trace_); }
+  // trace: nullptr, or an object that outlives the scopes.
+  void record_in(StageTrace* trace) { trace_ = trace; }
   const Entry& operator[](Stage stage) const { return entries_[static_cast<int>(stage)]; }
   // Share of these stages in the time of all stages except output.
   double share(std::span<const Stage> stages) const {
@@ -72,6 +80,7 @@ class StageTimers {
 
  private:
   std::array<Entry, static_cast<int>(Stage::count)> entries_{};
+  StageTrace* trace_ = nullptr;
 };
 
 }  // namespace scree

@@ -66,6 +66,25 @@ void declare_deck(CLI::App& command, Order& order) {
       ->check(named());
 }
 
+void declare_trace(CLI::App& command, Order& order) {
+  CLI::Option* trace = command
+                           .add_option("--trace", order.trace,
+                                       "write a timeline of the stages of some steps on every rank, which "
+                                       "ui.perfetto.dev and chrome://tracing open")
+                           ->type_name("FILE")
+                           ->check(named());
+  command.add_option("--trace-steps", order.trace_steps, "with --trace: number of steps (default: 200)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000))
+      ->needs(trace);
+  command
+      .add_option("--trace-from", order.trace_from,
+                  "with --trace: number of steps of this start before the first of them (default: 0)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(trace);
+}
+
 void declare_run(CLI::App& app, Order& order) {
   CLI::App* command =
       app.add_subcommand("run", "run a deck; results go to HDF5 files, `scree status` shows the progress");
@@ -99,6 +118,7 @@ void declare_run(CLI::App& app, Order& order) {
       ->needs(restart);
   command->add_flag("--overwrite", order.overwrite,
                     "remove the results of an earlier run from the output folder (default: refuse)");
+  declare_trace(*command, order);
   command->footer(kExitCodes);
   command->callback([&order] { order.command = Command::run; });
 }

@@ -1,6 +1,7 @@
 // The arguments of the command line.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,6 +17,8 @@ struct Order {
   std::string help;  // text to print; also for --version
   std::string deck, output, backend, restart, picture;
   std::vector<std::string> overrides;  // KEY=VALUE
+  std::string trace;                   // file of a timeline, and its steps
+  std::int64_t trace_from = 0, trace_steps = 200;
   bool overwrite = false, allow_changes = false;
   bool as_markdown = false, as_schema = false;
   std::optional<std::string> about;  // print the keys on this word instead of all keys

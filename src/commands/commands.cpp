@@ -115,6 +115,7 @@ ExitCode run(const Order& order) {
   RunOptions options{
       order.backend,       directory,  order.restart, order.allow_changes, order.deck, whole.resolved_text(),
       whole.fingerprint(), order.text, ranks,         order.overwrite};
+  options.trace = {order.trace, order.trace_from, order.trace_steps};
   const ExitCode code = naming_deck(order.deck, [&] {
     return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
   });

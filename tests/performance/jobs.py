@@ -72,17 +72,19 @@ def call(words, ranks, limit, mpirun):
         return text
 
 
-def run(program, job, end, folder, arguments, ranks, limit, restart=None):
-    """Runs a job up to `end`; its run record."""
+def run(program, job, end, folder, arguments, ranks, limit, more=()):
+    """Runs a job up to `end`, with more options; its run record."""
     deck = job.deck
     if isinstance(deck, str):
         deck = folder.parent / "deck.toml"
         deck.write_text(job.deck)
-    words = [program, "run", deck, "--backend", arguments.backend, "--output", folder, *job.overrides(end)]
-    if restart:
-        words += ["--restart", restart, "--allow-changes"]  # an earlier program may name its keys otherwise
+    words = [program, "run", deck, "--backend", arguments.backend, "--output", folder, *job.overrides(end), *more]
     call(words, ranks, limit, arguments.mpirun)
     return json.loads((folder / "run_record.json").read_text())
+
+
+def restarted(checkpoint):
+    return ["--restart", checkpoint, "--allow-changes"]  # an earlier program may name its keys otherwise
 
 
 def settled(program, job, arguments, ranks, keep):
@@ -91,7 +93,8 @@ def settled(program, job, arguments, ranks, keep):
     folder = keep / re.sub(r"[^\w.]+", "_", f"{job.name} {job.particles} {arguments.backend}")
     whole, part = folder / "checkpoint_end.h5", folder / "checkpoint.h5"
     if not whole.exists():
-        run(program, job, job.start, folder, arguments, ranks, arguments.settle, part if part.exists() else None)
+        run(program, job, job.start, folder, arguments, ranks, arguments.settle,
+            restarted(part) if part.exists() else ())
     if not whole.exists():
         raise Failed(f"{job.name}: stopped after {arguments.settle} s, before it begins at {job.start} s; a further "
                      f"call with --keep {keep} continues")
@@ -137,10 +140,16 @@ def numbers(record, folder, arguments, ranks):
 
 
 def time_job(program, job, arguments, ranks, keep):
-    restart = settled(arguments.program, job, arguments, max(arguments.ranks), keep) if job.start > 0 else None
+    more = []
+    if job.start > 0:
+        more += restarted(settled(arguments.program, job, arguments, max(arguments.ranks), keep))
+    if arguments.trace and program == arguments.program:
+        arguments.trace.mkdir(parents=True, exist_ok=True)
+        name = re.sub(r"[^\w.]+", "_", f"{job.name} {ranks} ranks")
+        more += ["--trace", arguments.trace / f"{name}.json", "--trace-from", 10 if arguments.quick else 1000]
     with tempfile.TemporaryDirectory(prefix="scree_jobs_") as scratch:
         folder = pathlib.Path(scratch) / "results"
-        record = run(program, job, job.end, folder, arguments, ranks, arguments.time_limit, restart)
+        record = run(program, job, job.end, folder, arguments, ranks, arguments.time_limit, more)
         return numbers(record, folder, arguments, ranks)
 
 
@@ -321,6 +330,7 @@ def parse(words):
     parser.add_argument("--settle", type=float, default=200, help="the same before the timed part (default 200)")
     parser.add_argument("--budget", type=float, default=1e9, help="seconds after which no further run begins")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for states before the timed part")
+    parser.add_argument("--trace", type=pathlib.Path, metavar="FOLDER", help="timelines of 200 steps after 1,000")
     parser.add_argument("--machine", help="name of the machine in the notes")
     parser.add_argument("--mpirun", default="", help="options of mpirun")
     parser.add_argument("--quick", action="store_true", help="a few steps of each job, to see that all of it works")

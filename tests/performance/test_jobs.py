@@ -61,6 +61,20 @@ class Jobs(unittest.TestCase):
         self.assertIn("all states agree", text)
         self.assertEqual(len(list(self.folder.glob("*/checkpoint_end.h5"))), 1)
 
+    def test_timelines(self):
+        code, _, text = self.call("--quick", "--only", "excavator 5e3, digging", "--ranks", 2, "--trace", self.folder)
+        self.assertEqual(code, 0, text)
+        done = subprocess.run([sys.executable, HERE / "trace_table.py", *self.folder.glob("*.json")], text=True,
+                              capture_output=True, timeout=LIMIT, check=True)
+        rows = [line.strip("| ").split(" | ") for line in done.stdout.splitlines()[2:]]
+        self.assertEqual({(row[0], row[1]) for row in rows},
+                         {("excavator_5e3_digging_2_ranks", rank) for rank in ("0", "1")})
+        calls = {row[2]: float(row[5]) for row in rows if row[1] == "0"}
+        self.assertEqual((calls["contact_force"], calls["between"]), (1, 0))
+        self.assertGreaterEqual(calls["mbs_correct"], 2)
+        for row in rows:
+            self.assertGreaterEqual(float(row[3]), float(row[4]))
+
     def test_runs_that_take_too_long_stop(self):
         for ranks in 1, 2:
             code, rows, text = self.call("--only", "excavator 5e3, to 2 s", "--sizes", 5000, "--time-limit", 4,

@@ -16,6 +16,7 @@
 #include "run/loop/choose_backend.hpp"
 #include "run/loop/step_loop.hpp"
 #include "run/record/recorder.hpp"
+#include "run/record/trace_file.hpp"
 #include "run/report/balance.hpp"
 #include "run/report/bodies_outside.hpp"
 #include "run/report/live_status.hpp"
@@ -45,6 +46,7 @@ class Simulation {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
     ranks_.on_root([&] { folder_.clear(); });
+    prepare_trace();
     recorder_ =
         std::make_unique<Recorder>(model, *backend_, body_coupling_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
@@ -65,6 +67,7 @@ class Simulation {
   void start_or_resume();
   void check_end() const;
   void load_state();
+  void prepare_trace();
   std::string start_change() const;
   bool continues_files() const;
   void bring_into_id_order(State& state) const;
@@ -88,6 +91,7 @@ class Simulation {
   ResultsFolder folder_;
   Restart restart_;  // without its state
   State state_;
+  std::unique_ptr<StageTrace> trace_;  // if the command line wants one
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
   BodyCoupling body_coupling_;
@@ -122,6 +126,15 @@ void Simulation::start_or_resume() {
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
+}
+
+// The file is written once without steps, so that a path that is wrong ends the run here.
+void Simulation::prepare_trace() {
+  if (options_.trace.file.empty()) return;
+  const TraceOptions& wanted = options_.trace;
+  trace_ = std::make_unique<StageTrace>(step_.counts().steps + wanted.from, wanted.steps);
+  timers_.record_in(trace_.get());
+  write_trace(wanted.file, *trace_, ranks_);
 }
 
 // If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
@@ -242,7 +255,8 @@ ExitCode Simulation::run_to_the_end() {
                         steady_seconds,
                         [this](const std::vector<EscapedParticle>& escaped_particles) {
                           watch_escaped_particles(escaped_particles);
-                        }};
+                        },
+                        trace_.get()};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {
@@ -250,6 +264,7 @@ ExitCode Simulation::run_to_the_end() {
         progress(s, h);
       });
   try {
+    if (trace_) ranks_.min(0), trace_->set_origin();  // at the same instant on all ranks
     book_.begin_loop();
     const LoopEnd end = loop.run();
     book_.end_loop();
@@ -312,6 +327,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
       body_coupling_.multibody() ? body_coupling_.multibody()->reaction_warning() : "";
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
   if (overloaded_) log_.warning(body_coupling_.load_warning());
+  if (trace_) write_trace(options_.trace.file, *trace_, ranks_);
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));

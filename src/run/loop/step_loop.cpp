@@ -57,9 +57,15 @@ LoopEnd StepLoop::run(Real until) {
   while (!clock_.done()) {
     if (clock_.time() >= until) return LoopEnd::paused;
     if (poll_requests() != 0) return LoopEnd::stopped_by_signal;
-    take_step(until);
+    take_traced_step(until);
   }
   return LoopEnd::done;
+}
+
+void StepLoop::take_traced_step(Real until) {
+  if (parts_.trace != nullptr) parts_.trace->before_steps(parts_.step.counts().steps);
+  take_step(until);
+  if (parts_.trace != nullptr) parts_.trace->after_steps(parts_.step.counts().steps);
 }
 
 // Handles requests between two steps, the same on all ranks: a signal on any rank, or a checkpoint that rank
@@ -111,7 +117,9 @@ void StepLoop::reject(const StepOutcome& outcome) {
 void StepLoop::take_explicit_steps(Real h, Real until) {
   const bool mixed = parts_.backend.is_mixed();
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
-  if (!mixed) most = std::min(most, as_size(next_sample_ - parts_.step.counts().steps));
+  const std::int64_t steps = parts_.step.counts().steps;
+  if (!mixed) most = std::min(most, as_size(next_sample_ - steps));
+  if (!mixed && parts_.trace != nullptr) most = std::min(most, as_size(parts_.trace->most_steps(steps)));
   std::vector<Real> times = clock_.equal_steps(most);
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = parts_.seconds();
