@@ -17,7 +17,9 @@ template <class Packed>
 class PendingResults {
  public:
   // Resets all slots to no load.
-  void resize(std::size_t slots) { indices_.resize(slots); }
+  void resize(std::size_t slots) { indices_.resize(slots + kAhead); }
+  // Prefetches the place of the load at the slot.
+  void prepare(std::ptrdiff_t slot) const { __builtin_prefetch(indices_.data() + slot, 1); }
   // Ensures that `more` entries are free.
   void reserve(Index more) {
     while (free_count_ < more) {
@@ -29,6 +31,7 @@ class PendingResults {
   Packed& put(Index slot) { return results_[indices_[slot] = free_[--free_count_]]; }
   // Adds the load at the slot to the sum and frees its entry.
   void take(Index slot, Packed& sum) {
+    __builtin_prefetch(&results_[indices_[slot + kAhead]]);
     const Index index = std::exchange(indices_[slot], kNothing);
     sum += results_[index];
     free_[free_count_] = index, free_count_ += index != kNothing;
@@ -37,7 +40,8 @@ class PendingResults {
  private:
   static Packed nothing() { return Packed::of(Packed::Total::nothing()); }
   static constexpr Index kNothing = 0;  // index of a load that changes no sum
-  std::vector<Index> indices_;          // index of the load per slot
+  static constexpr Index kAhead = 12;  // slots, about one or two rows: loads prefetched before they are taken
+  std::vector<Index> indices_;         // index of the load per slot
   std::vector<Packed> results_{nothing()};
   std::vector<Index> free_{0};  // the first free_count_ indices are free
   Index free_count_ = 0;
@@ -84,11 +88,19 @@ class PairSweep {
         const ListedPair& pair = pairs_->pairs[next_];
         Vec4* const records = records_of_pair(next_);
         prefetch_record(records);
+        prefetch(contact.walk.in, pair);
         found_[found] = {evaluated_rows_, pair.j, pair.slot, pair.mirror, records};
         found += test(pair.j);
       }
     }
     evaluate(contact.walk, found);
+  }
+
+  // Prefetches what the evaluation of the pair uses; most listed pairs touch.
+  template <class Views>
+  void prefetch(const Views& in, const ListedPair& pair) const {
+    __builtin_prefetch(in.velocity + pair.j), __builtin_prefetch(in.spin + pair.j);
+    results_.prepare(pair.mirror);
   }
 
   template <class Walk>
@@ -97,7 +109,7 @@ class PairSweep {
     sort_by_law(walk, found);
     for (Index k = 0; k < found; ++k)
       batch_.put(k, walk.self(found_[k].i), walk.self(found_[k].j), found_[k].records, history.step);
-    batch_.evaluate(found, walk.laws, walk.kinematics.h, history.step);
+    batch_.evaluate(found, walk.laws, walk.kinematics.h);
     results_.reserve(2 * found);
     Index again = 0;
     for (Index k = 0; k < found; ++k) {
@@ -127,7 +139,10 @@ class PairSweep {
   // History record of the k-th contact on its other side.
   Vec4* mirror_records(Index k, const HistoryViews& history) {
     Vec4* const records = history.neighbors + Batch::first_record(found_[k].mirror);
-    if (records->w != history.step) HistoryViews::mirror<Law>(batch_.old_records(k), records);
+    if (records->w != history.step) {
+      HistoryViews::mirror<Law>(batch_.old_records(k), records);
+      records->w = history.step;
+    }
     return records;
   }
 
