@@ -26,10 +26,13 @@ struct LossesByKind {
   SCREE_HD void fill(Real value) {
     for (int k = 0; k < kKinds; ++k) of[k] = value;
   }
-  // Adds the losses to those of particle i.
+  // Adds the losses to those of particle i. All values are read before any is written, so that the loads
+  // overlap.
   SCREE_HD void accumulate(Real* const (&losses)[kLossKinds], Index i) const {
+    Real before[kKinds];
+    for (int k = 0; k < kKinds; ++k) before[k] = of[k] != 0 ? losses[k][i] : 0;
     for (int k = 0; k < kKinds; ++k)
-      if (of[k] != 0) losses[k][i] += of[k];
+      if (of[k] != 0) losses[k][i] = before[k] + of[k];
   }
   friend bool operator==(const LossesByKind&, const LossesByKind&) = default;
 };

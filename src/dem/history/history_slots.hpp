@@ -63,9 +63,9 @@ struct HistoryViews {
   SCREE_HD auto read(const Vec4* records, std::int64_t slot) const {
     constexpr int kRecords = records_of(Law::kHistory);
     Vec4 at[2];
-    at[0] = records[slot * kRecords];
+    // The second record is read whether the contact was closed or not, beside the first one and not after it.
+    for (int r = 0; r < kRecords; ++r) at[r] = records[slot * kRecords + r];
     const bool closed = at[0].w == step;
-    if (kRecords > 1 && closed) at[1] = records[slot * kRecords + 1];
     return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
   }
   // History of a contact that continues the one at the slot; -1: a new contact.
