@@ -16,6 +16,8 @@ constexpr int kAmd = 0, kColamd = 1;
 constexpr int kFewRows = 128;
 // Fraction of weak diagonals that is tolerated.
 constexpr double kWeakFraction = 1.0 / 16;
+// Refactorizations with the same pivots after which a plan of blocks pays.
+constexpr int kLasting = 20;
 
 // Column k of L in one of KLU's blocks, without its diagonal of ones: row indices, then values from the next
 // multiple of eight bytes (klu_internal.h).
@@ -89,13 +91,17 @@ KluFactors::Result KluFactors::factor_anew(double* values) {
     return common_.status == KLU_OUT_OF_MEMORY ? Result::out_of_memory : Result::singular;
   }
   record_pivots();
+  blocks_.forget(), refactored_ = 0;
   return Result::factored;
 }
 
 bool KluFactors::refactor(double* values) {
-  return klu_refactor(pattern_.row_start.data(), pattern_.column.data(), values, symbolic_.get(),
-                      numeric_.get(), &common_) != 0 &&
-         common_.status == KLU_OK && pivots_unchanged();
+  if (uses_blocks()) return blocks_.refactor(values, *numeric_) && pivots_unchanged();
+  const bool done = klu_refactor(pattern_.row_start.data(), pattern_.column.data(), values, symbolic_.get(),
+                                 numeric_.get(), &common_) != 0 &&
+                    common_.status == KLU_OK && pivots_unchanged();
+  if (done && ++refactored_ == kLasting) blocks_.plan(pattern_, values, *symbolic_, *numeric_);
+  return done;
 }
 
 // A quotient has the absolute value 1 exactly where its entry is as large as the pivot.

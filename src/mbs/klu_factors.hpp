@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "mbs/block_refactor.hpp"
 #include "mbs/kkt_matrix.hpp"
 
 namespace scree {
@@ -40,6 +41,8 @@ class KluFactors {
   // fails.
   bool solve(std::span<Real> vector);
   bool solve_transposed(std::span<Real> vector);
+  // Whether the next matrix is refactored in blocks of rows, after several with the same pivots.
+  bool uses_blocks() const { return blocks_.has_plan(); }
 
  private:
   struct Free {
@@ -63,6 +66,8 @@ class KluFactors {
   std::vector<int> diagonal_;  // for every column, the position among the pivots of the row that KLU prefers
   // Entries of L, counted consecutively, as large as their pivot when it was chosen.
   std::vector<std::size_t> ties_;
+  BlockRefactor blocks_;
+  int refactored_ = 0;  // matrices with the present pivots
 };
 
 }  // namespace scree

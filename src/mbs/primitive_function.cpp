@@ -64,9 +64,9 @@ Real primitive_rate(const PrimitiveFunction& primitive, const SpatialMotion& mot
 void add_block(SparseTerm& term, int row, int column, const Mat3& block) {
   if (row < 0 || column < 0) return;
   if (Real* const out = term.next(9)) {
-    const Vec3 rows[] = {block.x, block.y, block.z};
-    for (std::size_t i = 0; i < 3; ++i)
-      out[3 * i] = rows[i].x, out[3 * i + 1] = rows[i].y, out[3 * i + 2] = rows[i].z;
+    out[0] = block.x.x, out[1] = block.x.y, out[2] = block.x.z;
+    out[3] = block.y.x, out[4] = block.y.y, out[5] = block.y.z;
+    out[6] = block.z.x, out[7] = block.z.y, out[8] = block.z.z;
     return;
   }
   for (int i = 0; i < 3; ++i)

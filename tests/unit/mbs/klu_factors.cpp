@@ -145,6 +145,56 @@ TEST_CASE("an order that counts on zero diagonals is given up for one that does 
   CHECK(ordering(-1, false) == 0);
 }
 
+// Bodies that many joints connect fill their factors; a third of the entries is zero.
+TEST_CASE("factors in blocks of rows are those of single entries, also where a pivot changes or vanishes") {
+  constexpr int kRows = 44;
+  SparsePattern pattern{{0}, {}};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<Real> entry(-1, 1);
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kRows; ++column)
+      if (row == column || (row * column) % 3 != 1) pattern.column.push_back(column);
+    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+  }
+  const auto matrix = [&](Real diagonal) {
+    std::vector<Real> values;
+    for (int row = 0; row < kRows; ++row)
+      for (int i = pattern.row_start[static_cast<std::size_t>(row)];
+           i < pattern.row_start[static_cast<std::size_t>(row) + 1]; ++i) {
+        const bool own = pattern.column[static_cast<std::size_t>(i)] == row;
+        values.push_back(own ? diagonal : i % 3 == 0 ? 0 : entry(random));
+      }
+    return values;
+  };
+  KluFactors factors;
+  factors.options().scale = -1;  // none, as in the solver
+  REQUIRE(factors.analyze(pattern));
+  const auto same_as_anew = [&](const std::vector<Real>& values) {
+    KluFactors fresh;
+    fresh.options().scale = -1;
+    REQUIRE(fresh.analyze(pattern));
+    REQUIRE(fresh.factor(values) == Result::factored);
+    return same_bits(solution(factors, kRows), solution(fresh, kRows));
+  };
+  int in_blocks = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::vector<Real> values = matrix(i % 90 == 89 ? 1e-4 : 20);
+    in_blocks += factors.uses_blocks();
+    const Result result = factors.factor(values);
+    REQUIRE((result == Result::factored || result == Result::refactored));
+    CHECK((i % 90 == 89 && result == Result::refactored) == false);
+    REQUIRE(same_as_anew(values));
+  }
+  CHECK(in_blocks > 100);
+  REQUIRE(factors.uses_blocks() == false);  // the pivots changed a moment ago
+  for (int i = 0; i < 30; ++i) REQUIRE(factors.factor(matrix(20)) != Result::singular);
+  REQUIRE(factors.uses_blocks());
+  CHECK(factors.factor(std::vector<Real>(pattern.column.size(), 0)) == Result::singular);
+  const std::vector<Real> sound = matrix(20);
+  REQUIRE(factors.factor(sound) == Result::factored);
+  CHECK(same_as_anew(sound));
+}
+
 TEST_CASE("a matrix that cannot be factored leaves no trace in the next one's factors") {
   const SparsePattern pattern = chain_pattern(3);
   const std::vector<Real> sound = chain_values(pattern, {0.1, 0.2, 0.3}, 1e-3, 0.05);
