@@ -28,6 +28,24 @@ std::vector<SurfaceMesh> meshes() {
           closed_mesh(block({0, 0, 0}, {1, 1, 1}, 6))};
 }
 
+// Slivers, rough open surfaces, a thin plate, and solids with sharp edges.
+std::vector<SurfaceMesh> rough_meshes() {
+  TriangleMesh slivers = hills(6, 0.3, 5);
+  for (Vec3& v : slivers.vertices) v.y /= 500;
+  return {sheet_mesh(slivers),
+          sheet_mesh(hills(6, 2, 3)),
+          sheet_mesh(hills(1, 1, 4)),
+          closed_mesh(drum_shell(12, 0.5, 1, 3)),
+          closed_mesh(block({0, 0, 0}, {1, 1, 0.06}, 1)),
+          closed_mesh(block({0, 0, 0}, {1, 1, 1}, 1)),
+          closed_mesh(potato(2, 0.3, 2))};
+}
+
+std::vector<SurfaceMesh> joined(std::vector<SurfaceMesh> meshes, const std::vector<SurfaceMesh>& others) {
+  meshes.insert(meshes.end(), others.begin(), others.end());
+  return meshes;
+}
+
 constexpr Real kRadius = 0.1;
 
 }  // namespace
@@ -67,19 +85,10 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
   CHECK(all_unclear < all_smooth / 50);
 }
 
-// Slivers, rough and folded open surfaces, thin plates and solids from outside and inside.
 TEST_CASE("one feature alone on a row that is not smooth is what the search for all finds") {
-  TriangleMesh slivers = hills(6, 0.3, 5);
-  for (Vec3& v : slivers.vertices) v.y /= 500;
-  std::vector<SurfaceMesh> surfaces = meshes();
-  for (const SurfaceMesh& surface :
-       {sheet_mesh(slivers), sheet_mesh(hills(6, 2, 3)), sheet_mesh(hills(1, 1, 4)),
-        closed_mesh(drum_shell(12, 0.5, 1, 3)), closed_mesh(block({0, 0, 0}, {1, 1, 0.06}, 1)),
-        closed_mesh(block({0, 0, 0}, {1, 1, 1}, 1)), closed_mesh(potato(2, 0.3, 2))})
-    surfaces.push_back(surface);
   MeshRandom random(45);
   int found_one = 0, several = 0, excluded = 0;
-  for (const SurfaceMesh& surface : surfaces) {
+  for (const SurfaceMesh& surface : joined(meshes(), rough_meshes())) {
     const MeshView view = surface.view();
     int wrong = 0;
     for (int i = 0; i < 5000; ++i) {
@@ -111,8 +120,8 @@ TEST_CASE("one feature alone on a row that is not smooth is what the search for 
 
 TEST_CASE("as long as a sphere stays it touches the face that it was over, or nothing") {
   MeshRandom random(48);
-  int over = 0, clear = 0;
-  for (const SurfaceMesh& surface : meshes()) {
+  int over = 0, over_rough = 0, clear = 0;
+  for (const SurfaceMesh& surface : joined(meshes(), rough_meshes())) {
     const MeshView view = surface.view();
     int wrong = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -138,13 +147,15 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
         }
         const Index part = view.triangles[cached.triangle].part;
         const bool touches = std::abs(dot(moved - view.parts[part].point, view.parts[part].normal)) < kRadius;
-        ++over, wrong += found.size() != touches ||
-                         (touches && (found[0].feature != part || found[0].triangle != cached.triangle));
+        ++over, over_rough += at.kind == RowKind::any,
+            wrong += found.size() != touches ||
+                     (touches && (found[0].feature != part || found[0].triangle != cached.triangle));
       }
     }
     CHECK(wrong == 0);
   }
   CHECK(over > 20000);
+  CHECK(over_rough > 20000);
   CHECK(clear > 2000);
 }
 
