@@ -107,17 +107,18 @@ struct VerletControl {
     choose_rows();
   }
   SCREE_HD void choose_rows() {
-    constexpr Real kPrunedSteps = 32;            // lifetime aimed at for pruned rows [steps]
-    constexpr Real kMinFraction = Real(1) / 32;  // of the skin: particles nearly at rest will also start to
-                                                 // move
-    constexpr Real kMaxFraction = Real(1) / 2;   // of the skin: with more, pruning saves too little
+    constexpr Real kMostSteps = 32, kFewestSteps = 6;  // lifetime aimed at for pruned rows [steps]
+    constexpr Real kMinFraction = Real(1) / 32;  // of the skin: particles nearly at rest will also start
+                                                 // to move
+    constexpr Real kMaxFraction = Real(1) / 5;   // of the skin: with more, pruning saves too little
     if (moved < margin / 2) {
       rows = RowUse::pruned;
       return;
     }
-    const Real target = kPrunedSteps * displacement, least = kMinFraction * half_skin;
-    margin = 2 * (target > least ? target : least);
-    rows = margin < kMaxFraction * 2 * half_skin ? RowUse::prune : RowUse::all;
+    const Real target = kMostSteps * displacement, least = kMinFraction * half_skin,
+               most = kMaxFraction * half_skin, wanted = target > least ? target : least;
+    margin = 2 * (wanted < most ? wanted : most);
+    rows = margin > 2 * kFewestSteps * displacement ? RowUse::prune : RowUse::all;
     moved = rows == RowUse::prune ? 0 : kNoRows;
   }
   // Closes the step and opens the next.

@@ -72,6 +72,8 @@ void RunControl::start(const VerletRequest& step) {
   copy_async(on_device(), &c, 1, items_.stream);
   known_list_ = list_.builds();
   items_.history.begin_run();
+  h_ = step.state.h;
+  list_.open_run(h_);
   VerletViews state = step.state;
   state.position = items_.now.position.data(), state.velocity = items_.now.velocity.data();
   Real* largest = items_.results.at(&Results::largest);
@@ -88,7 +90,7 @@ const VerletControl& RunControl::wait() {
   const VerletControl& c = items_.results.fetch(&Results::control);
   items_.halo_stream.clock.read(items_.balance.halo);
   parity_[0] = c.parity[0], parity_[1] = c.parity[1];
-  items_.history.closed(c.closed);
+  items_.history.closed(c.closed), list_.follow(h_);
   list_.set_bound(c.bound);
   return c;
 }

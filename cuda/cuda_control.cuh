@@ -43,6 +43,7 @@ class RunControl {
   CudaItems& items_;
   CudaList& list_;
   int parity_[2] = {0, 0};
+  Real h_ = 0;                   // of the run [s]
   std::int64_t known_list_ = 0;  // number of the list that the control block was last set for
 };
 

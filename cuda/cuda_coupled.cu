@@ -15,8 +15,9 @@ StepsTaken CudaExplicitRun::take_steps_with_bodies(Index most, bool keep_open, S
 // and solves for their motion while the kernel of the particles runs.
 bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   for (;;) {
-    if (!list_.current() || !(bodies_.side().list_displacement() < list_.skin() / 2))
-      list_.build(items_.model.contact.skin, timers), control_.resume(), boundary_apart_ = false;
+    if (!list_.current() || !list_.frame().covers_surfaces() ||
+        !(bodies_.side().list_displacement() < list_.skin() / 2))
+      list_.build(list_.choose_skin(), timers), control_.resume(), boundary_apart_ = false;
     const auto scope = timers.time(Stage::contact_force);
     queue_loads();
     workspace_.step_queued.hold(bodies_.stream());
@@ -43,7 +44,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     }
     closed_step_ = {control_.open_position(), control_.open_velocity(), control_.open_spin()};
     control_.turn();
-    items_.history.closed(++closed_);
+    items_.history.closed(++closed_), list_.follow(h_);
     bodies_.side().close_step();
     return true;
   }

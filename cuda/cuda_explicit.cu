@@ -62,8 +62,10 @@ StepsTaken CudaExplicitRun::take_steps_without_bodies(Index most, bool keep_open
 
 // After a stop: whether the list was the reason, and was rebuilt or turned out to cover the particles still.
 bool CudaExplicitRun::renew_list(StageTimers& timers) {
-  if (list_.current() && list_.bound() < list_.skin() / 2) return false;
-  if (!(list_.displacement() < kRebuildFraction)) list_.build(items_.model.contact.skin, timers);
+  const bool covers_surfaces = list_.frame().covers_surfaces();
+  if (list_.current() && covers_surfaces && list_.bound() < list_.skin() / 2) return false;
+  if (!covers_surfaces || !(list_.displacement() < kRebuildFraction))
+    list_.build(list_.choose_skin(), timers);
   control_.resume();
   return true;
 }
@@ -72,7 +74,8 @@ bool CudaExplicitRun::renew_list(StageTimers& timers) {
 // Those after a stop do nothing but still cost their launches and, on several ranks, their halo exchange.
 Index CudaExplicitRun::steps_ahead(const VerletControl& control) const {
   if (items_.halo_stream.halo.waits()) return 1;
-  const Real covered = (control.half_skin - control.bound) / control.displacement;
+  const Real covered =
+      std::min((control.half_skin - control.bound) / control.displacement, list_.frame().steps_left(h_));
   return covered < kQueuedSteps - 1 ? static_cast<Index>(covered) + 1 : kQueuedSteps;
 }
 

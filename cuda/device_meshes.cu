@@ -242,7 +242,7 @@ std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search,
   for (const Index s : instances_) {
     const SurfacePose& surface = poses.placed[static_cast<std::size_t>(s)];
     const SurfaceFrame& frame = poses.frames[static_cast<std::size_t>(surface.frame)];
-    const Real skin = surfaces_.skin_of(s, search.skin);
+    const Real skin = poses.skin_of(s, search.skin);
     for_each_shift(search.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
       const Box box = box_near(poses, s, shift, largest_radius, skin);
       if (overlaps(search.grid.cells.space, box))

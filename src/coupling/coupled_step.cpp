@@ -50,7 +50,7 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyCoupling& lin
       largest_radius_(radius_range(model).largest > 0 ? radius_range(model).largest
                                                       : largest_corner_radius(model)) {}
 
-void CoupledStep::rebuild_list(Real skin) { backend_.list().build(skin, timers_); }
+void CoupledStep::rebuild_list() { backend_.list().build(backend_.list().choose_skin(), timers_); }
 
 void CoupledStep::start(MultibodyState& bodies) {
   body_coupling_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
@@ -64,7 +64,7 @@ void CoupledStep::start(MultibodyState& bodies) {
 
 void CoupledStep::resume(const MultibodyState& bodies, Real t) {
   body_coupling_.broadcast_motion(backend_.list(), bodies, 0, t);
-  rebuild_list(model_.contact.skin);
+  rebuild_list();
 }
 
 void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
@@ -105,7 +105,7 @@ bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, Real t, 
         "neighbour list covers: half of {:.3g} m",
         moved, std::max(model_.contact.skin, widest)));
   undo_step(step, bodies, t);
-  rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)));
+  backend_.list().build(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)), timers_);
   return false;
 }
 

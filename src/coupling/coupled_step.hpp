@@ -53,8 +53,8 @@ class CoupledStep {
   // The particles outside the domain now. Throws SimulationError for the first one beyond a wall, or for the
   // first one at all if the deck makes that an error.
   std::vector<EscapedParticle> check_inside() const;
-  // Rebuilds the neighbour list for the current particles and bodies. skin [m].
-  void rebuild_list(Real skin);
+  // Rebuilds the neighbour list for the current particles and bodies.
+  void rebuild_list();
 
   StepCounts& counts() { return counts_; }
   const StepCounts& counts() const { return counts_; }

@@ -284,9 +284,12 @@ const TableKeys& contact_keys() {
       "Contact laws and contact detection.",
       {real("skin", "m")
            .above(0)
-           .left_out("0.2 x the smallest radius")
+           .left_out("0.2 x the smallest radius at the start; explicit steps in double precision then choose "
+                     "it as they go")
            .about(
-               "Skin of the neighbour list: it contains pairs up to this distance between their surfaces."),
+               "Skin of the neighbour list: it contains pairs up to this distance between their surfaces. No "
+               "bit of the results depends on it in double precision. The program chooses 0.1 to 1 x the "
+               "smallest radius from the displacements per step."),
        boolean("connected_bodies_touch")
            .otherwise("false")
            .about(

@@ -20,8 +20,8 @@ inline constexpr const char* kUnsoundPosition[] = {
 inline constexpr const char* kTooManyParticles = "stage migrate: more particles";
 inline constexpr const char* kTooManyItems = "stage exchange_halo: more particles and ghosts";
 
-// displacement() and build() are collective (see Backend). Both may be called within a run of explicit steps;
-// build() not within an implicit step.
+// displacement(), choose_skin() and build() are collective (see Backend). They may be called within a run of
+// explicit steps; build() not within an implicit step.
 class RankList {
  public:
   virtual ~RankList() = default;
@@ -36,6 +36,11 @@ class RankList {
   virtual std::int64_t entries() const = 0;  // of this rank
   virtual std::int64_t builds() const = 0;   // since the backend was made
   virtual LoadBalance balance() const = 0;
+
+  // Skin for the next list [m]: that of the deck, or chosen from how fast the present list expires
+  // (`SkinChoice`). Collective.
+  virtual Real choose_skin() = 0;
+  virtual Real skin() const = 0;  // of the present list [m]
 };
 
 }  // namespace scree

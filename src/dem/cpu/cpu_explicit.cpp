@@ -42,7 +42,7 @@ void CpuExplicitRun::share_step() {
 StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& timers) {
   Index taken = 0;
   while (taken < most && open_) {
-    if (!list_.covers(std::exchange(step_bound_, 0))) list_.build(items_.model.contact.skin, timers);
+    if (!list_.covers(std::exchange(step_bound_, 0), h_)) list_.build(list_.choose_skin(), timers);
     const auto refresh = [&] {
       const auto scope = timers.time(Stage::update_halo);
       items_.refresh_ghosts();

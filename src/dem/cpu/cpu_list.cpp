@@ -6,8 +6,20 @@
 #include <utility>
 
 #include "base/countable.hpp"
+#include "base/host_memory.hpp"
+#include "model/derived/choose_law.hpp"
 
 namespace scree {
+namespace {
+
+// Measured with the excavator and the drum of input/examples.
+constexpr ListCosts kListCosts{.fixed = 30, .search = 8};
+// Share of the free host memory that wider lists may take.
+constexpr Real kMemoryShare = 0.25;
+
+}  // namespace
+
+CpuList::CpuList(CpuItems& items) : items_(items), builder_(items.model), choice_(items.model, kListCosts) {}
 
 // Packs the contact history. Ghosts are refreshed first, because contact keys depend on current positions.
 void CpuList::pack_history() {
@@ -142,6 +154,9 @@ void CpuList::set_body_motion(std::span<const BodyMotion> motion) {
 void CpuList::build(Real skin, StageTimers& timers) {
   {
     const auto scope = timers.time(Stage::migrate);
+    const bool known = current_ && steps_ > 0 && lists_leave_no_trace(items_.model);
+    if (known) displacement();
+    items_.side.plan_list(skin, known ? moved_ : HostSurfaces::kNoMotion);
     pack_history();
     wrap_positions();
     if (!items_.ranks.alone()) migrate();
@@ -158,18 +173,19 @@ void CpuList::build(Real skin, StageTimers& timers) {
     items_.side.update_poses();
   }
   const auto scope = timers.time(Stage::neighbors);
+  choose_frame(skin);
   const ParticleStore& store = items_.store;
-  builder_.build(store, items_.layout, cells_, {items_.side.poses(), items_.history.stored_contacts()}, skin,
-                 items_.list);
+  builder_.build(store, items_.layout, cells_,
+                 {items_.side.poses(), items_.history.stored_contacts(), frame_.reach()}, skin, items_.list);
   items_.pairs.is_current = items_.pairs.has_records = false;
   items_.side.build_list(skin);
   items_.history.unpack_history(items_.listed());
   built_at_ = store.position;
   items_.spare_position = store.position, items_.spare_velocity = store.velocity;
   items_.spare_spin = store.angular_velocity;
-  bound_ = surface_bound_ = 0;
+  bound_ = surface_bound_ = 0, steps_ = 0;
   current_ = true;
-  ++builds_;
+  if (++builds_ == 1 && choice_.is_open()) limit_skin();
   const Halo& halo = items_.halo;
   balance_.halo = {store.owned, halo.size(), halo.receivers(),
                    static_cast<std::int64_t>(halo.sent()) * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
@@ -178,10 +194,12 @@ void CpuList::build(Real skin, StageTimers& timers) {
 
 // The sum of the steps' largest displacements is a cheap bound; where it is too large the exact value is
 // computed.
-bool CpuList::covers(Real step) {
+bool CpuList::covers(Real step, Real h) {
   if (!current_) return false;
+  ++steps_, frame_.move(h);
   bound_ += std::max(step, surface_bound_);
   surface_bound_ = 0;
+  if (!frame_.covers_surfaces()) return false;
   return bound_ < items_.list.skin / 2 || displacement() <= 1;
 }
 
@@ -189,15 +207,52 @@ Real CpuList::displacement() {
   if (!current_) return 2;
   Real squared = 0;
   for (Index i = 0; i < items_.layout.active; ++i) {
-    const Vec3 d = xyz(items_.store.position[i]) - xyz(built_at_[i]);
+    const Vec3 d = xyz(items_.store.position[i]) - xyz(built_at_[i]) - frame_.displacement();
     const Real value = dot(d, d);
     if (!(value <= squared) && !std::isnan(squared)) squared = value;  // a NaN counts as expired
   }
   Real largest[2] = {std::sqrt(squared), items_.side.list_displacement()};
   items_.ranks.max(largest);
   if (!std::isfinite(largest[0]) || !std::isfinite(largest[1])) return 2;
+  moved_ = largest[0];
   bound_ = std::max(largest[0], largest[1]), surface_bound_ = 0;
   return bound_ / (items_.list.skin / 2);
+}
+
+Real CpuList::choose_skin() {
+  if (choice_.is_open() && current_ && steps_ > 0 && displacement() < kInfinity) choice_.note(bound_, steps_);
+  return choice_.next();
+}
+
+void CpuList::choose_frame(Real skin) {
+  frame_ = {};
+  const Model& model = items_.model;
+  if (!lists_leave_no_trace(model) || model.gravity == Vec3{}) return;
+  const Vec3 down = (1 / norm(model.gravity)) * model.gravity;
+  const auto largest = [&](const auto& value) {
+    Real most = -kInfinity;
+    for (Index i = 0; i < items_.layout.active; ++i)
+      most = std::max(most, value(xyz(items_.store.velocity[i])));
+    return items_.ranks.max(most);
+  };
+  const Real most = largest([&](Vec3 v) { return dot(v, down); }),
+             least = -largest([&](Vec3 v) { return -dot(v, down); });
+  const Vec3 fall = ListFrame::mean_fall(model.gravity, least, most);
+  frame_ = {model.gravity,
+            least,
+            most,
+            largest([](Vec3 v) { return norm(v); }),
+            largest([&](Vec3 v) { return norm(v - fall); }),
+            skin,
+            kMostFrameReach * model.particles.totals.largest_radius};
+}
+
+void CpuList::limit_skin() {
+  const FreeMemory memory = free_memory();
+  const Real per_entry = 2 * sizeof(Index) + 2 * history_of(items_.model.contact) * sizeof(Real),
+             free = kMemoryShare * std::min(memory.host.bytes / items_.ranks.size(), memory.process.bytes);
+  const Real limit = choice_.limit_in_memory(free, static_cast<Real>(entries()), per_entry);
+  choice_.limit_to(-items_.ranks.max(-limit));
 }
 
 void CpuList::retain_rows(const std::vector<Index>& remaining) {

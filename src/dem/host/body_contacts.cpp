@@ -94,7 +94,7 @@ std::vector<Index> BodyContacts::find_shapes(const SurfacePoses& poses, Real ski
   std::vector<Index> shapes;
   for (Index s = 0; s < static_cast<Index>(poses.placed.size()); ++s)
     if (poses.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
-  corners_.add_near_planes(poses, planes_, kMeshSkins * skin, shapes);
+  corners_.add_near_planes(poses, planes_, skin + poses.most_extra_travel(), shapes);
   return shapes;
 }
 
@@ -110,7 +110,7 @@ void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std
     const SurfacePose& shape = poses.placed[static_cast<std::size_t>(corners_.surface_of(s))];
     const Vec3 p =
         is_corner ? shape.point + poses.frames[shape.frame].axes * corners_.position_of(s) : shape.point;
-    const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
+    const Real radius = is_corner ? poses.most_extra_travel() : shape.radius;
     if (position.empty()) min = max = p;
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};

@@ -29,6 +29,7 @@ HostSurfaces::HostSurfaces(const Model& model, const Subdomain& subdomain, const
       start_before_(motion_),
       image_(static_cast<std::size_t>(size())),
       placed_(static_cast<std::size_t>(size())),
+      extra_travel_(static_cast<std::size_t>(size())),
       step_(static_cast<std::size_t>(size())),
       step_rotation_(step_) {
   for (const ModelMesh& mesh : model.meshes)
@@ -43,6 +44,7 @@ HostSurfaces::HostSurfaces(const Model& model, const Subdomain& subdomain, const
       frames_.back().surface_velocity =
           model.walls[static_cast<std::size_t>(surfaces_.number_of(s))].surface_velocity;
   }
+  plan_list(model.contact.skin, kNoMotion);
 }
 
 // Determines the periods that a mesh spans: one as long as the periodic domain continues through its sides.
@@ -77,6 +79,27 @@ Vec3 HostSurfaces::to_middle(Index s) const {
   const SurfaceFrame& frame = frames_[static_cast<std::size_t>(placed_[s].frame)];
   const Mat3 axes = rotation_matrix(orientation(motion_[surfaces_.at(s).parent]));
   return snap(axes * frame.middle, subdomain_.snap_constant());
+}
+
+void HostSurfaces::plan_list(Real skin, Real moved) {
+  skin_ = skin;
+  for (Index s = 0; s < size(); ++s) extra_travel_[s] = extra_travel_for(s, skin, moved);
+}
+
+// A list lasts until particles have moved by half its skin. Until then a mesh moves in proportion to what it
+// has moved beside them so far.
+Real HostSurfaces::extra_travel_for(Index s, Real skin, Real moved) const {
+  constexpr Real kAllowance = 1.25;  // for changes of the speeds
+  constexpr Real kMostRadii = 2;     // wider rows of triangles cost every step more than a list saves
+  const Surface& surface = surfaces_.at(s);
+  if (surface.kind != SurfaceKind::mesh || !surface.moves) return 0;
+  const Real radius = model_.particles.totals.largest_radius;
+  if (moved == kNoMotion || radius == 0) return (kMeshSkins - 1) * skin;
+  const Real travel =
+      displacement_of(placed_[s], placed_[s].point - listed_[s].point, listed_axes_[placed_[s].frame]);
+  const Real wanted = (kAllowance * travel / moved - 1) * skin / 2, least = skin / 2,
+             most = std::max(least, kMostRadii * radius);
+  return wanted > least ? std::min(wanted, most) : least;
 }
 
 void HostSurfaces::build_list(Real skin) {
@@ -152,7 +175,7 @@ void HostSurfaces::update_poses() {
 }
 
 Real HostSurfaces::last_displacement() const {
-  return largest_displacement(step_, axes_before_, kMeshDisplacementWeight);
+  return largest_displacement(step_, axes_before_, Weight::of_list);
 }
 
 // Displacements are linear in the position, so that the largest one is at a corner of a box. For a plane it
@@ -208,14 +231,18 @@ void HostSurfaces::reopen_step() {
   update_poses();
 }
 
+Real HostSurfaces::weight_in_list(std::size_t s) const {
+  return extra_travel_[s] == 0 ? 1 : skin_ / (skin_ + 2 * extra_travel_[s]);
+}
+
 Real HostSurfaces::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from,
-                                        Real of_mesh) const {
+                                        Weight weight) const {
   Real squared = 0;  // of spheres, squared
   Real largest = 0;  // of other surfaces
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     const bool is_sphere = placed_[s].kind == SurfaceKind::sphere;
     const Real size = is_sphere ? dot(moved[s], moved[s])
-                                : (placed_[s].kind == SurfaceKind::mesh ? of_mesh : 1) *
+                                : (weight == Weight::of_list ? weight_in_list(s) : 1) *
                                       displacement_of(placed_[s], moved[s],
                                                       from[static_cast<std::size_t>(placed_[s].frame)]);
     if (std::isnan(size)) return size;
@@ -226,11 +253,11 @@ Real HostSurfaces::largest_displacement(std::span<const Vec3> moved, std::span<c
 }
 
 Real HostSurfaces::displacement_since(const std::vector<SurfacePose>& then, const std::vector<Mat3>& axes,
-                                      Real of_mesh) const {
+                                      Weight weight) const {
   std::vector<Vec3> moved;
   moved.reserve(placed_.size());
   for (std::size_t s = 0; s < placed_.size(); ++s) moved.push_back(placed_[s].point - then[s].point);
-  return largest_displacement(moved, axes, of_mesh);
+  return largest_displacement(moved, axes, weight);
 }
 
 void HostSurfaces::take_loads(std::span<const InstantSums> of_particles, Real h) {

@@ -44,7 +44,12 @@ class HostSurfaces {
   const std::vector<BodyMotion>& motion() const { return motion_; }
   // Chooses the periodic image of each surface for a new list. Called before update_poses().
   void bring_into_box();
-  // Finds possible contacts of bodies until a surface has moved by half the skin.
+  // Before a list with this skin is built: how far each moving mesh shall be able to move before it expires.
+  // If particles have moved by at most `moved` since the last list, a mesh shall last as long as they;
+  // kNoMotion: nothing is known. Called before bring_into_box().
+  static constexpr Real kNoMotion = -1;
+  void plan_list(Real skin, Real moved);
+  // Finds possible contacts of bodies until a surface has moved by half the skin and its extra travel.
   void build_list(Real skin);
   // Updates the poses to the motion of the parents.
   void update_poses();
@@ -54,7 +59,7 @@ class HostSurfaces {
   // One entry per placed surface.
   const std::vector<SurfacePose>& placed() const { return placed_; }
   const std::vector<SurfaceFrame>& frames() const { return frames_; }
-  SurfacePoses poses() const { return {placed_, frames_, meshes_, start_}; }
+  SurfacePoses poses() const { return {placed_, frames_, meshes_, start_, extra_travel_}; }
   // Changes by the last update_poses(): displacements, and rotations; of spheres, for laws with
   // `kNeedsMotion`, times the radii [m], else [rad].
   const std::vector<Vec3>& step() const { return step_; }
@@ -70,11 +75,9 @@ class HostSurfaces {
   // Stores the start of an implicit step.
   void store_start();
   // Largest displacement of any point of a surface since then [m].
-  Real step_displacement() const { return displacement_since(start_, start_axes_, 1); }
+  Real step_displacement() const { return displacement_since(start_, start_axes_, Weight::one); }
   // Largest displacement since the list was built, weighted as in last_displacement() [m].
-  Real list_displacement() const {
-    return displacement_since(listed_, listed_axes_, kMeshDisplacementWeight);
-  }
+  Real list_displacement() const { return displacement_since(listed_, listed_axes_, Weight::of_list); }
 
   // Takes the contact sums of the backend's particles at an instant (h = 0) or over the explicit step that
   // ends now, and over an implicit step, in any order and in any number of parts per surface; rank 0 adds the
@@ -120,11 +123,15 @@ class HostSurfaces {
   // Position of a surface's point, on the grid of the periodic domain, but unwrapped like its body's [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
   Vec3 to_middle(Index surface) const;  // SurfaceFrame::to_middle of a mesh
-  // Largest displacement of any point of a surface, on meshes times of_mesh [m]. moved: displacements of the
-  // surfaces' points; from: previous axes of the frames.
-  Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from, Real of_mesh) const;
+  // of_list: a displacement that uses up a surface's share of the list counts as half the skin.
+  enum class Weight { one, of_list };
+  // Largest displacement of any point of a surface [m]. moved: displacements of the surfaces' points; from:
+  // previous axes of the frames.
+  Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from, Weight weight) const;
   Real displacement_since(const std::vector<SurfacePose>& then, const std::vector<Mat3>& axes,
-                          Real of_mesh) const;
+                          Weight weight) const;
+  Real weight_in_list(std::size_t s) const;
+  Real extra_travel_for(Index s, Real skin, Real moved) const;
   Real displacement_of(const SurfacePose& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
   void begin_step();
@@ -147,6 +154,8 @@ class HostSurfaces {
   std::vector<BodyMotion> motion_, step_start_, start_before_;
   std::vector<ImageCount> image_;  // image of each surface's middle for the current list
   std::vector<SurfacePose> placed_, start_, listed_;
+  std::vector<Real> extra_travel_;  // SurfacePoses::extra_travel
+  Real skin_ = 0;                   // of the list [m]
   std::vector<MeshView> meshes_;
   std::vector<MeshBox> boxes_;  // bounding boxes of the meshes
   std::vector<SurfaceFrame> frames_;

@@ -122,7 +122,8 @@ void NeighborBuilder::find_surfaces(const ParticleStore& store, const ItemLayout
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
   build_rows(sorted, layout.owned,
-             {surfaces_, planes_, surfaces.poses, period_, search_margin(skin), surfaces.stored_contacts},
+             {surfaces_, planes_, surfaces.poses, period_, search_margin(skin) + surfaces.reach,
+              surfaces.stored_contacts},
              rows);
 }
 

@@ -52,6 +52,7 @@ struct SearchCells {
 struct ListedSurfaces {
   SurfacePoses poses;
   StoredContactCount stored_contacts{};
+  Real reach = 0;  // search distance in addition to that of the particles [m]
 };
 
 class NeighborBuilder {

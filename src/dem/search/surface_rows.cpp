@@ -70,7 +70,7 @@ class EntryFinder {
         add(entry, i, 1);
   }
   void add_near_mesh(Index s, Vec3 shift, Entry entry) {
-    const Real skin = search_.surfaces.skin_of(s, search_.skin);
+    const Real skin = search_.poses.skin_of(s, search_.skin);
     const Box box = box_near(search_.poses, s, shift, sorted_.largest_radius, skin);
     for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
       if (!may_touch(i, s)) return;
@@ -138,7 +138,7 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
     const auto first = static_cast<Index>(rows.triangles.size());
     const MeshQuery query =
         mesh_query(search.poses, s, sorted.position[static_cast<std::size_t>(i)],
-                   image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
+                   image_shift(rows.images[entry], search.period), search.poses.skin_of(s, search.skin));
     query.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
     const RowKind kind = kind_of_row(query.mesh, rows.triangles.data() + first, last - first);

@@ -1,6 +1,7 @@
 // Surfaces in contact with particles, in the frame of their parent: the ground or a body.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -31,11 +32,10 @@ struct Surface {
   bool moves = true;
 };
 
-// Search distance beyond touch of moving meshes over that of other surfaces: vertices of a mesh may move far
-// while particles hardly move, and rows of triangles are cheap compared with a new list.
+// Search distance beyond touch of moving meshes over that of other surfaces, as long as their speed is not
+// known: vertices of a mesh may move far while particles hardly move, and rows of triangles are cheap
+// compared with a new list.
 inline constexpr Real kMeshSkins = 2;
-// Weight of their displacement in that of the list: a particle may move by half a skin, a mesh by the rest.
-inline constexpr Real kMeshDisplacementWeight = 1 / (2 * kMeshSkins - 1);
 
 // A wall for the kernels; complete for a static plane. placed: number of another wall among the placed
 // surfaces, else -1.
@@ -63,11 +63,6 @@ class SurfaceSet {
   // Number among the placed surfaces of a body's mesh; meshes come after the shapes of all bodies.
   static Index posed_mesh(const Model& model, int body, int mesh);
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
-  // Search distance beyond touch of a placed surface; skin: that of static planes [m].
-  Real skin_of(Index placed, Real skin) const {
-    const Surface& surface = at(placed);
-    return surface.kind == SurfaceKind::mesh && surface.moves ? kMeshSkins * skin : skin;
-  }
   // Number of bodies and placed walls.
   std::size_t parents() const { return parents_; }
   // Whether no placed surface ever moves or is a conveyor.
@@ -172,6 +167,17 @@ struct SurfacePoses {
   std::span<const SurfaceFrame> frames;
   std::span<const MeshView> meshes;
   std::span<const SurfacePose> start{};  // at the start of an implicit step
+  // Per placed surface: how much farther than a particle it may move before the list expires; empty: no
+  // farther [m].
+  std::span<const Real> extra_travel{};
+
+  // Search distance beyond touch of a placed surface; skin: that of static planes [m].
+  Real skin_of(Index s, Real skin) const {
+    return extra_travel.empty() ? skin : skin + extra_travel[static_cast<std::size_t>(s)];
+  }
+  Real most_extra_travel() const {
+    return extra_travel.empty() ? 0 : *std::max_element(extra_travel.begin(), extra_travel.end());
+  }
 };
 
 // A sphere at p (x, y, z, radius) and a plane or sphere shifted by `shift`.

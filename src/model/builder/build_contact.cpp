@@ -385,7 +385,8 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   const Real smallest = of_spheres > 0 ? of_spheres : largest_corner_radius(model);
   // Any positive length is valid without particles and shapes.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
-  contact.skin = table.has("skin") ? table.real("skin") : standard;
+  contact.skin_is_default = !table.has("skin");
+  contact.skin = contact.skin_is_default ? standard : table.real("skin");
   for (const NormalLawParameters& law : contact.laws)
     contact.interaction_range = std::max(contact.interaction_range, contact_search_range(law, largest));
   check_periods(deck, model, largest);

@@ -92,6 +92,7 @@ struct Contact {
   Real interaction_range = 0;          // largest distance between surfaces at which a force acts [m]
   Real skin = 0;  // distance between surfaces up to which the neighbour list has pairs [m]
   bool connected_bodies_touch = false;
+  bool skin_is_default = false;  // the deck names none: explicit steps in double choose it as they go
 
   int materials() const { return static_cast<int>(material_names.size()); }
   const NormalLawParameters& law(int i, int j) const {

@@ -16,6 +16,7 @@
 #include "dem/backend/device.hpp"
 #include "dem/history/packed_history.hpp"
 #include "dem/reports/output_fields.hpp"
+#include "dem/search/skin_choice.hpp"
 #include "model/checks/limits.hpp"
 #include "model/checks/memory.hpp"
 #include "model/data/body_layout.hpp"
@@ -254,6 +255,16 @@ bool can_estimate_device(const Model& model, const Ranks& ranks) {
   return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
 }
 
+std::string skin_line(const Model& model) {
+  const Real skin = model.contact.skin;
+  if (!chooses_skin(model))
+    return fmt::format("search         skin {:.4g} m{}\n", skin,
+                       model.contact.skin_is_default ? ", the default" : "");
+  const auto [smallest, largest] = skins_to_choose_from(model);
+  return fmt::format("search         skin {:.4g} m at the start, then chosen between {:.3g} and {:.3g} m\n",
+                     skin, smallest, largest);
+}
+
 // Device memory. If ranks share GPUs or hosts differ, free memory is that of the GPU with the largest needed
 // share.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
@@ -294,8 +305,7 @@ std::string check_report(const Model& model, const std::vector<ChosenValue>& cho
   const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
          limit_lines(model, trials) + time_lines(model, trials, chosen) + files + history_limit_lines(model) +
-         fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
-         memory_line(model, ranks.size()) + device_memory_line(model, ranks);
+         skin_line(model) + memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }
 
 }  // namespace scree

@@ -9,6 +9,7 @@
 #include "dem/backend/device.hpp"
 #include "dem/particles/particle_store.hpp"
 #include "dem/reports/triangle_works.hpp"
+#include "dem/search/skin_choice.hpp"
 #include "model/checks/memory.hpp"
 #include "output/results_folder.hpp"
 #include "output/run_record.hpp"
@@ -362,6 +363,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"rejected_newton", n.rejected_newton},
                    {"frozen_steps", n.lagged_steps},
                    {"list_builds", backend_->list().builds()},
+                   {"list_skin_chosen", chooses_skin(model_) ? 1 : 0},
                    {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
                    {"rebalances", balance.rebalances},
                    {"migrated", migrated_},
@@ -375,7 +377,8 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.measures = {
       {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
       {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", taken_by_integrator(b)},
-      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest}};
+      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest},
+      {"list_skin", backend_->list().skin()}};
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }
@@ -385,9 +388,13 @@ void Simulation::summarize() const {
   const BalanceState& b = state_.balance;
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
-      "of the time without output)",
+      "of the time without output; skin {:.3g} m, {})",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-      n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
+      n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages),
+      backend_->list().skin(),
+      chooses_skin(model_)             ? "chosen by the program"
+      : model_.contact.skin_is_default ? "the default"
+                                       : "as in the deck"));
   if (n.lagged_steps > 0)
     log_.info(
         fmt::format("the friction limits were lagged in {} of the steps: shorter steps would resolve them",

@@ -146,7 +146,7 @@ void StepLoop::leave() {
     parts_.backend.particles().remove_escaped(escaped_particles);
     account_escaped(escaped_particles, parts_.model.space.leaving, state_.carried_out);
   }
-  parts_.step.rebuild_list(parts_.model.contact.skin);  // measures stages of its own
+  parts_.step.rebuild_list();  // measures stages of its own
 }
 
 void StepLoop::output(Real h) {

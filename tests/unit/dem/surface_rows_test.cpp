@@ -32,6 +32,7 @@ struct BuiltRows {
         builder(model),
         motion(carriers_of(model)) {
     side.set_motion(motion);
+    side.plan_list(kSkin, HostSurfaces::kNoMotion);
     side.bring_into_box();
     side.update_poses();
     store.load(initial_records(model.particles, subdomain));
