@@ -68,7 +68,7 @@ bool CudaExplicitRun::take_ahead(std::span<const BodyMotion> motion, Index last,
 // Like renew_list(), for the present poses of the walls.
 bool CudaExplicitRun::renew_list_beside_walls(StageTimers& timers) {
   if (list_.current() && bodies_.side().list_displacement() < list_.skin() / 2) return renew_list(timers);
-  list_.build(items_.model.contact.skin, timers);
+  list_.build(list_.choose_skin(), timers);
   control_.resume();
   return true;
 }
