@@ -49,6 +49,7 @@ void CudaBodies::take_steps(Real h) {
 
 void CudaBodies::queue_loads(const SurfaceQuery& query, const Event& ready) {
   const Device on{stream_};
+  if (!items_.surfaces.any_near()) return;
   items_.surfaces.upload(on, side_.poses());
   ready.hold(stream_);
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, query);
@@ -70,6 +71,7 @@ void CudaBodies::accumulate_load_works(Real h) {
 
 void CudaBodies::find_loads_concurrently(const SurfaceQuery& query) {
   if (!have_surfaces()) return;
+  if (!items_.surfaces.any_near()) return side_.take_loads({}, query.h);
   const Device on{stream_};
   items_.surfaces.upload(on, side_.poses());
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_query, query);

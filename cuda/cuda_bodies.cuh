@@ -36,6 +36,7 @@ class CudaBodies {
   // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
   // contacts of particles in the state of `query`. The kernel of the step reads them after loads_found();
   // take_loads() waits for their sums.
+  // Nothing is queued where no particle of this rank is near a surface.
   void queue_loads(const SurfaceQuery& query, const Event& ready);
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);

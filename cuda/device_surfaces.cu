@@ -1,3 +1,4 @@
+#include <cstring>
 #include <cub/device/device_scan.cuh>
 
 #include "base/countable.hpp"
@@ -186,8 +187,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
   Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
-  const EntrySearch in{p.position, p.active,  *p.grid,       p.starts,   p.largest_radius + skin,
-                       skin,       numbers(), poses_.data(), box_.period};
+  const EntrySearch in{p.position, p.active,  *p.grid, p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), poses(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The scan also reads the entry past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -196,10 +197,9 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts);
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
-  meshes_.find(
-      device,
-      {p.position, *p.grid, p.starts, skin, box_.period, poses_.data(), frames_.data(), p.stored_contacts},
-      poses, p.largest_radius, counts);
+  meshes_.find(device,
+               {p.position, *p.grid, p.starts, skin, box_.period, poses(), frames(), p.stored_contacts},
+               poses, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
                  "scan");
@@ -241,6 +241,7 @@ void DeviceSurfaces::group_by_surface(Device device) {
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunkEntries)
       h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
+  h_load_sums_.resize(h_chunks_.size());
   for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
   steps_.resize(entries);
 }
@@ -248,19 +249,20 @@ void DeviceSurfaces::group_by_surface(Device device) {
 void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
   if (!any_placed()) return;
   placed_.wait();  // waits for the previous copy from pinned memory
-  h_poses_.resize(poses.placed.size()), poses_.resize(poses.placed.size());
-  std::copy(poses.placed.begin(), poses.placed.end(), h_poses_.data());
-  copy_async(poses_.data(), h_poses_.data(), poses.placed.size(), device.stream);
-  h_frames_.resize(poses.frames.size()), frames_.resize(poses.frames.size());
-  std::copy(poses.frames.begin(), poses.frames.end(), h_frames_.data());
-  copy_async(frames_.data(), h_frames_.data(), poses.frames.size(), device.stream);
+  // One copy for both: a copy takes longer to begin than to move these bytes.
+  const std::size_t of_poses = poses.placed.size_bytes(), of_frames = poses.frames.size_bytes();
+  frames_at_ = (of_poses + alignof(SurfaceFrame) - 1) / alignof(SurfaceFrame) * alignof(SurfaceFrame);
+  h_posed_.resize(frames_at_ + of_frames), posed_.resize(frames_at_ + of_frames);
+  std::memcpy(h_posed_.data(), poses.placed.data(), of_poses);
+  if (of_frames > 0) std::memcpy(h_posed_.data() + frames_at_, poses.frames.data(), of_frames);
+  copy_async(posed_.data(), h_posed_.data(), posed_.size(), device.stream);
   placed_.record(device.stream);
 }
 
 void DeviceSurfaces::store_start(Device device) {
   if (!any_placed()) return;
-  start_poses_.resize(poses_.size());
-  copy_async(start_poses_.data(), poses_.data(), poses_.size(), device.stream);
+  start_poses_.resize(static_cast<std::size_t>(placed_count_));
+  copy_async(start_poses_.data(), poses(), start_poses_.size(), device.stream);
 }
 
 SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
@@ -269,8 +271,8 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           query.velocity,
           material_,
           {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
-          poses_.data(),
-          frames_.data(),
+          poses(),
+          frames(),
           numbers(),
           meshes_.rows(),
           meshes_.touches(),

@@ -39,12 +39,14 @@ class DeviceSurfaces {
   // Fills the rows. poses: the present ones of the surfaces. Waits for the device.
   void build(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   bool any_placed() const { return placed_count_ > 0; }
+  // Whether any particle of this rank is near a posed surface.
+  bool any_near() const { return placed_entries_ > 0; }
   bool all_placed_static() const { return any_placed() && all_static_; }  // as `SurfaceSet::is_static`
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(),      images_.data(), poses_.data(),
-            frames_.data(),  meshes_.rows().meshes, numbers()};
+    return {offsets_.data(), surfaces_.data(),      images_.data(), poses(),
+            frames(),        meshes_.rows().meshes, numbers()};
   }
 
   // Selects one of two sets of loads: that of the step, which the particles read, or of a second evaluation
@@ -106,6 +108,10 @@ class DeviceSurfaces {
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
+  const SurfacePose* poses() const { return reinterpret_cast<const SurfacePose*>(posed_.data()); }
+  const SurfaceFrame* frames() const {
+    return reinterpret_cast<const SurfaceFrame*>(posed_.data() + frames_at_);
+  }
 
   PeriodicBox box_;
   Real interaction_range_;  // `Contact::interaction_range` [m]
@@ -124,11 +130,12 @@ class DeviceSurfaces {
   std::vector<SurfaceChunk> h_chunks_;
   DeviceArray<SurfaceChunk> chunks_;
   const int* material_ = nullptr;
-  PinnedArray<SurfacePose> h_poses_;
-  PinnedArray<SurfaceFrame> h_frames_;
+  // Poses of the surfaces, and their frames from byte frames_at_ on.
+  PinnedArray<unsigned char> h_posed_;
+  DeviceArray<unsigned char> posed_;
+  std::size_t frames_at_ = 0;
   Event placed_;
-  DeviceArray<SurfacePose> poses_, start_poses_;
-  DeviceArray<SurfaceFrame> frames_;
+  DeviceArray<SurfacePose> start_poses_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
   DeviceArray<ShownContact> shown_;              // empty unless output values were asked for
