@@ -87,12 +87,10 @@ void Peers::reserve(Index ghosts) {
   ranks_.collectively([&] { mailboxes_.clear(); });
   ranks_.collectively([&] { own_mailbox_.resize(bytes); });
   mailboxes_ = open_peers(ranks_, own_mailbox_.data());
+  for (int rank = 0; rank < links_.size; ++rank)
+    mailbox_of_[rank] = static_cast<std::byte*>(
+        rank == links_.rank ? own_mailbox_.data() : mailboxes_[static_cast<std::size_t>(rank)].at());
   capacity_ = static_cast<Index>(bytes / kGhostBytes / kAligned * kAligned);
-}
-
-std::byte* Peers::mailbox_of(int rank) const {
-  if (rank == links_.rank) return const_cast<std::byte*>(own_mailbox_.data());
-  return static_cast<std::byte*>(mailboxes_[static_cast<std::size_t>(rank)].at());
 }
 
 }  // namespace scree

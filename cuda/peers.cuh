@@ -198,7 +198,7 @@ class Peers {
   PeerField<T> field(int number, T* field, Index first_ghost) const {
     static_assert(sizeof(T) <= sizeof(Vec4));
     const auto mailbox = [&](int rank) {
-      return reinterpret_cast<T*>(mailbox_of(rank) + number * field_bytes());
+      return reinterpret_cast<T*>(mailbox_of_[rank] + number * field_bytes());
     };
     PeerField<T> to{field, own_, first_ghost, mailbox(links_.rank), {}, {}};
     for (int n = 0; n < neighbors_.count; ++n)
@@ -219,13 +219,13 @@ class Peers {
 
   void greet();
   void reserve(Index ghosts);
-  std::byte* mailbox_of(int rank) const;
   std::size_t field_bytes() const { return static_cast<std::size_t>(capacity_) * sizeof(Vec4); }
 
   Ranks ranks_;
   DeviceArray<std::byte> own_flags_, own_mailbox_;
   std::vector<PeerMemory> flags_, mailboxes_;  // by rank; released before the memory of this rank
   PeerLinks links_{};
+  std::byte* mailbox_of_[kMostPeers] = {};
   Index capacity_ = 0;  // ghosts that each rank's mailbox holds
   PeerNeighbors neighbors_;
   Index end_[kMostPeers - 1] = {};
