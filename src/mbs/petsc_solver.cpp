@@ -128,6 +128,7 @@ struct PetscSolver::Impl {
   bool is_finite() const;
 #if SCREE_REFACTORS
   bool solve_directly(bool refactor);
+  bool is_plain() const;
   void find_factors();
 #endif
   void multiply(bool back);
@@ -140,8 +141,8 @@ struct PetscSolver::Impl {
   KSP solver = nullptr;
   PC preconditioner = nullptr;  // owned by the solver
 #if SCREE_REFACTORS
-  KluFactors* factors =
-      nullptr;  // of the solver; null while it has none, or where PETSc must do each solution
+  bool plain = false;             // solutions need nothing of PETSc but the factors
+  KluFactors* factors = nullptr;  // of the solver, once a plain one has some
 #endif
 };
 
@@ -205,6 +206,9 @@ void PetscSolver::Impl::create() {
   check(PCSetType(preconditioner, PCLU));
   choose_package();
   check_option(KSPSetFromOptions(solver));
+#if SCREE_REFACTORS
+  plain = is_plain();
+#endif
 }
 
 PetscSolver::PetscSolver(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
@@ -275,7 +279,7 @@ bool PetscSolver::Impl::solve_by_petsc(bool refactor) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(solver, &reason));
 #if SCREE_REFACTORS
-  find_factors();
+  if (plain) find_factors();
 #endif
   return reason > 0 && is_finite();
 }
@@ -283,14 +287,17 @@ bool PetscSolver::Impl::solve_by_petsc(bool refactor) {
 #if SCREE_REFACTORS
 // With the defaults a solution is one with the factors, and the calls of PETSc around it take longer than the
 // factors of a small matrix need. Options of the user act within these calls.
-void PetscSolver::Impl::find_factors() {
+bool PetscSolver::Impl::is_plain() const {
   char* options = nullptr;
   check(PetscOptionsGetAll(nullptr, &options));
   const bool given = std::string(options).find(fmt::format("-{}", kPrefix)) != std::string::npos;
   check(PetscFree(options));
   MatSolverType package = nullptr;
   check(PCFactorGetMatSolverType(preconditioner, &package));
-  if (given || package == nullptr || package != std::string(kKluRefactor)) return;
+  return !given && package != nullptr && package == std::string(kKluRefactor);
+}
+
+void PetscSolver::Impl::find_factors() {
   Mat factor = nullptr;
   check(PCFactorGetMatrix(preconditioner, &factor));
   check(factors_of(factor, &factors));
