@@ -8,12 +8,13 @@
 
 namespace scree {
 
-// A cached contact. While the centre is within `safe_distance` of `from`, it is over this triangle, and a
-// query would find the contact with it only; triangle -1: a query would find none.
+// A cached contact. While the centre is within `safe_distance` of `from`, it is over this triangle, or in the
+// region of an edge or a vertex, and a query would find the contact with it only; triangle -1: a query would
+// find none.
 struct CachedContact {
-  Vec3 from;             // in the frame of the mesh [m]
-  Real safe_distance;    // [m]
-  Index triangle, part;  // part: that of the triangle
+  Vec3 from;                // in the frame of the mesh [m]
+  Real safe_distance;       // [m]
+  Index triangle, feature;  // as in MeshContact
 
   SCREE_HD bool holds(Vec3 c) const {
     const Vec3 moved = c - from;
@@ -71,6 +72,25 @@ struct CachedContactRow {
     return cached(team.reduce(safe_distance, [](Real a, Real b) { return b < a ? b : a; }), t);
   }
 
+  // Safe displacement in the region of an edge or a vertex, on a row that is not smooth.
+  SCREE_HD CachedContact in_region_of(const MeshContact& contact) const {
+    if (kind == RowKind::smooth) return kNoCachedContact;
+    const Index own = contact.feature - mesh.part_count;
+    const MeshFeature& feature = mesh.features[own];
+    Real safe_distance = feature.b < 0 ? inside_vertex(feature) : inside_edge(feature);
+    if (!mesh.sheet) shrink(safe_distance, dot(c - contact.point, in_double(feature.outward)) / kLongest);
+    for (Index i = team.first(); i < count && safe_distance > 0; i += team.stride()) {
+      const MeshTriangle& other = mesh.triangles[triangles[i]];
+      const Real beyond_range = mesh_detail::distance_to(mesh, other, c) - search_range;
+      if (beyond_range < safe_distance)
+        shrink(safe_distance, outside_regions(other, contact.distance, own, beyond_range));
+    }
+    CachedContact result =
+        cached(team.reduce(safe_distance, [](Real a, Real b) { return b < a ? b : a; }), contact.triangle);
+    result.feature = contact.feature;
+    return result;
+  }
+
   // Safe displacement beyond the reach of all triangles, or over the nearest one, where that is larger.
   SCREE_HD CachedContact clear() const {
     NearestTriangle nearest{kInfinity, -1};
@@ -86,7 +106,8 @@ struct CachedContactRow {
   }
 
  private:
-  static constexpr Real kLongLasting = 0.1;  // fraction of the reach
+  static constexpr Real kLongLasting = 0.1;            // fraction of the reach
+  static constexpr Real kLongest = 1 + Real(0x1p-20);  // bound of the length of unit vectors in float
   struct NearestTriangle {
     Real distance;
     std::int64_t triangle;
@@ -137,30 +158,52 @@ struct CachedContactRow {
     }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_range = away - search_range;
     if (kind == RowKind::any)
-      return beyond_range < enough && other.features > 0 ? outside_regions(other, below, beyond_range)
-                                                         : beyond_range;
+      return beyond_range < enough ? outside_regions(other, below.distance, -1, beyond_range) : beyond_range;
     const Real by_distance = Real(0.5) * (away - below.distance);
     if (farther < by_distance) farther = by_distance;
     shrink(farther, same_side);
     return farther > beyond_range ? farther : beyond_range;
   }
   // Displacement of c for which it stays outside the regions in which a search finds the face and the edges
-  // and vertices of another triangle, or beyond their reach; at least `least`.
-  SCREE_HD Real outside_regions(const MeshTriangle& other, const Below& below, Real least) const {
-    Real safe_distance = beside_face(other, below);
+  // and vertices of another triangle, or beyond their reach; at least `least`. distance: of c from the
+  // contact; own: the row of its feature, which is left out; -1: a face.
+  SCREE_HD Real outside_regions(const MeshTriangle& other, Real distance, Index own, Real least) const {
+    Real safe_distance = beside_face(other, distance);
     for (Index row = other.first_feature; row < other.first_feature + other.features; ++row) {
+      if (row == own) continue;
       const MeshFeature& feature = mesh.features[row];
       shrink(safe_distance, feature.b < 0 ? outside_vertex(feature) : outside_edge(feature));
     }
     return safe_distance > least ? safe_distance : least;
   }
-  // Beyond one of its edges; or under it, inside a closed mesh, and deeper than c is over the plane below.
-  SCREE_HD Real beside_face(const MeshTriangle& other, const Below& below) const {
+  // Beyond one of its edges; or under it, inside a closed mesh, and farther from it than from the contact.
+  SCREE_HD Real beside_face(const MeshTriangle& other, Real distance) const {
     const MeshPart& part = mesh.parts[other.part];
     const Real height = dot(c - part.point, part.normal);
-    Real most = !mesh.sheet && height < 0 ? Real(0.5) * (-height - below.distance) : 0;
+    Real most = !mesh.sheet && height < 0 ? Real(0.5) * (-height - distance) : 0;
     for (int k = 0; k < 3; ++k) grow(most, -edge_of(other, part.normal, k).inside);
     return most;
+  }
+  // Between the ends of an edge and over none of its faces; along none of the edges of a vertex.
+  SCREE_HD Real inside_edge(const MeshFeature& edge) const {
+    const Vec3 a = mesh.vertices[edge.a], d = c - a, e = mesh.vertices[edge.b] - a;
+    const Real along = dot(d, e), square = dot(e, e);
+    Real least = along < square - along ? along : square - along;
+    for (Index i = edge.first_test; i < edge.first_test + edge.tests; ++i) {
+      const Index test = mesh.tests[i];
+      const Real left = left_of_edge(d, e, mesh.parts[test < 0 ? ~test : test].normal);
+      shrink(least, test < 0 ? left : -left);
+    }
+    return least / std::sqrt(square);
+  }
+  SCREE_HD Real inside_vertex(const MeshFeature& vertex) const {
+    const Vec3 v = mesh.vertices[vertex.a], d = c - v;
+    Real least = std::sqrt(dot(d, d));
+    for (Index i = vertex.first_test; i < vertex.first_test + vertex.tests; ++i) {
+      const Vec3 e = mesh.vertices[mesh.tests[i]] - v;
+      shrink(least, -dot(d, e) / std::sqrt(dot(e, e)));
+    }
+    return least;
   }
   // Past one of its ends, or over one of its faces.
   SCREE_HD Real outside_edge(const MeshFeature& edge) const {

@@ -28,10 +28,11 @@ void touch_with_prefetch(const MeshTouchItem<kHasRange, kOpenSurfaces>& item, In
   constexpr Index kAhead = 8;
   const SurfaceViews& in = item.in;
   for (Index g = 0; g < groups; ++g) {
-    if (const Index ahead = g + kAhead; ahead < groups && item.cached_contacts[ahead].part >= 0) {
+    if (const Index ahead = g + kAhead; ahead < groups && item.cached_contacts[ahead].feature >= 0) {
       const SurfacePose& surface = in.placed[in.surface_of(in.meshes.groups[ahead].entry)];
-      __builtin_prefetch(
-          &in.meshes.meshes[in.frames[surface.frame].mesh].parts[item.cached_contacts[ahead].part]);
+      const MeshView& mesh = in.meshes.meshes[in.frames[surface.frame].mesh];
+      if (const Index feature = item.cached_contacts[ahead].feature; is_face(mesh, feature))
+        __builtin_prefetch(&mesh.parts[feature]);
     }
     item(g);
   }

@@ -127,7 +127,7 @@ struct MeshTouchItem {
     if (!cached.holds(sphere.c)) return Nearest::unclear;
     MeshContact contact;
     const Nearest found =
-        cached.triangle >= 0 && is_over_within(sphere, cached, contact) ? Nearest::one : Nearest::none;
+        cached.triangle >= 0 && is_within_range(sphere, cached, contact) ? Nearest::one : Nearest::none;
     return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
   }
 
@@ -155,9 +155,10 @@ struct MeshTouchItem {
     const CachedContactRow<LaneGroup> cache{mesh,     group.kind, row.triangles, row.count,
                                             sphere.c, range,      team};
     const bool on_face = result.found == Nearest::one && is_face(mesh, result.contact.feature);
-    const CachedContact cached = result.found == Nearest::none ? cache.clear()
-                                 : on_face                     ? cache.over(result.contact.triangle)
-                                                               : kNoCachedContact;
+    const CachedContact cached = result.found == Nearest::none  ? cache.clear()
+                                 : on_face                      ? cache.over(result.contact.triangle)
+                                 : result.found == Nearest::one ? cache.in_region_of(result.contact)
+                                                                : kNoCachedContact;
     if (team.is_leader()) cached_contacts[g] = cached;
   }
 
@@ -226,13 +227,12 @@ struct MeshTouchItem {
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
   }
-  // Contact with the plane of the cached triangle. Returns whether it is within range.
-  SCREE_HD bool is_over_within(const Sphere& sphere, const CachedContact& on, MeshContact& face) const {
-    const MeshPart& part = sphere.mesh.parts[on.part];
-    const Real height = dot(sphere.c - part.point, part.normal);
-    face = {on.part, on.triangle, std::abs(height), part.point,
-            height >= 0 ? part.normal : opposite(part.normal)};
-    return face.distance < searched(sphere.radius);
+  // Contact with the cached feature. Returns whether it is within range.
+  SCREE_HD bool is_within_range(const Sphere& sphere, const CachedContact& on, MeshContact& contact) const {
+    contact = mesh_feature_at(sphere.mesh, on.feature, sphere.c, {});
+    contact.triangle = on.triangle;
+    if (contact.distance < 0) flip_side(contact);
+    return contact.distance < searched(sphere.radius);
   }
   // Writes this contact, or none, as the result of a group. Returns false, without writing, if the contact
   // continues other history than its own.

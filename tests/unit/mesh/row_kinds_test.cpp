@@ -118,9 +118,9 @@ TEST_CASE("one feature alone on a row that is not smooth is what the search for 
   CHECK(excluded > 100000);
 }
 
-TEST_CASE("as long as a sphere stays it touches the face that it was over, or nothing") {
+TEST_CASE("as long as a sphere stays it touches the feature that it touched, or nothing") {
   MeshRandom random(48);
-  int over = 0, over_rough = 0, clear = 0;
+  int over = 0, over_rough = 0, at_edges = 0, clear = 0;
   for (const SurfaceMesh& surface : joined(meshes(), rough_meshes())) {
     const MeshView view = surface.view();
     int wrong = 0;
@@ -136,6 +136,8 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
         cached = at.clear();
       else if (contacts.size() == 1 && contacts[0].feature < view.part_count)
         cached = at.over(contacts[0].triangle);
+      else if (contacts.size() == 1)
+        cached = at.in_region_of(contacts[0]);
       for (int k = 0; k < 10 && cached.safe_distance > 0; ++k) {
         const Real part_of_room = k % 2 == 0 ? random.in(0, 1) : Real(0.999999);
         const Vec3 moved = c + part_of_room * cached.safe_distance * random.direction();
@@ -145,17 +147,19 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
           ++clear, wrong += !found.empty();
           continue;
         }
-        const Index part = view.triangles[cached.triangle].part;
-        const bool touches = std::abs(dot(moved - view.parts[part].point, view.parts[part].normal)) < kRadius;
-        ++over, over_rough += at.kind == RowKind::any,
-            wrong += found.size() != touches ||
-                     (touches && (found[0].feature != part || found[0].triangle != cached.triangle));
+        const Real distance = std::abs(mesh_feature_at(view, cached.feature, moved, {}).distance);
+        const bool touches = distance < kRadius;
+        ++over, over_rough += at.kind == RowKind::any, at_edges += cached.feature >= view.part_count;
+        wrong += found.size() != touches ||
+                 (touches && (found[0].feature != cached.feature || found[0].triangle != cached.triangle ||
+                              found[0].distance != distance));
       }
     }
     CHECK(wrong == 0);
   }
   CHECK(over > 20000);
   CHECK(over_rough > 20000);
+  CHECK(at_edges > 10000);
   CHECK(clear > 2000);
 }
 
