@@ -387,7 +387,7 @@ void CudaList::limit_skin() {
   const Real slots = std::max(static_cast<Real>(entries()), slots_per_particle(model) * items_.owned);
   const Real free = kMemoryShare * static_cast<Real>(free_device_memory()) / items_.ranks.size();
   const Real limit = choice_.limit_in_memory(free, slots, per_entry);
-  choice_.limit_to(-items_.ranks.max(-limit));
+  choice_.limit_to(1 / items_.ranks.max(1 / limit));  // the smallest limit of all ranks
 }
 
 Real CudaList::displacement() {

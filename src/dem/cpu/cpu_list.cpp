@@ -224,19 +224,21 @@ Real CpuList::choose_skin() {
   return choice_.next();
 }
 
+// The frame moves only where some particles fall.
 void CpuList::choose_frame(Real skin) {
   frame_ = {};
   const Model& model = items_.model;
   if (!lists_leave_no_trace(model) || model.gravity == Vec3{}) return;
   const Vec3 down = (1 / norm(model.gravity)) * model.gravity;
   const auto largest = [&](const auto& value) {
-    Real most = -kInfinity;
+    Real most = 0;
     for (Index i = 0; i < items_.layout.active; ++i)
       most = std::max(most, value(xyz(items_.store.velocity[i])));
     return items_.ranks.max(most);
   };
-  const Real most = largest([&](Vec3 v) { return dot(v, down); }),
-             least = -largest([&](Vec3 v) { return -dot(v, down); });
+  const Real most = largest([&](Vec3 v) { return dot(v, down); });
+  if (!(most > 0)) return;
+  const Real least = most - largest([&](Vec3 v) { return most - dot(v, down); });
   const Vec3 fall = ListFrame::mean_fall(model.gravity, least, most);
   frame_ = {model.gravity,
             least,
@@ -252,7 +254,7 @@ void CpuList::limit_skin() {
   const Real per_entry = 2 * sizeof(Index) + 2 * history_of(items_.model.contact) * sizeof(Real),
              free = kMemoryShare * std::min(memory.host.bytes / items_.ranks.size(), memory.process.bytes);
   const Real limit = choice_.limit_in_memory(free, static_cast<Real>(entries()), per_entry);
-  choice_.limit_to(-items_.ranks.max(-limit));
+  choice_.limit_to(1 / items_.ranks.max(1 / limit));  // the smallest limit of all ranks
 }
 
 void CpuList::retain_rows(const std::vector<Index>& remaining) {
