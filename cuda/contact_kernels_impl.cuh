@@ -212,7 +212,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
     if constexpr (LawOf<Laws>::kNeedsMotion) {
       constexpr std::size_t kShared =
-          kFrictionBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>);
+          kFrictionBlocks<Laws> * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>);
       prefer_cache(friction_advance_kernel<Laws>, kShared);
       prefer_cache(friction_finish_kernel<Laws>, kShared);
     } else {

@@ -135,11 +135,14 @@ template <class Word, class Laws>
 using WarpRowsOf = WarpRows<Word, kWordsOf<Laws>>;
 
 // Blocks per multiprocessor: registers are limited so that the evaluation of a contact does not spill.
-inline constexpr int kFrictionBlocks = 4;
+// Rolling resistance needs more of them: fewer warps cost less than spilled registers, which take the place
+// of neighbours in the L1 cache.
+template <class Laws>
+inline constexpr int kFrictionBlocks = LawOf<Laws>::Rolling::acts ? 3 : 4;
 
 // The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts.
 template <class Laws>
-__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks)
+__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks<Laws>)
     friction_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
@@ -274,7 +277,7 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
 
 // The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts.
 template <class Laws>
-__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks)
+__global__ void __launch_bounds__(kStepBlock, kFrictionBlocks<Laws>)
     friction_finish_kernel(const __grid_constant__ VerletRequest r, const Laws laws, Real* largest) {
   const int p = r.control->parity[0], v = r.control->parity[1];
   __shared__ WarpContactsOf<double, Laws> contacts[kStepBlock / kSlice];

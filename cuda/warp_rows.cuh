@@ -22,35 +22,6 @@ struct WarpContacts {
   double sum[kSlice][kStride];
 };
 
-// The place of a lane's result, where values of the contact wait that its next part does not need: registers
-// are scarce. Volatile, or the compiler would keep them in registers all the same.
-struct AsideInShared {
-  double* words;  // at least 8
-  __device__ void put(const RollingInput& in) const {
-    volatile double* const to = words;
-    to[0] = in.rolling.x, to[1] = in.rolling.y, to[2] = in.rolling.z, to[3] = in.twisting;
-    to[4] = in.moment.x, to[5] = in.moment.y, to[6] = in.moment.z;
-  }
-  __device__ void take(RollingInput& in) const {
-    const volatile double* const from = words;
-    in = {{from[0], from[1], from[2]}, from[3], {from[4], from[5], from[6]}};
-  }
-  template <class Outcome>
-  __device__ void put(const Outcome& out) const {
-    volatile double* const to = words;
-    const auto& load = out.load;
-    to[0] = load.force.x, to[1] = load.force.y, to[2] = load.force.z, to[3] = load.loss;
-    to[4] = load.torque_i.x, to[5] = load.torque_i.y, to[6] = load.torque_i.z, to[7] = out.friction.sum();
-  }
-  template <class Outcome>
-  __device__ void take(Outcome& out) const {
-    const volatile double* const from = words;
-    auto& load = out.load;
-    load.force = {from[0], from[1], from[2]}, load.loss = from[3];
-    load.torque_i = {from[4], from[5], from[6]}, out.friction = {from[7], 0, 0};
-  }
-};
-
 // Each lane searches its row for touching entries; the contacts of all lanes are then evaluated, one per
 // lane, whichever row they belong to; and the results are summed row by row, in the order of the row. All
 // lanes of a warp take part in every call; their rows form a slice.
@@ -65,10 +36,6 @@ struct WarpRows {
   // Offsets and stride of the whole rows, as in `SlicedRows`.
   __device__ std::int64_t first(Index i) const { return rows.rows.first(i); }
   __device__ static constexpr int stride() { return SlicedRows::stride(); }
-  // For the contact that the lane evaluates.
-  __device__ AsideInShared aside() const requires(std::is_same_v<Word, double>) {
-    return {shared->result[lane_of_warp()]};
-  }
 
   // Adds evaluate(i, j, slot), a structure of kWords `Word`s, to sum, a structure of as many doubles, for the
   // entries j of row i with test(j); slot is the entry's number. Any lane may make the call for a contact; an

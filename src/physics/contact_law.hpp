@@ -82,20 +82,6 @@ struct ContactOutcome {
   SCREE_HD TangentialLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
 };
 
-// Input of rolling resistance that waits while friction is computed.
-struct RollingInput {
-  Vec3 rolling;  // as in ContactMotion
-  Real twisting;
-  Vec3 moment;  // rotated with the contact [N m]
-};
-// Where values of a contact are kept until they are needed: where they are.
-struct NothingAside {
-  SCREE_HD void put(const RollingInput&) const {}
-  SCREE_HD void take(RollingInput&) const {}
-  SCREE_HD void put(const ContactOutcome&) const {}
-  SCREE_HD void take(ContactOutcome&) const {}
-};
-
 // The law of a contact. Without friction, rolling resistance and JKR adhesion (`kNeedsMotion` is false) it is
 // a function of the instant: `load(pair)`. Otherwise it needs the motion of the partners over the step and
 // the contact history: `load(moving pair, history)`. Both are pure: the new history is returned, and only the
@@ -138,10 +124,9 @@ struct ContactLaw {
   SCREE_HD static bool breaks(const ContactHistory& old) { return kHysteretic && old.touched; }
 
   // Outcome of a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
-  // `MovingPair`, or `InstantPair`. aside: where values wait that the next part does not need
-  // (`NothingAside`).
-  template <class Pair = MovingPair, class Aside = NothingAside>
-  SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old, const Aside& aside = {}) const {
+  // `MovingPair`, or `InstantPair`.
+  template <class Pair = MovingPair>
+  SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
     const auto law = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
@@ -161,11 +146,6 @@ struct ContactLaw {
       if (!old.touched) out.load.loss += law.formation_loss() / step.h;
     out.history.touched = old.touched || g.overlap > 0;
     SpringSlider slider{};
-    RollingInput input;
-    if constexpr (RollingLaw::acts) {
-      input = {motion.rolling, motion.twisting, rotated_with(motion, old.moment)};
-      aside.put(input);
-    }
     if constexpr (TangentialLaw::acts) {
       slider = tangential.slider(pair.size, motion, contact);
       SpringStep step = spring_step(slider, rotated_tangential(motion, old.spring), motion.slip, motion.h);
@@ -174,15 +154,10 @@ struct ContactLaw {
       add_friction(step, motion, out);
     }
     if constexpr (RollingLaw::acts) {
-      aside.take(input);
-      aside.put(out);
-      ContactMotion rest = motion;
-      rest.rolling = input.rolling, rest.twisting = input.twisting;
-      const RollingContact rolls{pair.size, rest, contact, slider};
-      RollingStep step = rolling.step(rolls, input.moment);
+      const RollingContact rolls{pair.size, motion, contact, slider};
+      RollingStep step = rolling.step(rolls, rotated_with(motion, old.moment));
       if constexpr (std::is_same_v<Pair, InstantPair>)
         step.acting = rolling.at(rolls, step.spring, pair.relative_spin);
-      aside.take(out);
       add_rolling(step, motion.h, out);
     }
     return out;

@@ -7,9 +7,7 @@ namespace {
 struct RootsItem {
   const Real* numbers;
   Roots* roots;
-  __device__ void operator()(Index i) const {
-    roots[i] = {root_and_inverse(numbers[i]), reciprocal(numbers[i])};
-  }
+  __device__ void operator()(Index i) const { roots[i] = roots_of(numbers[i]); }
 };
 
 }  // namespace

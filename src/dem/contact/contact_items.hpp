@@ -70,10 +70,10 @@ template <int kKinds>
 struct EvaluateRotatingForce {
   using Result = TotalForce<kKinds>;
 
-  template <class Law, class Pair, class History, class... Aside>
-  SCREE_HD LoadWithHistory<Result, History> operator()(const Law& law, const Pair& pair, const History& old,
-                                                       const Aside&... aside) const {
-    const auto outcome = law.load(pair, old, aside...);
+  template <class Law, class Pair, class History>
+  SCREE_HD LoadWithHistory<Result, History> operator()(const Law& law, const Pair& pair,
+                                                       const History& old) const {
+    const auto outcome = law.load(pair, old);
     return {Result::of(outcome.load, outcome.losses()), outcome.history};
   }
 };

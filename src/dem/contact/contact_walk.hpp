@@ -105,7 +105,7 @@ struct ContactWalk {
       [[maybe_unused]] const bool closed = found_closed(law, pair, history);
       if constexpr (kHasRange<Law>)
         if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
-      const auto contact = evaluated(law, pair, history);
+      const auto contact = of(law, pair, history);
       if constexpr (kAccepts)
         if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
@@ -115,16 +115,6 @@ struct ContactWalk {
       return walk.in_range(walk.kinematics.test(walk.in, of_row));
     }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
-
-   private:
-    // The contact; values may wait where the rows have a place for them.
-    template <class Pair, class History>
-    SCREE_HD auto evaluated(const Law& law, const Pair& pair, const History& history) const {
-      if constexpr (requires { of(law, pair, history, walk.in.rows.aside()); })
-        return of(law, pair, history, walk.in.rows.aside());
-      else
-        return of(law, pair, history);
-    }
   };
 
   // The test, extended by the interaction range of the law.

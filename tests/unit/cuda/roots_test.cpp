@@ -24,11 +24,19 @@ TEST_CASE("roots and reciprocals are the same on the device") {
   const std::vector<Roots> roots = roots_on_device(numbers);
   int wrong = 0;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const RootAndInverse<Real> root = root_and_inverse(numbers[k]);
-    wrong += roots[k].root.root != root.root || roots[k].root.inverse != root.inverse ||
-             roots[k].reciprocal != reciprocal(numbers[k]);
+    const Roots expected = roots_of(numbers[k]);
+    wrong += roots[k].both.root != expected.both.root || roots[k].both.inverse != expected.both.inverse ||
+             roots[k].reciprocal != expected.reciprocal || roots[k].root != expected.root ||
+             roots[k].inverse != expected.inverse || roots[k].quotient != expected.quotient;
   }
   CHECK(wrong == 0);
+}
+
+TEST_CASE("the root of zero and reciprocals of infinity are the same on the device") {
+  const std::vector<Roots> roots = roots_on_device({0, kInfinity});
+  CHECK(roots[0].root == 0);
+  CHECK(roots[1].inverse == 0);
+  CHECK(roots[1].quotient == 0);
 }
 
 }  // namespace scree
