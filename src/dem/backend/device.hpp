@@ -63,6 +63,9 @@ std::size_t device_memory(const Model& model);
 // Device memory of the meshes [B], without that of the particles near them: arrays, trees, and the
 // dissipation at each triangle where it is an output.
 std::size_t device_memory_of_meshes(const Model& model);
+// Additional device memory of a particle with a contact near a mesh [B]. device_memory() counts those that
+// are near one at the start.
+std::size_t device_memory_near_mesh(const Model& model);
 
 // Memory that one rank needs on its GPU.
 struct DeviceClaim {

@@ -231,6 +231,15 @@ std::size_t device_memory_of_meshes(const Model& model) {
   return static_cast<std::size_t>(bytes);
 }
 
+std::size_t device_memory_near_mesh(const Model& model) {
+  constexpr double kTrianglesInRow = 10;  // with triangles of the particle's size
+  Sizes none{};
+  none.on_bodies = true;
+  Sizes one = none;
+  one.entries = one.groups = 1, one.triangles = kTrianglesInRow;
+  return static_cast<std::size_t>(surface_bytes(model, one) - surface_bytes(model, none));
+}
+
 std::size_t device_memory(const Model& model) {
   const Sizes n = sizes_of(model);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;

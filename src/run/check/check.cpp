@@ -274,7 +274,9 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
   const std::string line = fmt::format(
       "device memory  about {} {} (estimate{})", megabytes(static_cast<Real>(device_memory(model))),
       ranks.alone() ? "on the GPU" : "on each rank's GPU",
-      meshes == 0 ? "" : fmt::format("; {} of it meshes", megabytes(static_cast<Real>(meshes))));
+      meshes == 0 ? ""
+                  : fmt::format("; {} of it meshes; each particle that comes near one {} B more",
+                                megabytes(static_cast<Real>(meshes)), device_memory_near_mesh(model)));
   choose_device(ranks);
   const std::string trouble = device_error();
   if (ranks.any(!trouble.empty()))

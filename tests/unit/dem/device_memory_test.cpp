@@ -1,5 +1,8 @@
 // Whether the ranks that share a GPU fit into its memory.
 #include "dem/backend/device.hpp"
+#include "dem/host/host_surfaces.hpp"
+#include "dem/search/neighbor_list.hpp"
+#include "mesh/cached_contact.hpp"
 #include "support/catch.hpp"
 #include "unit/dem/random_box.hpp"
 
@@ -13,10 +16,30 @@ DeviceClaim claim(char device, std::size_t needed, std::size_t free) {
   return {{device}, needed * kMegabyte, free * kMegabyte};
 }
 
-double memory_with_floor(int particles, int squares, Real height = 0) {
+Model model_with_floor(int particles, int squares, Real height = 0) {
   Model model = random_box(kBoxes[6], particles, 5);
   if (squares > 0) add_floor(model, squares), model.walls.back().point.z = height;
-  return static_cast<double>(device_memory(model));
+  return model;
+}
+
+double memory_with_floor(int particles, int squares, Real height = 0) {
+  return static_cast<double>(device_memory(model_with_floor(particles, squares, height)));
+}
+
+SurfaceRows rows_at_start(const Model& model) {
+  const Subdomain subdomain(model.space);
+  HostSurfaces surfaces(model, subdomain, Ranks());
+  surfaces.set_motion(std::vector<BodyMotion>(surfaces.surfaces().parents()));
+  surfaces.bring_into_box(), surfaces.update_poses();
+  ParticleStore store;
+  store.load(initial_records(model.particles, subdomain));
+  ItemLayout layout;
+  layout.owned = layout.active = layout.items = store.owned;
+  NeighborBuilder builder(model);
+  SurfaceRows rows;
+  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), {surfaces.poses()},
+                         model.contact.skin, rows);
+  return rows;
 }
 
 }  // namespace
@@ -32,6 +55,37 @@ TEST_CASE("device memory has meshes with their trees, and the rows of those that
   const double close = memory_with_floor(500, 20), away = memory_with_floor(500, 20, 10);
   CHECK(away > memory_with_floor(500, 0));
   CHECK(close - away > 500 * 0.1 / 1.3 * sizeof(SurfaceLoad));  // those whose centres are half a radius away
+}
+
+TEST_CASE("device memory of meshes is that of their arrays") {
+  Model model = random_box(kBoxes[6], 100, 5);
+  add_floor(model, 7), add_floor(model, 30);
+  const auto bytes = [](const auto&... arrays) { return ((arrays.size() * sizeof(arrays.front())) + ...); };
+  std::size_t expected = 0;
+  for (const ModelMesh& mesh : model.meshes) {
+    const SurfaceMesh& m = *mesh.surface;
+    expected += sizeof(MeshView) + bytes(m.vertices, m.triangles, m.parts, m.features, m.tests, m.patches,
+                                         m.first_neighbour, m.neighbours, m.boxes);
+  }
+  CHECK(device_memory_of_meshes(model) == expected);
+}
+
+TEST_CASE("particles near a mesh take the device memory of their entries, groups and triangles") {
+  const Model model = model_with_floor(500, 20), away = model_with_floor(500, 20, 10);
+  const SurfaceRows rows = rows_at_start(model), rows_away = rows_at_start(away);
+  const double groups = static_cast<double>(rows.groups.size()),
+               triangles = static_cast<double>(rows.triangles.size()),
+               entries = static_cast<double>(rows.surfaces.size() - rows_away.surfaces.size());
+  REQUIRE(rows_away.groups.empty());  // its entries are those of planes
+  REQUIRE((groups > 38 && entries >= groups && triangles > groups));
+  constexpr double kSpare = 1.125, kGroup = sizeof(MeshGroup) + sizeof(CachedContact) + 3 * sizeof(Index),
+                   kTriangle = sizeof(Index);
+  const double of_group = kSpare * (kGroup + 10 * kTriangle),
+               of_entry = static_cast<double>(device_memory_near_mesh(model)) - of_group;
+  CHECK(of_entry > 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep) + sizeof(MeshTouch));
+  const double near_mesh = static_cast<double>(device_memory(model) - device_memory(away));
+  CHECK(near(near_mesh, of_entry * entries + kSpare * (kGroup * groups + kTriangle * triangles),
+             {.relative = 0.01}));
 }
 
 TEST_CASE("device memory counts meshes without contacts, and reports their part") {
