@@ -284,12 +284,9 @@ const TableKeys& contact_keys() {
       "Contact laws and contact detection.",
       {real("skin", "m")
            .above(0)
-           .left_out("0.2 x the smallest radius at the start; explicit steps in double precision then choose "
-                     "it as they go")
-           .about(
-               "Skin of the neighbour list: it contains pairs up to this distance between their surfaces. No "
-               "bit of the results depends on it in double precision. The program chooses 0.1 to 1 x the "
-               "smallest radius from the displacements per step."),
+           .left_out("0.2 x the smallest radius at the start; explicit steps in double then choose it")
+           .about("Skin of the neighbour list: it contains pairs up to this distance between their surfaces. "
+                  "In double no bit depends on it; the program chooses 0.1 to 1 x the smallest radius."),
        boolean("connected_bodies_touch")
            .otherwise("false")
            .about(
@@ -323,9 +320,9 @@ const TableKeys& parallel_keys() {
                   "more than this fraction."),
        choice<Transport>("transport")
            .otherwise_choice(Transport::automatic)
-           .about("How ghost data are sent between GPUs: into each other's memory within one host (peer, "
-                  "explicit steps), by an MPI library that takes device memory, by NCCL, or through host "
-                  "memory. auto: the first that works. Another one that does not work ends the run.")},
+           .about("How ghost data are sent between GPUs: into each other's memory within one host (peer), by "
+                  "an MPI library that takes device memory, by NCCL, or through host memory. auto: the first "
+                  "that works. Another one that does not work ends the run.")},
       ""};
   return keys;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "base/utc.hpp"
 #include "dem/backend/device.hpp"
@@ -21,6 +22,7 @@
 #include "run/report/balance.hpp"
 #include "run/report/bodies_outside.hpp"
 #include "run/report/live_status.hpp"
+#include "run/report/summary.hpp"
 #include "run/report/surfaces_outside.hpp"
 #include "run/restart/restart.hpp"
 #include "run/state/start_record.hpp"
@@ -112,13 +114,7 @@ void Simulation::start_or_resume() {
     backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
     for (const std::string& finding : body_coupling_.start_warnings()) log_.warning(finding);
-    if (!start_change().empty())
-      log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
-    if (body_coupling_.multibody() && !body_coupling_.multibody()->redundancy().empty())
-      log_.info(
-          "redundant constraints: the reactions, which are not unique for rigid bodies, are the minimum-norm "
-          "solution: " +
-          body_coupling_.multibody()->redundancy());
+    for (const std::string& line : start_lines(body_coupling_.multibody())) log_.info(line);
   } else {
     load_state();
     step_.counts() = state_.counts;
@@ -171,8 +167,7 @@ std::string Simulation::start_change() const {
 // A restart in the folder of the checkpoint continues its files; in another folder new files begin.
 bool Simulation::continues_files() const {
   bool same = false;
-  ranks_.on_root([&] { same = folder_.continues(); });
-  ranks_.broadcast(same);
+  ranks_.on_root([&] { same = folder_.continues(); }, std::span(&same, 1));
   return same;
 }
 
@@ -386,26 +381,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
 void Simulation::summarize() const {
   const StepCounts& n = step_.counts();
   const BalanceState& b = state_.balance;
-  log_.info(fmt::format(
-      "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
-      "of the time without output; skin {:.3g} m, {})",
-      state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-      n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages),
-      backend_->list().skin(),
-      chooses_skin(model_)             ? "chosen by the program"
-      : model_.contact.skin_is_default ? "the default"
-                                       : "as in the deck"));
-  if (n.lagged_steps > 0)
-    log_.info(
-        fmt::format("the friction limits were lagged in {} of the steps: shorter steps would resolve them",
-                    n.lagged_steps));
-  const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
-  log_.info(
-      fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
-                  "integration; {} escaped from the domain{}",
-                  balance_error(b), b.exchanged, taken_by_integrator(b),
-                  counted(state_.carried_out.left, "particle", "particles"),
-                  outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
+  log_.info(steps_text(n, state_.clock.time) + lists_text(model_, backend_->list(), timers_));
+  if (n.lagged_steps > 0) log_.info(lagged_text(n));
+  log_.info(balance_text(b, state_.carried_out.left, bodies_outside(model_, state_.bodies).count));
   log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
   const Multibody* const bodies = body_coupling_.multibody();
   const BodyBalance of_bodies = bodies == nullptr ? BodyBalance{} : body_balance(model_, *bodies, state_);
