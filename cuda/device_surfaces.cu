@@ -187,8 +187,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
   Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
-  const EntrySearch in{p.position, p.active,  *p.grid, p.starts,   p.largest_radius + skin,
-                       skin,       numbers(), poses(), box_.period};
+  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), device_poses(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The scan also reads the entry past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -197,9 +197,10 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts);
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
-  meshes_.find(device,
-               {p.position, *p.grid, p.starts, skin, box_.period, poses(), frames(), p.stored_contacts},
-               poses, p.largest_radius, counts);
+  meshes_.find(
+      device,
+      {p.position, *p.grid, p.starts, skin, box_.period, device_poses(), device_frames(), p.stored_contacts},
+      poses, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
                  "scan");
@@ -262,7 +263,7 @@ void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
 void DeviceSurfaces::store_start(Device device) {
   if (!any_placed()) return;
   start_poses_.resize(static_cast<std::size_t>(placed_count_));
-  copy_async(start_poses_.data(), poses(), start_poses_.size(), device.stream);
+  copy_async(start_poses_.data(), device_poses(), start_poses_.size(), device.stream);
 }
 
 SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
@@ -271,8 +272,8 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           query.velocity,
           material_,
           {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
-          poses(),
-          frames(),
+          device_poses(),
+          device_frames(),
           numbers(),
           meshes_.rows(),
           meshes_.touches(),

@@ -45,8 +45,8 @@ class DeviceSurfaces {
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(),      images_.data(), poses(),
-            frames(),        meshes_.rows().meshes, numbers()};
+    return {offsets_.data(), surfaces_.data(),      images_.data(), device_poses(),
+            device_frames(), meshes_.rows().meshes, numbers()};
   }
 
   // Selects one of two sets of loads: that of the step, which the particles read, or of a second evaluation
@@ -108,8 +108,8 @@ class DeviceSurfaces {
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
-  const SurfacePose* poses() const { return reinterpret_cast<const SurfacePose*>(posed_.data()); }
-  const SurfaceFrame* frames() const {
+  const SurfacePose* device_poses() const { return reinterpret_cast<const SurfacePose*>(posed_.data()); }
+  const SurfaceFrame* device_frames() const {
     return reinterpret_cast<const SurfaceFrame*>(posed_.data() + frames_at_);
   }
 
