@@ -108,16 +108,17 @@ struct VerletControl {
   }
   SCREE_HD void choose_rows() {
     constexpr Real kMostSteps = 32, kFewestSteps = 6;  // lifetime aimed at for pruned rows [steps]
-    constexpr Real kMinFraction = Real(1) / 32;  // of the skin: particles nearly at rest will also start
-                                                 // to move
-    constexpr Real kMaxFraction = Real(1) / 5;   // of the skin: with more, pruning saves too little
+    constexpr Real kMinFraction = Real(1) / 32;     // of the skin: particles nearly at rest will also start
+                                                    // to move
+    constexpr Real kMaxFraction = Real(1) / 2;      // of the skin: with more, pruning saves too little
+    constexpr Real kFractionOfShort = Real(1) / 5;  // of the skin, if the list lasts fewer than 64 steps
     if (moved < margin / 2) {
       rows = RowUse::pruned;
       return;
     }
     const Real target = kMostSteps * displacement, least = kMinFraction * half_skin,
-               most = kMaxFraction * half_skin, wanted = target > least ? target : least;
-    margin = 2 * (wanted < most ? wanted : most);
+               wanted = target > least ? target : least;
+    margin = 2 * (wanted < kMaxFraction * half_skin ? wanted : kFractionOfShort * half_skin);
     rows = margin > 2 * kFewestSteps * displacement ? RowUse::prune : RowUse::all;
     moved = rows == RowUse::prune ? 0 : kNoRows;
   }

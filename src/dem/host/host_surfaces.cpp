@@ -25,9 +25,13 @@ HostSurfaces::HostSurfaces(const Model& model, const Subdomain& subdomain, const
       step_rotation_(step_) {
   for (const ModelMesh& mesh : model.meshes)
     meshes_.push_back(mesh.surface->view()), boxes_.push_back(mesh.surface->box);
+  has_axes_.resize(motion_.size());
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    has_axes_[b] = model.bodies[b].kind == BodyKind::spatial;
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
     if (surface.kind == SurfaceKind::sphere) continue;
+    has_axes_[static_cast<std::size_t>(surface.parent)] = true;
     placed_[s].frame = static_cast<Index>(frames_.size());
     frames_.push_back({identity3(), identity3(), surface.normal, surface.mesh});
     if (surface.kind == SurfaceKind::mesh) span(surface, frames_.back());

@@ -165,6 +165,7 @@ class HostSurfaces {
     Vec3 spin, turn;        // [rad/s], since the start of the step [rad]
   };
   std::vector<ParentRotation> rotations_;
+  std::vector<bool> has_axes_;  // per parent: spatial, or with surfaces other than spheres
   std::vector<Vec3> step_, step_rotation_;
   std::vector<InstantSums> loads_;  // of particles, then of shapes
   std::size_t particle_loads_ = 0;  // number of the particles' sums in loads_

@@ -55,13 +55,15 @@ std::vector<Mat3> HostSurfaces::axes() const {
   return axes;
 }
 
-// What all surfaces of a parent share.
+// What all surfaces of a parent share. Discs on planar bodies need no axes.
 void HostSurfaces::rotate_parents() {
   rotations_.resize(motion_.size());
   for (std::size_t p = 0; p < motion_.size(); ++p) {
     ParentRotation& of = rotations_[p];
-    of.axes = rotation_matrix(orientation(motion_[p]));
-    of.start_axes = rotation_matrix(orientation(step_start_[p]));
+    if (has_axes_[p]) {
+      of.axes = rotation_matrix(orientation(motion_[p]));
+      of.start_axes = rotation_matrix(orientation(step_start_[p]));
+    }
     of.spin = global_spin(motion_[p]);
     if (tracks_displacement()) of.turn = rotation_between(step_start_[p], motion_[p]);
   }
