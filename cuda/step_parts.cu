@@ -9,8 +9,8 @@
 namespace scree {
 namespace {
 
-// Separate launches cost more than they save if fewer interior blocks than this run per multiprocessor. With few
-// blocks, interior rows also keep the contacts with surfaces waiting until the first of these blocks end.
+// Separate launches cost more than they save if fewer interior blocks than this run per multiprocessor. With
+// few blocks, interior rows also keep the contacts with surfaces waiting until the first of these blocks end.
 constexpr unsigned kLeastBlocks = 8;
 
 // Whether a block of particles has neither ghosts nor placed surfaces near it.

@@ -128,7 +128,8 @@ class FacetsTest(CommandLineTest):
         self.assertRegex(report, r"a particle of 0\.005 m is \S+ triangles wide; about \d+ are near a contact")
         self.assertRegex(warnings,
                          r'mesh "m": its triangles are small beside the particles: .* costs time: segments = 32')
-        self.assertRegex(report, r"device memory .*; \S+ [kM]B of it meshes; each particle that comes near one \d+ B more\)")
+        self.assertRegex(
+            report, r"device memory .*; \S+ [kM]B of it meshes; each particle that comes near one \d+ B more\)")
 
     def test_shells_that_cut_through_each_other(self):
         solid = DECK.replace('[[walls]]\nname = "w"\nmesh = "m"\n', '[[bodies]]\nname = "b"\nkind = "spatial"\n'
