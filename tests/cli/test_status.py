@@ -39,11 +39,13 @@ class StatusTest(CommandLineTest):
     def test_a_run_tells_what_its_lists_took(self):
         gas = pathlib.Path(__file__).resolve().parents[2] / "input/examples/gas_periodic.toml"
         text = self.expect(DONE, "run", gas, "--output", self.folder / "gas").stdout
-        told = re.search(r" (\d+) list builds \((\d+) % of the time without output\)\n", text)
+        told = re.search(r" (\d+) list builds \((\d+) % of the time without output; skin (\S+) m, (.*)\)\n", text)
         record = json.loads((self.folder / "gas/run_record.json").read_text())
         seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"] if stage["stage"] != "output"}
         share = sum(seconds[stage] for stage in ("migrate", "sort_cells", "exchange_halo", "neighbors"))
         self.assertEqual(int(told[1]), record["counts"]["list_builds"])
+        self.assertAlmostEqual(float(told[3]), record["measures"]["list_skin"], delta=1e-2 * float(told[3]))
+        self.assertEqual(told[4], "chosen by the program" if record["counts"]["list_skin_chosen"] else "the default")
         self.assertGreater(int(told[2]), 10)
         self.assertAlmostEqual(int(told[2]), 100 * share / sum(seconds.values()), delta=1)
 
