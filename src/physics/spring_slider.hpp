@@ -74,15 +74,15 @@ struct StiffnessStep {
   Real remaining;       // fraction of the old force that remains [-]
   Real inverse0;        // 1 / k0 where k shrinks
 };
-// One reciprocal for both directions: in a warp some contacts grow and others shrink.
+// One reciprocal for both directions: in a warp some contacts grow and others shrink. Without branches, as
+// the compiler vectorizes no others; where the stiffness does not change the reciprocal is not used.
 SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
   const Real k0 = p.stiffness0, k1 = p.stiffness;
   const bool grows = k1 > k0, shrinks = k1 < k0;
-  if (!grows && !shrinks) return {k1, 1, 0};
   const Real inverse = reciprocal(grows ? k1 + k0 : k0);
   // Where it grows, the mean over the overlap of a stiffness in proportion to the contact radius, that is to
   // the root of the overlap.
-  return {grows ? Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * inverse : k1, grows ? 1 : k1 * inverse,
+  return {grows ? Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * inverse : k1, shrinks ? k1 * inverse : 1,
           inverse};
 }
 
