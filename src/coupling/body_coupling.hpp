@@ -49,7 +49,7 @@ class BodyCoupling {
   IterationNorms correct();          // uses the step's wrench; returns the norms on every rank
   IterationNorms correct_on_root();  // the same on rank 0 alone
   Real error() const;                // on every rank
-  // Uses end_wrench(). deferred: as in defer(), for explicit steps.
+  // Uses end_wrench(). deferred: in explicit steps, an exception is thrown later, as by defer().
   void accept(MultibodyState& bodies, bool deferred = false);
   // Adds the work of walls on particles over a step or substep from t to `end` [s]. wrench: the contact
   // wrenches that the step was solved with; those at its start are in `bodies`, where end_wrench() of the
@@ -86,7 +86,8 @@ class BodyCoupling {
 
   // Rank 0 -> all: motion at the current iterate of the open step; sets the surface poses of the list.
   void broadcast_motion(RankList& list);
-  void broadcast_motion(RankList& list, BodyIterations& iterations);  // and these
+  // Also sets `iterations` to those of rank 0, in the same message.
+  void broadcast_motion(RankList& list, BodyIterations& iterations);
   // Rank 0 -> all: motion tau [s] after `state` by rank 0's prediction, and that of walls at time t [s]; sets
   // the surface poses of the list.
   void broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t);

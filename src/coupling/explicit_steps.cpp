@@ -62,10 +62,7 @@ bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const 
     BodyStep part{step.t + step.h * done / all, step.h, step.end, done, done};
     open = explicit_substeps(run, bodies, step, part);
     if (part.last < all || part.first > 0) part.h = step.h * (part.last - part.first) / all;
-    if (body_coupling_.has_bodies())
-      solve_bodies(run, bodies, part);
-    else
-      body_coupling_.take_wrench(bodies);
+    solve_bodies(run, bodies, part);
     done = part.last;
   }
   return open;
