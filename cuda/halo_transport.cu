@@ -88,6 +88,7 @@ class NcclTransport : public HaloTransport {
     ranks.on_root([&] { require_nccl(ncclGetUniqueId(&id), "ncclGetUniqueId"); });
     ranks.broadcast(id);
     require_nccl(ncclCommInitRank(&communicator_, ranks.size(), id, ranks.rank()), "ncclCommInitRank");
+    connect(ranks);
   }
   // ncclCommAbort, because after a failure ncclCommDestroy would wait for ranks that no longer take part.
   ~NcclTransport() override { ncclCommAbort(communicator_); }
@@ -119,6 +120,27 @@ class NcclTransport : public HaloTransport {
   }
 
  private:
+  // NCCL connects two ranks at their first message, which takes up to a second: at the start, not within the
+  // first steps. With many ranks, most pairs never exchange any.
+  void connect(const Ranks& ranks) {
+    constexpr int kFew = 8;
+    const Stream stream;
+    DeviceArray<Real> value;
+    value.upload(std::vector<Real>(static_cast<std::size_t>(ranks.size())), stream);
+    max(value.data(), 1, stream);
+    if (ranks.size() <= kFew) {
+      require_nccl(ncclGroupStart(), "ncclGroupStart");
+      for (int other = 0; other < ranks.size(); ++other) {
+        if (other == ranks.rank()) continue;
+        require_nccl(ncclSend(value.data() + ranks.rank(), 1, ncclDouble, other, communicator_, stream),
+                     "ncclSend");
+        require_nccl(ncclRecv(value.data() + other, 1, ncclDouble, other, communicator_, stream), "ncclRecv");
+      }
+      require_nccl(ncclGroupEnd(), "ncclGroupEnd");
+    }
+    wait_for(stream);
+  }
+
   ncclComm_t communicator_ = nullptr;
 };
 #endif
