@@ -227,7 +227,7 @@ struct OpenStepQuery {
   }
 };
 
-// Entries of one surface on a body, by_surface[first ... end - 1], which one thread block evaluates and sums;
+// Entries of one surface on a body, by_surface[first ... end - 1], which one thread block evaluates or sums;
 // at most kChunkEntries.
 inline constexpr int kChunkEntries = 128;
 struct SurfaceChunk {
@@ -237,6 +237,24 @@ struct SurfaceChunk {
 struct SurfaceChunks {
   const SurfaceChunk* chunks;
   Index count;
+};
+
+// The same for loads at an instant or over an explicit step, which one warp evaluates, at most one entry per
+// lane: a step waits for them, and each takes long. first_part, parts: all chunks of the surface.
+inline constexpr int kLoadLanes = 32;
+struct LoadChunk {
+  SurfaceChunk of;
+  Index first_part, parts;
+};
+struct LoadChunks {
+  const LoadChunk* chunks;
+  Index count;
+};
+// Where the sums of loads are written.
+struct LoadSumOutputs {
+  InstantSums* of_chunks;    // scratch
+  unsigned* finished;        // per surface: number of its chunks that are summed
+  InstantSums* of_surfaces;  // in the memory of the host
 };
 
 // State at the start of an implicit step: particles and surfaces on bodies.
@@ -261,14 +279,15 @@ class DeviceContactKernels {
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;
-  // Contacts of particles with surfaces on bodies, at an instant and over an implicit step, and their sums
-  // over each chunk.
-  virtual void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                             SurfaceLoad* loads, InstantSums* sums) const = 0;
+  // Contacts of particles with surfaces on bodies at an instant or over an explicit step, and their sums over
+  // each surface that has chunks.
+  virtual void surface_loads(Device device, const SurfaceViews& in, const LoadChunks& chunks,
+                             SurfaceLoad* loads, const LoadSumOutputs& sums) const = 0;
   // At an instant, for the first n entries by_surface, of the step that is open when the kernel runs; without
   // sums.
   virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query,
                                     Index n, SurfaceLoad* loads) const = 0;
+  // Over an implicit step, and their sums over each chunk.
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
   // Queues the sums of `WallContactItem` over the first n particles; share: the reduction over the ranks that

@@ -144,11 +144,11 @@ class ContactKernelsOf : public DeviceContactKernels {
         <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
-  void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks, SurfaceLoad* loads,
-                     InstantSums* sums) const override {
+  void surface_loads(Device device, const SurfaceViews& in, const LoadChunks& chunks, SurfaceLoad* loads,
+                     const LoadSumOutputs& sums) const override {
     if (chunks.count == 0) return;
-    load_kernel<<<static_cast<unsigned>(chunks.count), kLoadThreads, 0, device.stream>>>(chunks.chunks, in,
-                                                                                         laws_, loads, sums);
+    load_kernel<<<static_cast<unsigned>(chunks.count), kLoadLanes, 0, device.stream>>>(chunks.chunks, in,
+                                                                                       laws_, loads, sums);
     require_cuda(cudaGetLastError(), "contacts with bodies");
   }
   void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query, Index n,

@@ -242,9 +242,26 @@ void DeviceSurfaces::group_by_surface(Device device) {
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunkEntries)
       h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
-  h_load_sums_.resize(h_chunks_.size());
+  find_load_chunks(device, starts);
   for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
   steps_.resize(entries);
+}
+
+// starts: first entry by_surface of each surface.
+void DeviceSurfaces::find_load_chunks(Device device, const std::vector<Index>& starts) {
+  std::vector<LoadChunk> chunks;
+  for (Index s = 0; s < placed_count_; ++s) {
+    const auto first_part = static_cast<Index>(chunks.size()),
+               parts = (starts[s + 1] - starts[s] + kLoadLanes - 1) / kLoadLanes;
+    for (Index first = starts[s]; first < starts[s + 1]; first += kLoadLanes)
+      chunks.push_back({{s, first, std::min(first + kLoadLanes, starts[s + 1])}, first_part, parts});
+  }
+  load_chunks_.upload(chunks, device.stream);
+  of_load_chunks_.resize_with_spare(chunks.size());
+  const auto surfaces = static_cast<std::size_t>(placed_count_);
+  if (summed_chunks_.size() == 0) summed_chunks_.resize(surfaces), summed_chunks_.zero(device.stream);
+  h_load_sums_.resize(surfaces);
+  for (std::size_t s = 0; s < surfaces; ++s) h_load_sums_[s].contacts = 0;
 }
 
 void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
@@ -288,11 +305,11 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
                                 const SurfaceQuery& query) {
-  h_load_sums_.resize(h_chunks_.size());
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch(device, views);
-  kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
-                        h_load_sums_.data());
+  kernels.surface_loads(device, views, {load_chunks_.data(), static_cast<Index>(load_chunks_.size())},
+                        loads_[which == Loads::of_step ? 0 : 1].data(),
+                        {of_load_chunks_.data(), summed_chunks_.data(), h_load_sums_.data()});
 }
 
 void DeviceSurfaces::reserve_in_run(Device device, Index steps) {

@@ -56,7 +56,7 @@ class DeviceSurfaces {
   void upload(Device device, const SurfacePoses& poses);
   void store_start(Device device);  // at the start of an implicit step
   // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
-  // poses, and the copy of the sums to the host.
+  // poses, and their sums, which the device writes to the memory of the host.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query);
   // For surfaces at rest or with prescribed motion in a run of explicit steps of length h: queues the loads
   // of the step that is open when the kernels run, and the losses at triangles. key: everything that the
@@ -89,7 +89,8 @@ class DeviceSurfaces {
   const SurfaceFriction* friction_steps() const {
     return friction_steps_.data();
   }  // per entry, from the last find_friction_steps()
-  // Sums of the contacts evaluated last, once the stream is done: a surface may appear in several parts.
+  // Sums of the contacts evaluated last, once the stream is done. Over an implicit step a surface may appear
+  // in several parts.
   std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
   // Forces and losses at the triangles of meshes, from the loads of the step. For snapshots: all contacts are
@@ -107,6 +108,7 @@ class DeviceSurfaces {
  private:
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
+  void find_load_chunks(Device device, const std::vector<Index>& starts);
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
   const SurfacePose* device_poses() const { return reinterpret_cast<const SurfacePose*>(posed_.data()); }
   const SurfaceFrame* device_frames() const {
@@ -129,6 +131,9 @@ class DeviceSurfaces {
   CellSort by_surface_;
   std::vector<SurfaceChunk> h_chunks_;
   DeviceArray<SurfaceChunk> chunks_;
+  DeviceArray<LoadChunk> load_chunks_;
+  DeviceArray<InstantSums> of_load_chunks_;
+  DeviceArray<unsigned> summed_chunks_;  // per surface; zero between evaluations
   const int* material_ = nullptr;
   // Poses of the surfaces, and their frames from byte frames_at_ on.
   PinnedArray<unsigned char> h_posed_;
@@ -140,7 +145,8 @@ class DeviceSurfaces {
   DeviceArray<SurfaceStep> steps_;
   DeviceArray<ShownContact> shown_;              // empty unless output values were asked for
   DeviceArray<SurfaceFriction> friction_steps_;  // empty unless implicit steps have friction
-  // Written by the device for chunks with contacts; the number of contacts is written for all.
+  // Written by the device. Loads: per surface, where it has entries. Steps: per chunk, the sums for those
+  // with contacts, the number of contacts for all.
   PinnedArray<InstantSums> h_load_sums_;
   PinnedArray<StepSums> h_step_sums_;
   PinnedArray<Index> h_index_;

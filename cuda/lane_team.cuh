@@ -16,10 +16,11 @@ struct LaneTeam {
   __device__ static Index first() { return static_cast<Index>(threadIdx.x % kLanes); }
   __device__ static constexpr Index stride() { return kLanes; }
   __device__ static bool is_leader() { return first() == 0; }
-  template <class T, class Merge>
+  // kApart: lanes whose numbers differ by a multiple of it are reduced, each such set to a value of its own.
+  template <int kApart = 1, class T, class Merge>
   __device__ static T reduce(T value, const Merge& merge) {
 #pragma unroll
-    for (int across = kLanes / 2; across > 0; across /= 2)
+    for (int across = kLanes / 2; across >= kApart; across /= 2)
       value = merge(
           value, moved(value, [&](unsigned word) { return __shfl_xor_sync(lanes(), word, across, kLanes); }));
     return value;

@@ -1,8 +1,9 @@
-// Contacts of particles with surfaces of one law as kernels, and their sums per chunk of entries.
+// Contacts of particles with surfaces of one law as kernels, and their sums.
 #pragma once
 
 #include "contact_kernels.cuh"
 #include "for_each.cuh"
+#include "lane_team.cuh"
 #include "staging.cuh"
 
 namespace scree {
@@ -33,9 +34,10 @@ __global__ void __launch_bounds__(kSurfaceThreads)
   if (touching > 0 && thread < kTerms) out.sum[thread] = sum;
 }
 
-inline constexpr int kLoadThreads = kChunkEntries;
+inline constexpr int kLoadThreads = 128;
 inline constexpr int kLoadBlocks = 4;  // blocks per multiprocessor: with more, registers spill
-using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
+template <int kThreads>
+using LoadRecords = WarpRecords<SurfaceLoad, kThreads>;
 
 // Evaluates the load of the k-th entry by_surface into the lane's record. Returns the entry, -1 if it does
 // not touch.
@@ -49,42 +51,85 @@ __device__ Index find_load(const SurfaceViews& in, const Laws& laws, Index k, Su
   return -1;
 }
 
-// Contacts of a chunk at an instant or over an explicit step, one per thread, and their sums: few of them
-// touch. Groups of eight lanes, one per term, take the touching contacts of their warp in turn; the sums of
-// the groups are then added pairwise. The sums are exact, so the order has no influence.
-template <class Laws>
-__global__ void __launch_bounds__(kLoadThreads)
-    load_kernel(const SurfaceChunk* chunks, const __grid_constant__ SurfaceViews in, const Laws laws,
-                SurfaceLoad* loads, InstantSums* sums) {
-  constexpr int kGroup = 8, kGroups = 32 / kGroup;  // of a warp
+// Sums of loads formed by a warp: groups of eight lanes, one per term. All lanes call its functions.
+class WarpLoadSums {
+ public:
+  static constexpr int kGroup = 8, kGroups = kLoadLanes / kGroup;
   static_assert(kWrenchTerms <= kGroup);
-  __shared__ LoadRecords::Shared shared;
-  __shared__ ExactSum part[kLoadThreads];
-  const LoadRecords records(shared);
-  const SurfaceChunk chunk = chunks[blockIdx.x];
-  const auto thread = static_cast<Index>(threadIdx.x), k = chunk.first + thread;
-  const Index touching = k < chunk.end ? find_load(in, laws, k, records.own(), loads) : -1;
-  records.store(loads, touching);
-  const int contacts = __syncthreads_count(touching >= 0);
-  InstantSums& out = sums[blockIdx.x];
-  if (thread == 0) out.surface = chunk.surface, out.contacts = contacts;
-  if (contacts == 0) return;
-  ExactSum sum;
-  const int term = thread % kGroup;
-  unsigned left = __ballot_sync(~0u, touching >= 0);
-  const auto leave_out = [&](int lanes) {
-    for (; lanes > 0; --lanes) left &= left - 1;
-  };
-  for (leave_out(thread % warpSize / kGroup); left != 0; leave_out(kGroups))
-    if (term < kWrenchTerms) sum.add(sum_term(records.of(__ffs(static_cast<int>(left)) - 1), term));
-  part[thread] = sum;
-  for (int half = kLoadThreads / 2; half >= kGroup; half /= 2) {
-    __syncthreads();
-    if (thread >= half) continue;
-    sum.add(part[thread + half]);
-    part[thread] = sum;
+
+  // The contacts of the warp that touch, few in general; each group takes every kGroups-th of them.
+  __device__ void add_contacts(const LoadRecords<kLoadLanes>& records, bool touches) {
+    unsigned left = __ballot_sync(~0u, touches);
+    contacts_ = __popc(left);
+    const auto leave_out = [&](int lanes) {
+      for (; lanes > 0; --lanes) left &= left - 1;
+    };
+    for (leave_out(group()); left != 0; leave_out(kGroups))
+      if (has_term()) sum_.add(sum_term(records.of(__ffs(static_cast<int>(left)) - 1), term()));
+    add_up();
   }
-  if (thread < kWrenchTerms) out.sum[thread] = sum;
+  // Sums of chunks, of which each group takes every kGroups-th.
+  __device__ void add_chunks(const InstantSums* chunks, Index count) {
+    constexpr int kAtOnce = 4;  // loads that do not wait for each other
+    for (Index first = group(); first < count; first += kAtOnce * kGroups) {
+      ExactSum sums[kAtOnce];
+#pragma unroll
+      for (int k = 0; k < kAtOnce; ++k)
+        if (const Index chunk = first + k * kGroups; chunk < count) {
+          contacts_ += chunks[chunk].contacts;
+          if (has_term()) sums[k] = chunks[chunk].sum[term()];
+        }
+      for (const ExactSum& sum : sums) sum_.add(sum);
+    }
+    contacts_ = LaneTeam<kLoadLanes>::reduce<kGroup>(contacts_, [](Index a, Index b) { return a + b; });
+    add_up();
+  }
+  __device__ void write(Index surface, InstantSums& to) const {
+    if (threadIdx.x == 0) to.surface = surface, to.contacts = contacts_;
+    if (group() == 0 && has_term()) to.sum[term()] = sum_;
+  }
+
+ private:
+  __device__ static Index group() { return static_cast<Index>(threadIdx.x / kGroup); }
+  __device__ static int term() { return static_cast<int>(threadIdx.x % kGroup); }
+  __device__ static bool has_term() { return term() < kWrenchTerms; }
+  // Adds the sums of the groups.
+  __device__ void add_up() {
+    sum_ = LaneTeam<kLoadLanes>::reduce<kGroup>(sum_, [](ExactSum a, const ExactSum& b) {
+      a.add(b);
+      return a;
+    });
+  }
+
+  ExactSum sum_;
+  Index contacts_ = 0;
+};
+
+// Contacts of a chunk at an instant or over an explicit step, one per lane of a warp: few of them touch. The
+// warp that ends last of those of a surface adds up the sums of their chunks, so that the host reads one
+// record per surface. The sums are exact, so the order has no influence.
+template <class Laws>
+__global__ void __launch_bounds__(kLoadLanes)
+    load_kernel(const LoadChunk* chunks, const __grid_constant__ SurfaceViews in, const Laws laws,
+                SurfaceLoad* loads, const LoadSumOutputs out) {
+  __shared__ LoadRecords<kLoadLanes>::Shared shared;
+  const LoadRecords<kLoadLanes> records(shared);
+  const LoadChunk chunk = chunks[blockIdx.x];
+  const Index surface = chunk.of.surface, k = chunk.of.first + static_cast<Index>(threadIdx.x);
+  const Index touching = k < chunk.of.end ? find_load(in, laws, k, records.own(), loads) : -1;
+  records.store(loads, touching);
+  WarpLoadSums sums;
+  sums.add_contacts(records, touching >= 0);
+  if (chunk.parts == 1) return sums.write(surface, out.of_surfaces[surface]);
+  sums.write(surface, out.of_chunks[blockIdx.x]);
+  __syncwarp();
+  bool is_last = false;
+  if (threadIdx.x == 0) is_last = is_last_block(&out.finished[surface], static_cast<unsigned>(chunk.parts));
+  __syncwarp();
+  if (!__any_sync(~0u, is_last)) return;
+  WarpLoadSums of_surface;
+  of_surface.add_chunks(out.of_chunks + chunk.first_part, chunk.parts);
+  of_surface.write(surface, out.of_surfaces[surface]);
 }
 
 // Contacts with static surfaces of the explicit step that is open when the kernel runs, in the order
@@ -93,10 +138,10 @@ template <class Laws>
 __global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
     load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepQuery query,
                        const Laws laws, SurfaceLoad* loads) {
-  __shared__ LoadRecords::Shared shared;
+  __shared__ LoadRecords<kLoadThreads>::Shared shared;
   SurfaceViews now = in;
   if (!query.open(now)) return;
-  const LoadRecords records(shared);
+  const LoadRecords<kLoadThreads> records(shared);
   const Index k = thread_index();
   Index touching = -1;
   if (k < n) touching = find_load(now, laws, k, records.own(), loads);
