@@ -250,11 +250,20 @@ struct LoadChunks {
   const LoadChunk* chunks;
   Index count;
 };
+// A copy of the control block for the host, which kernels make; from: null for none.
+struct ControlReport {
+  const VerletControl* from = nullptr;
+  VerletControl* to = nullptr;  // in the memory of the host
+};
 // Where the sums of loads are written.
 struct LoadSumOutputs {
-  InstantSums* of_chunks;    // scratch
-  unsigned* finished;        // per surface: number of its chunks that are summed
-  InstantSums* of_surfaces;  // in the memory of the host
+  InstantSums* of_chunks;  // scratch
+  unsigned* finished;      // per surface: number of its chunks that are summed
+  // In the memory of the host, per surface: its sums, and then the number of this evaluation.
+  InstantSums* of_surfaces;
+  unsigned* written_by;
+  unsigned evaluation;
+  ControlReport report;
 };
 
 // State at the start of an implicit step: particles and surfaces on bodies.

@@ -18,7 +18,7 @@ void CudaBodies::find_loads() {
                              {items_.now.position.data(), items_.now.velocity.data(),
                               items_.now.angular_velocity.data(), items_.history.views().only_read()});
   wait_for(items_.stream);
-  side_.take_loads(items_.surfaces.load_sums(), 0);
+  side_.take_loads(items_.surfaces.load_sums().touched(), 0);
 }
 
 const ShownContact* CudaBodies::find_shown() {
@@ -47,18 +47,18 @@ void CudaBodies::take_steps(Real h) {
   side_.take_steps(items_.surfaces.step_sums(), h);
 }
 
-void CudaBodies::queue_loads(const SurfaceQuery& query, const Event& ready) {
+void CudaBodies::queue_loads(const SurfaceQuery& query, const Event& ready, const ControlReport& report) {
   const Device on{stream_};
   if (!items_.surfaces.any_near()) return;
-  items_.surfaces.upload(on, side_.poses());
+  items_.surfaces.send(on, side_.poses());
   ready.hold(stream_);
-  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, query);
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, query, report);
   loads_found_.record(stream_);
 }
 
 void CudaBodies::take_loads(Real h) {
-  wait_for(stream_);
-  side_.take_loads(items_.surfaces.load_sums(), h);
+  items_.surfaces.load_sums().await(stream_);
+  side_.take_loads(items_.surfaces.load_sums().touched(), h);
 }
 
 // The next query on this stream overwrites what the accumulation of works still reads, and so does the next
@@ -73,7 +73,7 @@ void CudaBodies::find_loads_concurrently(const SurfaceQuery& query) {
   if (!have_surfaces()) return;
   if (!items_.surfaces.any_near()) return side_.take_loads({}, query.h);
   const Device on{stream_};
-  items_.surfaces.upload(on, side_.poses());
+  items_.surfaces.send(on, side_.poses());
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_query, query);
   take_loads(query.h);
 }

@@ -1,6 +1,6 @@
 // Bodies with surfaces beside particles on the GPU. The bodies are few and stay on the host (`HostSurfaces`):
-// the device gets the poses of their surfaces, and the sums of their contacts go to pinned memory, for which
-// the host waits.
+// the device gets the poses of their surfaces, and writes the sums of their contacts to pinned memory, for
+// which the host waits.
 #pragma once
 
 #include <vector>
@@ -35,9 +35,9 @@ class CudaBodies {
 
   // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
   // contacts of particles in the state of `query`. The kernel of the step reads them after loads_found();
-  // take_loads() waits for their sums.
-  // Nothing is queued where no particle of this rank is near a surface.
-  void queue_loads(const SurfaceQuery& query, const Event& ready);
+  // take_loads() waits for their sums, and with them for the report.
+  // Nothing is queued or reported where no particle of this rank is near a surface.
+  void queue_loads(const SurfaceQuery& query, const Event& ready, const ControlReport& report = {});
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at

@@ -19,14 +19,17 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
         !(bodies_.side().list_displacement() < list_.skin() / 2))
       list_.build(list_.choose_skin(), timers), control_.resume(), boundary_apart_ = false;
     const auto scope = timers.time(Stage::contact_force);
-    queue_loads();
-    workspace_.step_queued.hold(bodies_.stream());
-    items_.results.copy(&Results::control, bodies_.stream());
+    const bool reported = queue_loads();
+    if (!reported) {
+      workspace_.step_queued.hold(bodies_.stream());
+      items_.results.copy(&Results::control, bodies_.stream());
+    }
     if (keep_open) {
       const MovingSurfaces moving{bodies_.loads_found(), workspace_.boundary_done};
       queue_.queue(1, &moving), boundary_apart_ = items_.parts.apart();
     }
     items_.idle();
+    if (!reported) wait_for(bodies_.stream());
     bodies_.take_loads(h_);
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
@@ -50,14 +53,20 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   }
 }
 
-// Queues the open step's contacts with surfaces, which its kernel reads; their sums are copied to the host
+// Queues the open step's contacts with surfaces, which its kernel reads; their sums go to the host
 // concurrently. The particles near surfaces are in the boundary rows of the previous step, so that its
-// interior rows may still be under way.
-void CudaExplicitRun::queue_loads() {
+// interior rows may still be under way. Returns whether the control block comes with the sums: it does where
+// the contacts wait for all of the previous step, which closed it.
+bool CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
-  bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
-                       items_.history.views(control_.velocity_parity() == 1), h_},
-                      boundary_apart_ ? workspace_.boundary_done : workspace_.step_queued);
+  const SurfaceQuery query{control_.open_position(), control_.open_velocity(), control_.open_spin(),
+                           items_.history.views(control_.velocity_parity() == 1), h_};
+  if (boundary_apart_) {
+    bodies_.queue_loads(query, workspace_.boundary_done);
+    return false;
+  }
+  bodies_.queue_loads(query, workspace_.step_queued, {control_.on_device(), &items_.results.host().control});
+  return items_.surfaces.any_near();
 }
 
 // Runs concurrently with the step queued last: its kernel reads the same state arrays but has contacts of its

@@ -1,4 +1,3 @@
-#include <cstring>
 #include <cub/device/device_scan.cuh>
 
 #include "base/countable.hpp"
@@ -151,14 +150,6 @@ struct SurfaceKeyItem {
   }
 };
 
-template <int kTerms>
-std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>& sums) {
-  std::vector<SurfaceSums<kTerms>> out;
-  for (std::size_t k = 0; k < sums.size(); ++k)
-    if (sums[k].contacts > 0) out.push_back(sums[k]);
-  return out;
-}
-
 }  // namespace
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
@@ -187,8 +178,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   const auto owned = static_cast<std::size_t>(p.owned);
   offsets_.resize(owned + 1);
   Index *const counts = offsets_.data(), *const next = p.numbers;  // converts counts to offsets in place
-  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
-                       skin,       numbers(), device_poses(), box_.period};
+  const EntrySearch in{p.position, p.active,  *p.grid,         p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), poses_.placed(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The scan also reads the entry past the end, although no offset depends on it.
   require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -199,7 +190,7 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
   meshes_.find(
       device,
-      {p.position, *p.grid, p.starts, skin, box_.period, device_poses(), device_frames(), p.stored_contacts},
+      {p.position, *p.grid, p.starts, skin, box_.period, poses_.placed(), poses_.frames(), p.stored_contacts},
       poses, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
@@ -242,45 +233,17 @@ void DeviceSurfaces::group_by_surface(Device device) {
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunkEntries)
       h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
-  find_load_chunks(device, starts);
+  load_sums_.prepare(device, starts);
   for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
   steps_.resize(entries);
 }
 
-// starts: first entry by_surface of each surface.
-void DeviceSurfaces::find_load_chunks(Device device, const std::vector<Index>& starts) {
-  std::vector<LoadChunk> chunks;
-  for (Index s = 0; s < placed_count_; ++s) {
-    const auto first_part = static_cast<Index>(chunks.size()),
-               parts = (starts[s + 1] - starts[s] + kLoadLanes - 1) / kLoadLanes;
-    for (Index first = starts[s]; first < starts[s + 1]; first += kLoadLanes)
-      chunks.push_back({{s, first, std::min(first + kLoadLanes, starts[s + 1])}, first_part, parts});
-  }
-  load_chunks_.upload(chunks, device.stream);
-  of_load_chunks_.resize_with_spare(chunks.size());
-  const auto surfaces = static_cast<std::size_t>(placed_count_);
-  if (summed_chunks_.size() == 0) summed_chunks_.resize(surfaces), summed_chunks_.zero(device.stream);
-  h_load_sums_.resize(surfaces);
-  for (std::size_t s = 0; s < surfaces; ++s) h_load_sums_[s].contacts = 0;
-}
-
 void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
-  if (!any_placed()) return;
-  placed_.wait();  // waits for the previous copy from pinned memory
-  // One copy for both: a copy takes longer to begin than to move these bytes.
-  const std::size_t of_poses = poses.placed.size_bytes(), of_frames = poses.frames.size_bytes();
-  frames_at_ = (of_poses + alignof(SurfaceFrame) - 1) / alignof(SurfaceFrame) * alignof(SurfaceFrame);
-  h_posed_.resize(frames_at_ + of_frames), posed_.resize(frames_at_ + of_frames);
-  std::memcpy(h_posed_.data(), poses.placed.data(), of_poses);
-  if (of_frames > 0) std::memcpy(h_posed_.data() + frames_at_, poses.frames.data(), of_frames);
-  copy_async(posed_.data(), h_posed_.data(), posed_.size(), device.stream);
-  placed_.record(device.stream);
+  if (any_placed()) poses_.upload(device, poses);
 }
 
 void DeviceSurfaces::store_start(Device device) {
-  if (!any_placed()) return;
-  start_poses_.resize(static_cast<std::size_t>(placed_count_));
-  copy_async(start_poses_.data(), device_poses(), start_poses_.size(), device.stream);
+  if (any_placed()) poses_.store_start(device);
 }
 
 SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
@@ -289,8 +252,8 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           query.velocity,
           material_,
           {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
-          device_poses(),
-          device_frames(),
+          poses_.placed(),
+          poses_.frames(),
           numbers(),
           meshes_.rows(),
           meshes_.touches(),
@@ -304,12 +267,11 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const SurfaceQuery& query) {
+                                const SurfaceQuery& query, const ControlReport& report) {
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch(device, views);
-  kernels.surface_loads(device, views, {load_chunks_.data(), static_cast<Index>(load_chunks_.size())},
-                        loads_[which == Loads::of_step ? 0 : 1].data(),
-                        {of_load_chunks_.data(), summed_chunks_.data(), h_load_sums_.data()});
+  kernels.surface_loads(device, views, load_sums_.chunks(), loads_[which == Loads::of_step ? 0 : 1].data(),
+                        load_sums_.next(report));
 }
 
 void DeviceSurfaces::reserve_in_run(Device device, Index steps) {
@@ -335,8 +297,8 @@ void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kerne
   h_step_sums_.resize(h_chunks_.size());
   meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch_over_step(device, views, start.position, start_poses_.data());
-  kernels.surface_steps(device, views, chunk_list(), {start, start_poses_.data()}, steps_.data(),
+  meshes_.touch_over_step(device, views, start.position, poses_.start());
+  kernels.surface_steps(device, views, chunk_list(), {start, poses_.start()}, steps_.data(),
                         h_step_sums_.data());
 }
 
@@ -346,9 +308,9 @@ void DeviceSurfaces::find_friction_steps(Device device, const DeviceContactKerne
   h_step_sums_.resize(h_chunks_.size());
   meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch_over_step(device, views, start.step.position, start_poses_.data());
-  kernels.surface_friction_steps(device, views, chunk_list(),
-                                 {start, start_poses_.data(), friction_steps_.data()}, h_step_sums_.data());
+  meshes_.touch_over_step(device, views, start.step.position, poses_.start());
+  kernels.surface_friction_steps(device, views, chunk_list(), {start, poses_.start(), friction_steps_.data()},
+                                 h_step_sums_.data());
 }
 
 const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
@@ -377,9 +339,12 @@ void DeviceSurfaces::accumulate_friction_works(Device device, const DeviceContac
                     ImplicitFrictionWorks{friction_steps_.data()});
 }
 
-std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }
-
-std::vector<StepSums> DeviceSurfaces::step_sums() const { return touched(h_step_sums_); }
+std::vector<StepSums> DeviceSurfaces::step_sums() const {
+  std::vector<StepSums> out;
+  for (std::size_t k = 0; k < h_step_sums_.size(); ++k)
+    if (h_step_sums_[k].contacts > 0) out.push_back(h_step_sums_[k]);
+  return out;
+}
 
 std::vector<TriangleSums> DeviceSurfaces::triangle_sums(Device device,
                                                         std::span<const WallPlane> planes) const {

@@ -15,7 +15,9 @@
 #include "dem/surfaces/triangle_sums.hpp"
 #include "device.cuh"
 #include "device_meshes.cuh"
+#include "device_poses.cuh"
 #include "device_triangle_works.cuh"
+#include "surface_load_sums.cuh"
 
 namespace scree {
 
@@ -45,19 +47,22 @@ class DeviceSurfaces {
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(),      images_.data(), device_poses(),
-            device_frames(), meshes_.rows().meshes, numbers()};
+    return {offsets_.data(), surfaces_.data(),      images_.data(), poses_.placed(),
+            poses_.frames(), meshes_.rows().meshes, numbers()};
   }
 
   // Selects one of two sets of loads: that of the step, which the particles read, or of a second evaluation
   // for the bodies.
   enum class Loads { of_step, of_query };
-  // Queues the copy of the surfaces' new poses; the next call waits for it.
+  // Queues the copy of the surfaces' new poses, as in DevicePoses; send(): if there are any.
   void upload(Device device, const SurfacePoses& poses);
+  void send(Device device, const SurfacePoses& poses) { poses_.send(device, poses); }
   void store_start(Device device);  // at the start of an implicit step
   // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
-  // poses, and their sums, which the device writes to the memory of the host.
-  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query);
+  // poses, and their sums, which the device writes to the memory of the host. report: as in SurfaceLoadSums;
+  // there is none if no particle is near.
+  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query,
+                  const ControlReport& report = {});
   // For surfaces at rest or with prescribed motion in a run of explicit steps of length h: queues the loads
   // of the step that is open when the kernels run, and the losses at triangles. key: everything that the
   // launches depend on.
@@ -89,9 +94,10 @@ class DeviceSurfaces {
   const SurfaceFriction* friction_steps() const {
     return friction_steps_.data();
   }  // per entry, from the last find_friction_steps()
-  // Sums of the contacts evaluated last, once the stream is done. Over an implicit step a surface may appear
+  // Of the contacts of the last find_loads(); waiting for them does not wait for the stream.
+  const SurfaceLoadSums& load_sums() const { return load_sums_; }
+  // Sums of the contacts evaluated last over an implicit step, once the stream is done: a surface may appear
   // in several parts.
-  std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
   // Forces and losses at the triangles of meshes, from the loads of the step. For snapshots: all contacts are
   // copied to the host. planes: on the host. Waits.
@@ -108,12 +114,7 @@ class DeviceSurfaces {
  private:
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
-  void find_load_chunks(Device device, const std::vector<Index>& starts);
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
-  const SurfacePose* device_poses() const { return reinterpret_cast<const SurfacePose*>(posed_.data()); }
-  const SurfaceFrame* device_frames() const {
-    return reinterpret_cast<const SurfaceFrame*>(posed_.data() + frames_at_);
-  }
 
   PeriodicBox box_;
   Real interaction_range_;  // `Contact::interaction_range` [m]
@@ -131,23 +132,14 @@ class DeviceSurfaces {
   CellSort by_surface_;
   std::vector<SurfaceChunk> h_chunks_;
   DeviceArray<SurfaceChunk> chunks_;
-  DeviceArray<LoadChunk> load_chunks_;
-  DeviceArray<InstantSums> of_load_chunks_;
-  DeviceArray<unsigned> summed_chunks_;  // per surface; zero between evaluations
   const int* material_ = nullptr;
-  // Poses of the surfaces, and their frames from byte frames_at_ on.
-  PinnedArray<unsigned char> h_posed_;
-  DeviceArray<unsigned char> posed_;
-  std::size_t frames_at_ = 0;
-  Event placed_;
-  DeviceArray<SurfacePose> start_poses_;
+  DevicePoses poses_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
   DeviceArray<ShownContact> shown_;              // empty unless output values were asked for
   DeviceArray<SurfaceFriction> friction_steps_;  // empty unless implicit steps have friction
-  // Written by the device. Loads: per surface, where it has entries. Steps: per chunk, the sums for those
-  // with contacts, the number of contacts for all.
-  PinnedArray<InstantSums> h_load_sums_;
+  SurfaceLoadSums load_sums_;
+  // Written by the device for chunks with contacts; the number of contacts is written for all.
   PinnedArray<StepSums> h_step_sums_;
   PinnedArray<Index> h_index_;
 };

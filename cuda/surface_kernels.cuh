@@ -87,6 +87,15 @@ class WarpLoadSums {
   __device__ void write(Index surface, InstantSums& to) const {
     if (threadIdx.x == 0) to.surface = surface, to.contacts = contacts_;
     if (group() == 0 && has_term()) to.sum[term()] = sum_;
+    __syncwarp();
+  }
+  // To the memory of the host, which waits for the number of the evaluation.
+  __device__ void write_to_host(Index surface, const LoadSumOutputs& out) const {
+    write(surface, out.of_surfaces[surface]);
+    if (threadIdx.x > 0) return;
+    const cuda::atomic_ref<unsigned, cuda::thread_scope_system> written_by(out.written_by[surface]);
+    cuda::atomic_thread_fence(cuda::memory_order_release, cuda::thread_scope_system);
+    written_by.store(out.evaluation, cuda::memory_order_relaxed);
   }
 
  private:
@@ -105,6 +114,15 @@ class WarpLoadSums {
   Index contacts_ = 0;
 };
 
+__device__ inline void copy_by_warp(const ControlReport& report) {
+  using Word = unsigned long long;
+  static_assert(sizeof(VerletControl) % sizeof(Word) == 0);
+  if (report.from == nullptr) return;
+  const auto* from = reinterpret_cast<const Word*>(report.from);
+  auto* to = reinterpret_cast<Word*>(report.to);
+  for (unsigned k = threadIdx.x; k < sizeof(VerletControl) / sizeof(Word); k += kLoadLanes) to[k] = from[k];
+}
+
 // Contacts of a chunk at an instant or over an explicit step, one per lane of a warp: few of them touch. The
 // warp that ends last of those of a surface adds up the sums of their chunks, so that the host reads one
 // record per surface. The sums are exact, so the order has no influence.
@@ -118,18 +136,18 @@ __global__ void __launch_bounds__(kLoadLanes)
   const Index surface = chunk.of.surface, k = chunk.of.first + static_cast<Index>(threadIdx.x);
   const Index touching = k < chunk.of.end ? find_load(in, laws, k, records.own(), loads) : -1;
   records.store(loads, touching);
+  if (blockIdx.x == 0) copy_by_warp(out.report);
   WarpLoadSums sums;
   sums.add_contacts(records, touching >= 0);
-  if (chunk.parts == 1) return sums.write(surface, out.of_surfaces[surface]);
+  if (chunk.parts == 1) return sums.write_to_host(surface, out);
   sums.write(surface, out.of_chunks[blockIdx.x]);
-  __syncwarp();
   bool is_last = false;
   if (threadIdx.x == 0) is_last = is_last_block(&out.finished[surface], static_cast<unsigned>(chunk.parts));
   __syncwarp();
   if (!__any_sync(~0u, is_last)) return;
   WarpLoadSums of_surface;
   of_surface.add_chunks(out.of_chunks + chunk.first_part, chunk.parts);
-  of_surface.write(surface, out.of_surfaces[surface]);
+  of_surface.write_to_host(surface, out);
 }
 
 // Contacts with static surfaces of the explicit step that is open when the kernel runs, in the order
