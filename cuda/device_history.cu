@@ -39,23 +39,13 @@ PackedHistoryViews views_of_rows(Rows& rows, int numbers) {
   return views;
 }
 
-// Queues the copies of all contacts from their parts to contiguous memory, and back.
+// Queues the copies of all contacts from their parts to contiguous memory of the host.
 void join_parts(const PackedHistoryViews& parts, std::int64_t* keys, Real* values, cudaStream_t stream) {
   const auto numbers = static_cast<std::size_t>(parts.numbers);
   for (const PackedHistoryViews::Part& part : parts.part) {
     if (part.size() == 0) continue;
     copy_async(keys + part.first, part.keys, part.size(), stream);
     copy_async(values + static_cast<std::size_t>(part.first) * numbers, part.values, part.size() * numbers,
-               stream);
-  }
-}
-void fill_parts(const PackedHistoryViews& parts, const std::int64_t* keys, const Real* values,
-                cudaStream_t stream) {
-  const auto numbers = static_cast<std::size_t>(parts.numbers);
-  for (const PackedHistoryViews::Part& part : parts.part) {
-    if (part.size() == 0) continue;
-    copy_async(part.keys, keys + part.first, part.size(), stream);
-    copy_async(part.values, values + static_cast<std::size_t>(part.first) * numbers, part.size() * numbers,
                stream);
   }
 }
@@ -128,13 +118,13 @@ void DeviceHistory::reserve_entries(Rows& rows, std::size_t contacts) const {
 std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first, Index count) {
   countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
   rows.offsets.resize(static_cast<std::size_t>(count) + 1);
-  for_each({stream_}, count,
-           CountClosedItem{keyed_rows(at, box_, views(), width()), first, rows.offsets.data()});
+  for_each_row({stream_}, count,
+               CountClosedItem{keyed_rows(at, box_, views(), width()), first, rows.offsets.data()});
   return add_up(rows, count);
 }
 
 void DeviceHistory::fill_rows(const PackedHistoryViews& rows, const Listed& at, Index first, Index count) {
-  for_each({stream_}, count, PackHistoryItem{keyed_rows(at, box_, views(), width()), first, rows});
+  for_each_row({stream_}, count, PackHistoryItem{keyed_rows(at, box_, views(), width()), first, rows});
 }
 
 PackedHistoryViews DeviceHistory::packed_history_views() {
@@ -194,7 +184,9 @@ void DeviceHistory::pack_history(const Listed& at) {
   stored_.keys.resize(contacts), stored_.values.resize(contacts * numbers);
   const PackedHistoryViews parts = in_records_ ? lay_out_parts(contacts) : packed_history_views();
   fill_rows(parts, at, 0, at.owned);
-  if (in_records_) join_parts(parts, stored_.keys.data(), stored_.values.data(), stream_);
+  if (in_records_)
+    for_each({stream_}, static_cast<Index>(contacts),
+             CopyContactItem{parts, views_of_rows(stored_, width())});
   for_each({stream_}, at.owned, CountUpItem{row_of_.data(), 0});
   at_slots_ = false;
 }
@@ -203,7 +195,8 @@ void DeviceHistory::pack_history(const Listed& at) {
 void DeviceHistory::clear_records() {
   if (!in_records_) return;
   const PackedHistoryViews parts = lay_out_parts(stored_.keys.size());
-  fill_parts(parts, stored_.keys.data(), stored_.values.data(), stream_);
+  for_each({stream_}, static_cast<Index>(stored_.keys.size()),
+           CopyContactItem{views_of_rows(stored_, width()), parts});
   parts_ = parts, in_records_ = false;
   stored_.keys.release(), stored_.values.release();
 }
@@ -220,8 +213,9 @@ void DeviceHistory::unpack_history(const Listed& at) {
     of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
   ahead_.zero(stream_);
   for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), next_features_.data()});
-  for_each({stream_}, at.owned,
-           UnpackHistoryItem{keyed_rows(at, box_, views(), width()), packed_history_views(), row_of_.data()});
+  for_each_row(
+      {stream_}, at.owned,
+      UnpackHistoryItem{keyed_rows(at, box_, views(), width()), packed_history_views(), row_of_.data()});
   parts_.reset(), stored_.keys.release(), stored_.values.release();
   at_slots_ = true;
 }

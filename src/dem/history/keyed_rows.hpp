@@ -35,7 +35,17 @@ struct KeyedRows {
   SCREE_HD_CALLER
   template <class Visit>
   SCREE_HD void for_each_closed(Index i, const Visit& visit) const {
-    for_each_slot(i, [&](Vec4* record, const auto& key) {
+    const auto visit_closed = [&](Vec4* record, const auto& key) {
+      if (record->w == history.step) visit(record, key);
+    };
+    for_each_neighbor_slot(i, visit_closed);
+    for_each_closed_surface(i, visit);
+  }
+  // The same for the contacts with surfaces alone.
+  SCREE_HD_CALLER
+  template <class Visit>
+  SCREE_HD void for_each_closed_surface(Index i, const Visit& visit) const {
+    for_each_surface_slot(i, [&](Vec4* record, const auto& key) {
       if (record->w == history.step) visit(record, key);
     });
     const Vec3 p = xyz(position[i]);
@@ -44,36 +54,55 @@ struct KeyedRows {
     });
   }
 
-  // Copies the stored contacts from `at` to `end`, which belong to the particle of row i, to the slots of the
-  // row. Both are sorted by key: one merge pass over both, then the meshes.
+  // Copies the stored contacts from `first` to `end`, which belong to the particle of row i, to the slots of
+  // the row. Both are sorted by key: one merge pass over both, then the meshes.
   SCREE_HD_CALLER
   template <class Stored, class Offset>
-  SCREE_HD void unpack(Index i, const Stored& stored, Offset at, Offset end) const {
-    const Offset first = at;
-    for_each_slot(i, [&](Vec4* record, const auto& key) {
-      clear(record);
-      if (at == end) return;
-      const std::int64_t sought = key();
-      while (at < end && stored.key(at) < sought) ++at;
-      if (at < end && stored.key(at) == sought) put(stored, at, record);
-    });
+  SCREE_HD void unpack(Index i, const Stored& stored, Offset first, Offset end) const {
+    Offset at = first;
+    for_each_neighbor_slot(
+        i, [&](Vec4* record, const auto& key) { at = unpack_slot(record, key, stored, at, end); });
+    unpack_surfaces(i, stored, first, end);
+  }
+  // The same for the contacts with surfaces alone.
+  SCREE_HD_CALLER
+  template <class Stored, class Offset>
+  SCREE_HD void unpack_surfaces(Index i, const Stored& stored, Offset first, Offset end) const {
+    Offset at = first;
+    for_each_surface_slot(
+        i, [&](Vec4* record, const auto& key) { at = unpack_slot(record, key, stored, at, end); });
     for_each_mesh_entry(i, [&](Index entry) {
       if (entry == surfaces.offsets[i] || !alike(entry - 1, entry)) unpack_mesh(i, entry, stored, first, end);
     });
   }
 
+  // Records of the entries of row i with particles, one after the other.
+  SCREE_HD Vec4* neighbor_records(Index i) const {
+    return history.neighbors + rows.first_number(i) * records;
+  }
+  // Packed contact key of a particle at p with item j.
+  SCREE_HD std::int64_t neighbor_key(Index j, Vec3 p) const {
+    return ContactKey::particle(id_of(row_keys[j]), box.image_relative_to(p, xyz(position[j]))).pack();
+  }
+
  private:
-  // Calls visit(record, key) for the entries of row i except those with meshes, in ascending order of key(),
-  // if there are records.
+  // Call visit(record, key) for the entries of row i with particles, and for those with surfaces except
+  // meshes, in ascending order of key(), if there are records.
   SCREE_HD_CALLER
   template <class Visit>
-  SCREE_HD void for_each_slot(Index i, const Visit& visit) const {
+  SCREE_HD void for_each_neighbor_slot(Index i, const Visit& visit) const {
     if (records == 0) return;
     const Vec3 p = xyz(position[i]);
-    Vec4* record = history.neighbors + rows.first_number(i) * records;
+    Vec4* record = neighbor_records(i);
     std::int64_t slot = rows.first(i);
     for (Index left = rows.count(i); left > 0; --left, slot += Rows::stride(), record += records)
       visit(record, [&] { return neighbor_key(rows.neighbors[slot], p); });
+  }
+  SCREE_HD_CALLER
+  template <class Visit>
+  SCREE_HD void for_each_surface_slot(Index i, const Visit& visit) const {
+    if (records == 0) return;
+    const Vec3 p = xyz(position[i]);
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
       if (!is_mesh(entry)) visit(record_of(entry), [&] { return surface_key(entry, p); });
   }
@@ -83,6 +112,20 @@ struct KeyedRows {
   SCREE_HD void for_each_mesh_entry(Index i, const Visit& visit) const {
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
       if (is_mesh(entry)) visit(entry);
+  }
+
+  // Copies the contact with this key, if there is one from `at` on, to the record; returns where those with
+  // larger keys begin.
+  SCREE_HD_CALLER
+  template <class Key, class Stored, class Offset>
+  SCREE_HD Offset unpack_slot(Vec4* record, const Key& key, const Stored& stored, Offset at,
+                              Offset end) const {
+    clear(record);
+    if (at == end) return at;
+    const std::int64_t sought = key();
+    while (at < end && stored.key(at) < sought) ++at;
+    if (at < end && stored.key(at) == sought) put(stored, at, record);
+    return at;
   }
 
   // Copies the stored contacts with a mesh to the entries of their group, of which `entry` is the first.
@@ -132,10 +175,7 @@ struct KeyedRows {
     return surfaces.placed[surfaces.numbers.placed(surfaces.surfaces[entry])];
   }
 
-  // Packed contact keys of entries in the row of a particle at p.
-  SCREE_HD std::int64_t neighbor_key(Index j, Vec3 p) const {
-    return ContactKey::particle(id_of(row_keys[j]), box.image_relative_to(p, xyz(position[j]))).pack();
-  }
+  // Packed contact key of an entry with a surface in the row of a particle at p.
   SCREE_HD std::int64_t surface_key(Index entry, Vec3 p) const {
     const ContactKey key = ContactKey::surface(surfaces.surfaces[entry]);
     if (is_static(entry) || placed(entry).kind == SurfaceKind::plane) return key.pack();  // have no images
