@@ -185,6 +185,7 @@ struct MixedRequest {
   const std::uint8_t* drifting;
   VerletControl* control;
   const Real* first_step;
+  Real *rolling_loss, *twisting_loss;  // null where contacts do not resist rolling
 };
 
 // Poses of surfaces with prescribed motion at the ends of the next steps of a run. The rows are a ring: a

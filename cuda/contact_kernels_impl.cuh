@@ -127,10 +127,7 @@ class ContactKernelsOf : public DeviceContactKernels {
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
   const char* mixed_trouble() const override {
-    using Law = LawOf<Laws>;
-    return kHasRange<Law>                             ? "particles attract each other"
-           : Law::kNeedsMotion && !kFrictionOnly<Law> ? "contacts resist rolling"
-                                                      : "";
+    return kHasRange<LawOf<Laws>> ? "particles attract each other" : "";
   }
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
@@ -245,7 +242,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   void mixed_advance(Device device, const MixedRequest& r) const override {
     if constexpr (!LawOf<Laws>::kNeedsMotion && !kHasRange<LawOf<Laws>>)
       advance_in_mixed(device, r);
-    else if constexpr (kFrictionOnly<LawOf<Laws>>)
+    else if constexpr (kHasSingleForm<LawOf<Laws>>)
       launch(device, r, mixed_friction_kernel<Laws>);
     else
       throw std::logic_error("mixed_advance: this law is computed in double precision");

@@ -334,6 +334,7 @@ void StepQueue::queue_mixed(Index steps) {
   r.orientation = items_.now.orientation.data();
   r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
   r.first_step = items_.history.first_step();
+  r.rolling_loss = items_.now.rolling_loss.data(), r.twisting_loss = items_.now.twisting_loss.data();
   std::string key = key_of(r) + key_of(items_.parts.interior());
   const auto queue_ghosts = ghost_queue(r, key);
   const auto queue_rows = [&](Device on, const StepRows& rows) {

@@ -250,31 +250,53 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
-inline constexpr int kMixedFrictionBlocks = 5;
+template <class Laws>
+using MixedFrictionItemOf = MixedFrictionItem<Laws, WarpRowsOf<float, Laws>>;
 
 template <class Laws>
-__global__ void __launch_bounds__(kStepBlock, kMixedFrictionBlocks)
+__device__ inline MixedFrictionItemOf<Laws> mixed_friction_item(const MixedRequest& r, const Laws& laws,
+                                                                WarpContactsOf<float, Laws>* contacts,
+                                                                bool idle) {
+  const int parity = r.control->parity[0];
+  const auto views =
+      at_open_step<Laws>(warp_views(r.in, r.control->rows, r.control->margin, contacts, idle), r);
+  const FixedPointPosition* fixed_position = parity == 0 ? r.state.position[0] : r.state.position[1];
+  const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
+  const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
+  return {{views, laws, {{fixed_position, motion, r.state.fraction, r.grid}, spin, r.h}},
+          r.gravity,
+          r.state,
+          r.orientation,
+          parity,
+          r.rolling_loss,
+          r.twisting_loss};
+}
+
+// Adds the contacts with walls to `force`. They are in double precision; with rolling resistance inlined code
+// would make the kernel spill registers also where it evaluates pairs of particles.
+template <class Laws>
+__device__ __noinline__ auto with_walls(const MixedRequest& r, const Laws laws, Index i,
+                                        typename MixedFrictionItemOf<Laws>::Total force) {
+  const auto item = mixed_friction_item(r, laws, nullptr, false);
+  item.add_surfaces(item.walk.self(i), force);
+  return force;
+}
+
+template <class Laws>
+inline constexpr int kMixedFrictionBlocks = LawOf<Laws>::Rolling::acts ? 4 : 5;
+
+template <class Laws>
+__global__ void __launch_bounds__(kStepBlock, kMixedFrictionBlocks<Laws>)
     mixed_friction_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
-  const int parity = r.control->parity[0];
   __shared__ WarpContactsOf<float, Laws> contacts[kStepBlock / kSlice];
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
   const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const bool idle = i >= r.rows.end;
-  const auto views = at_open_step<Laws>(
-      warp_views(r.in, r.control->rows, r.control->margin, &contacts[threadIdx.x / kSlice], idle), r);
-  const FixedPointPosition* fixed_position = parity == 0 ? r.state.position[0] : r.state.position[1];
-  const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
-  const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
-  const MixedFrictionItem<Laws, WarpRowsOf<float, Laws>> item{
-      {views, laws, {{fixed_position, motion, r.state.fraction, r.grid}, spin, r.h}},
-      r.gravity,
-      r.state,
-      r.orientation,
-      parity};
-  typename decltype(item)::Total force;
+  const auto item = mixed_friction_item(r, laws, &contacts[threadIdx.x / kSlice], idle);
+  typename MixedFrictionItemOf<Laws>::Total force;
   if (first < r.rows.end) {
     auto self = item.walk.self(idle ? r.rows.end - 1 : i);
     self.i = i;
@@ -284,9 +306,13 @@ __global__ void __launch_bounds__(kStepBlock, kMixedFrictionBlocks)
   Real d_squared = 0;
   if (!idle) {
     const auto self = item.walk.self(i);
-    item.add_surfaces(self, force);
+    if constexpr (LawOf<Laws>::Rolling::acts) {
+      if (r.in.surface_offsets[i] < r.in.surface_offsets[i + 1]) force = with_walls(r, laws, i, force);
+    } else {
+      item.add_surfaces(self, force);
+    }
     d_squared = item.advance(self, force);
-    if (is_outside(r, i, parity, d_squared)) r.control->outside = 1;
+    if (is_outside(r, i, item.parity, d_squared)) r.control->outside = 1;
   }
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }

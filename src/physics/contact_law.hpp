@@ -254,8 +254,8 @@ struct ContactLaw {
   }
 };
 
-// Laws with friction, but neither adhesion nor rolling resistance. Only these have implicit steps and a form
-// in single precision.
+// Laws with friction, but neither adhesion nor rolling resistance. Of the laws with `kNeedsMotion`, only
+// these have implicit steps.
 template <class Law>
 inline constexpr bool kFrictionOnly = false;
 template <class Law>

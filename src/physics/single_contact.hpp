@@ -1,57 +1,34 @@
-// A contact with friction over an explicit step in single precision. The contact history stays in double
-// precision, because a step changes it by less than the last bit of a single. For laws of `kFrictionOnly`
-// (contact_law.hpp), with the same formulas to single-precision round-off; the rotation of the contact is
-// second order in the step here, and exact there.
+// A contact with friction and with resistance to rolling and twisting over an explicit step in single
+// precision. The contact history stays in double precision, because a step changes it by less than the last
+// bit of a single. For laws of `kHasSingleForm`, with the same formulas as in contact_law.hpp and
+// rolling_laws.hpp to single-precision round-off; the rotation of the contact is second order in the step
+// here, and exact there.
 #pragma once
 
 #include <cmath>
 
 #include "physics/contact_law.hpp"
+#include "physics/single_rolling.hpp"
 
 namespace scree {
 
-// Motion of two spheres over the step that ends at the instant of the pair. It is computed from the
-// displacement of the centres, because differences of normals would lose their digits.
-struct SinglePair : PairStateOf<float, Vec3f> {
-  Vec3f normal;                // at the end of the step
-  Vec3f slip;                  // tangential displacement of i relative to j [m]
-  Vec3f turn;                  // rotation of the pair [rad]
-  float overlap0;              // at the start of the step [m]
-  float lever_arm_ratio;       // (R_i + R_j) / |r|
-  float inertia_i, inertia_j;  // [kg m^2]
-  float h;                     // [s]
-};
+// Laws with friction and without adhesion. Those without friction have `ContactLaw::load`.
+template <class Law>
+inline constexpr bool kHasSingleForm = false;
+template <class Law>
+requires Law::kNeedsMotion inline constexpr bool kHasSingleForm<Law> =
+    Law::Tangential::acts && !Law::kHasRange;
 
-// spin_i, spin_j: at mid-step [rad/s].
-SCREE_HD SinglePair single_pair(const PairStateOf<float, Vec3f>& state, Vec3f spin_i, Vec3f spin_j, float h) {
-  SinglePair out{state, state.geometry.normal(), {}, {}, 0, 0, 0, 0, h};
-  const float inverse = state.geometry.scale, radius_sum = state.size.radius_i + state.size.radius_j;
-  const Vec3f displacement = h * state.velocity;
-  const auto across = [](Vec3f a, Vec3f n) { return a - dot(a, n) * n; };
-  const Vec3f mid_normal = out.normal - (0.5f * inverse) * across(displacement, out.normal);
-  const Vec3f tangential = across(displacement, mid_normal);
-  const Vec3f rolling = state.size.radius_i * spin_i + state.size.radius_j * spin_j;
-  out.lever_arm_ratio = radius_sum * inverse;
-  out.slip = out.lever_arm_ratio * tangential - h * cross(rolling, mid_normal);
-  out.turn =
-      inverse * cross(mid_normal, tangential) + (h / 2 * dot(spin_i + spin_j, mid_normal)) * mid_normal;
-  out.overlap0 = state.geometry.overlap + dot(displacement, mid_normal);
-  return out;
-}
-
+template <int kKinds>
 struct SingleLoad {
-  Vec3f force;     // on i [N]
-  float loss;      // [W]
-  Vec3f torque_i;  // [N m]
-  float friction;  // friction's part of the loss, over the step [J]
+  Vec3f force;           // on i [N]
+  float loss;            // [W]
+  Vec3f torque_i;        // [N m]
+  float losses[kKinds];  // parts of the loss by `LossKind`, over the step [J]
 };
-struct SingleOutcome : SingleLoad {
-  Vec3 history;  // force of the tangential spring [N]
-};
-
-// Stiffnesses, dashpot and limit of the step: `SpringSlider` (spring_slider.hpp) in single precision.
-struct SingleSlider {
-  float stiffness, stiffness0, dashpot, limit;
+template <int kKinds>
+struct SingleOutcome : SingleLoad<kKinds> {
+  ContactHistory history;
 };
 
 struct SingleSpring {
@@ -108,17 +85,17 @@ SCREE_HD float single_contact_radius(const PairSizeOf<float>& size, float d) {
 }
 
 template <class Law>
-SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 old) {
-  static_assert(kFrictionOnly<Law>);
+SCREE_HD SingleOutcome<kLossKindsOf<Law>> single_load(const Law& law, const SinglePair& step,
+                                                      const ContactHistory& old) {
+  static_assert(kHasSingleForm<Law>);
   const auto normal = law.normal.template as<float>().of_pair(step.size);
   const auto& g = step.geometry;
   const ContactForceOf<float> f = contact_force(normal, g.overlap, g.rate(step.velocity));
-  SinglePair pair = step;
-  if (step.overlap0 < 0) pair.slip = (g.overlap / (g.overlap - step.overlap0)) * step.slip;
-  const auto stiffness = [&](float d) {
-    return static_cast<float>(law.tangential.stiffness_at(single_contact_radius(step.size, d)));
-  };
-  SingleSlider slider{stiffness(g.overlap), stiffness(step.overlap0), 0,
+  const SinglePair pair = step.overlap0 < 0 ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
+  const float radius = single_contact_radius(step.size, g.overlap),
+              radius0 = single_contact_radius(step.size, step.overlap0);
+  const auto stiffness = [&](float of) { return static_cast<float>(law.tangential.stiffness_at(of)); };
+  SingleSlider slider{stiffness(radius), stiffness(radius0), 0,
                       static_cast<float>(law.tangential.friction) * f.force / step.lever_arm_ratio};
   if (law.tangential.damping_ratio > 0) {
     const float i = step.size.radius_i, j = step.size.radius_j;
@@ -127,12 +104,25 @@ SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 
     slider.dashpot =
         2 * static_cast<float>(law.tangential.damping_ratio) * std::sqrt(slider.stiffness / inverse_mass);
   }
-  const SingleSpring spring = single_spring_step(slider, pair, old);
-  SingleOutcome out;
+  const SingleSpring spring = single_spring_step(slider, pair, old.spring);
+  SingleOutcome<kLossKindsOf<Law>> out;
   out.force = g.along(f.force) - step.lever_arm_ratio * spring.acting;
   out.torque_i = step.size.radius_i * cross(step.normal, spring.acting);
-  out.loss = f.loss + spring.loss / step.h, out.friction = spring.loss;
-  out.history = spring.spring;
+  out.loss = f.loss + spring.loss / step.h, out.losses[kFrictionLoss] = spring.loss;
+  out.history = {spring.spring, {}, false};
+  if constexpr (Law::Rolling::acts) {
+    const SingleNormal contact{f.force > 0 ? f.force : 0,
+                               radius,
+                               radius0,
+                               single_contact_stiffness(normal, g.overlap, radius),
+                               single_contact_stiffness(normal, step.overlap0, radius0),
+                               step.size.effective_radius()};
+    const SingleMoment moment = single_moment_step(law.rolling, pair, contact, slider, old.moment);
+    out.torque_i = out.torque_i - moment.acting;
+    out.loss += (moment.rolling_loss + moment.twisting_loss) / step.h;
+    out.losses[kRollingLoss] = moment.rolling_loss, out.losses[kTwistingLoss] = moment.twisting_loss;
+    out.history.moment = moment.spring;
+  }
   return out;
 }
 

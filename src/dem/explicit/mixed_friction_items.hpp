@@ -1,4 +1,4 @@
-// Explicit steps with friction in mixed precision, see mixed_items.hpp.
+// Explicit steps with friction, and with rolling resistance, in mixed precision, see mixed_items.hpp.
 #pragma once
 
 #include "dem/explicit/mixed_items.hpp"
@@ -7,16 +7,14 @@
 namespace scree {
 
 // Evaluates a contact of two particles in single precision, with its history in double precision.
+template <int kKinds>
 struct EvaluateSingleLoad {
-  using Result = SingleLoad;
+  using Result = SingleLoad<kKinds>;
 
-  struct Found : SingleLoad {
-    ContactHistory history;
-  };
   template <class Law>
-  SCREE_HD Found operator()(const Law& law, const SinglePair& pair, const ContactHistory& old) const {
-    const SingleOutcome outcome = single_load(law, pair, old.spring);
-    return {outcome, {outcome.history, {}, false}};
+  SCREE_HD SingleOutcome<kKinds> operator()(const Law& law, const SinglePair& pair,
+                                            const ContactHistory& old) const {
+    return single_load(law, pair, old);
   }
 };
 
@@ -68,12 +66,14 @@ struct MixedFrictionItem {
   MixedViews state;
   Quaternion* orientation;
   int parity;
+  Real *rolling_loss, *twisting_loss;  // null where contacts do not resist rolling
 
+  static constexpr int kKinds = kLossKindsOf<LawOf<Laws>>;
   using Self = OverMixedStep::Self;
-  using Total = TotalForce<kLossKindsOf<LawOf<Laws>>>;
+  using Total = TotalForce<kKinds>;
   SCREE_HD Total weight(const Self& self) const { return {Real(self.u.mass) * gravity, 0, {}, {}}; }
   SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
-    walk.template sum_neighbors<true>(self, EvaluateSingleLoad{}, sum);
+    walk.template sum_neighbors<true>(self, EvaluateSingleLoad<kKinds>{}, sum);
     sum.share();
   }
   SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
@@ -92,6 +92,7 @@ struct MixedFrictionItem {
     const MixedSpinRest spin_rest = state.spin_rest[i];
     const Quaternion old_orientation = orientation[i];
     MixedFraction part = state.fraction[i];
+    const KindsBeyondFriction losses = losses_before(i);
     const Vec3 old = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 middle = verlet_next_middle(h, old, reciprocal(u.mass) * total.force), dx = h * middle;
     const Vec3f rounded = in_single(middle), remainder = in_single(middle - in_double(rounded));
@@ -101,10 +102,28 @@ struct MixedFrictionItem {
     state.rest[i] = {remainder.x, remainder.y, remainder.z,
                      rest.loss + static_cast<float>(h * total.loss_power)};
     rotate(self, spin_rest, old_orientation, total);
+    store_losses(i, losses, total);
     return dot(dx, dx);
   }
 
  private:
+  // Losses since the start of the run by the kinds for which `MixedSpinRest` has no room [J].
+  struct KindsBeyondFriction {
+    Real rolling = 0, twisting = 0;
+  };
+  SCREE_HD KindsBeyondFriction losses_before([[maybe_unused]] Index i) const {
+    if constexpr (kKinds > 1)
+      return {rolling_loss[i], twisting_loss[i]};
+    else
+      return {};
+  }
+  SCREE_HD void store_losses([[maybe_unused]] Index i, const KindsBeyondFriction& before,
+                             const Total& total) const {
+    if constexpr (kKinds > 1) {
+      rolling_loss[i] = before.rolling + total.losses.of[kRollingLoss];
+      twisting_loss[i] = before.twisting + total.losses.of[kTwistingLoss];
+    }
+  }
   SCREE_HD void rotate(const Self& self, const MixedSpinRest& rest, const Quaternion& old_orientation,
                        const Total& total) const {
     const Index i = self.i;
