@@ -2,10 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dem/backend/device.hpp"
 #include "model/derived/random.hpp"
 #include "output/checkpoint.hpp"
-#include "partition/subdomain.hpp"
 #include "run/loop/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
@@ -13,48 +11,10 @@
 #include "support/petsc_run.hpp"
 #include "support/reference.hpp"
 #include "support/state_bits.hpp"
+#include "unit/cuda/mixed_run.hpp"
 #include "unit/output/scratch.hpp"
 
 namespace scree {
-namespace {
-
-Model box_model(Real side, Precision precision) {
-  Model model;
-  model.space.min = {0, 0, 0}, model.space.max = {side, side, side};
-  model.contact.material_names = {"sphere"};
-  model.contact.laws = {{2e5, 25, 1, false}};
-  model.contact.skin = 0.1;
-  model.integrator.particles = ParticleIntegrator::velocity_verlet;
-  model.integrator.precision = precision;
-  return model;
-}
-
-void add_sphere(Model& model, Vec3 position, Vec3 velocity) {
-  ParticleSet& set = model.particles;
-  set.position.push_back(position), set.velocity.push_back(velocity);
-  set.radius.push_back(0.5), set.mass.push_back(1), set.material.push_back(0);
-  count_particles(set, model.contact.materials());
-}
-
-struct Run {
-  Run(const Model& of, bool cuda)
-      : model(of), backend(cuda ? make_cuda_backend(model) : make_cpu_backend(model)) {
-    measured_on_gpu(device_name());
-    backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
-    backend->list().set_body_motion({});
-    backend->list().build(model.contact.skin, timers);
-    backend->particles().initial_forces();
-  }
-  void advance(Real h, Index steps) {
-    REQUIRE(backend->start_run(h)->take_steps(steps, false, timers).closed == steps);
-  }
-
-  Model model;
-  StageTimers timers;
-  std::unique_ptr<Backend> backend;
-};
-
-}  // namespace
 
 TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in double") {
   for (const Real damping : {0.0, 25.0, 200.0}) {
@@ -65,7 +25,7 @@ TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in doubl
       const Vec3 at{900 + 1e-5 * k, 3.0 + 4 * k, 990};
       add_sphere(model, at, {1, 0.1, 0}), add_sphere(model, at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3});
     }
-    Run mixed(model, true), exact(model, false);
+    MixedTestRun mixed(model, true), exact(model, false);
     mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
     const std::vector<Particle> a = mixed.backend->particles().records(),
                                 b = exact.backend->particles().records();
@@ -97,7 +57,7 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "
       const Real start = 0.5 + 0.5 * layer;
       add_sphere(model, {start + k % (8 - layer), start + k / (8 - layer), 0.5 + layer * std::sqrt(0.5)}, {});
     }
-  Run run(model, true);
+  MixedTestRun run(model, true);
   run.advance(1e-4, 200000);
   const std::vector<Particle> settled = run.backend->particles().records();
   run.advance(1e-4, 1000000);
@@ -124,7 +84,7 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") 
     add_sphere(model, {1.3 * x + 0.1 * random.uniform(), 1.3 * y + 0.1 * random.uniform(), 1.25 * z},
                {random.normal(), random.normal(), random.normal()});
   }
-  Run run(model, true);
+  MixedTestRun run(model, true);
   const ParticleLedger before = run.backend->reports().ledger(0);
   run.advance(1e-4, 20000);
   const ParticleLedger after = run.backend->reports().ledger(0);
@@ -154,7 +114,7 @@ TEST_CASE(
     add_sphere(model, at, {1, 0.03 * k, 0}), add_sphere(model, at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3});
     add_sphere(model, {920, 3.0 + 4 * k, 980.50503}, {0.03 * k, 0, -1});
   }
-  Run mixed(model, true), exact(model, false);
+  MixedTestRun mixed(model, true), exact(model, false);
   mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
   const std::vector<Particle> a = mixed.backend->particles().records(),
                               b = exact.backend->particles().records();
@@ -180,22 +140,20 @@ TEST_CASE(
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
 }
 
-TEST_CASE("mixed precision: cohesion and rolling resistance run in double precision, with a message") {
+TEST_CASE("mixed precision: particles that attract each other run in double precision, with a message") {
   Model model = box_model(10, Precision::mixed);
-  const bool is_cohesive = GENERATE(true, false);
-  if (is_cohesive)
-    model.contact.laws[0].attraction = 5, model.contact.laws[0].range = 0.02,
-    model.contact.interaction_range = 0.02;
-  else
+  model.contact.laws[0].attraction = 5, model.contact.laws[0].range = 0.02,
+  model.contact.interaction_range = 0.02;
+  const bool rolls = GENERATE(false, true);
+  if (rolls)
     model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0.1}},
     model.contact.rolling = {{.friction = 0.2, .stiffness_factor = 2.25}};
   add_sphere(model, {4, 5, 5}, {1, 0.03, 0}), add_sphere(model, {5.005, 5.2, 5.1}, {-1, 0, 0.3});
-  Run mixed(model, true), exact(model, false);
+  MixedTestRun mixed(model, true), exact(model, false);
   CHECK_FALSE(mixed.backend->is_mixed());
   const std::string told = mixed.backend->description();
   CAPTURE(told);
-  CHECK(told.find(is_cohesive ? "precision double, because particles attract each other"
-                              : "precision double, because contacts resist rolling") != std::string::npos);
+  CHECK(told.find("precision double, because particles attract each other") != std::string::npos);
   mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
   const std::vector<Particle> a = mixed.backend->particles().records(),
                               b = exact.backend->particles().records();
@@ -215,7 +173,7 @@ TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[lon
   for (int k = 0; k < 3; ++k)
     add_sphere(model, {6 + aside * std::cos(2.0943951 * k), 6 + aside * std::sin(2.0943951 * k), 0.5}, {});
   add_sphere(model, {6, 6, 0.5 + std::sqrt(1 - aside * aside)}, {});
-  Run run(model, true);
+  MixedTestRun run(model, true);
   run.advance(1e-4, 300000);
   const std::vector<Particle> settled = run.backend->particles().records();
   run.advance(1e-4, 1000000);
@@ -233,8 +191,8 @@ TEST_CASE("mixed precision: ballistic particles keep their exact positions at an
   model.gravity = {0, -9.81, 0};
   model.space.leaving = OutsidePolicy::drift;
   add_sphere(model, {50, -3, 50}, {-900, -20, 35}), add_sphere(model, {50, 50, 50}, {});
-  Run mixed(model, true), exact(model, false);
-  for (Run* run : {&mixed, &exact}) {
+  MixedTestRun mixed(model, true), exact(model, false);
+  for (MixedTestRun* run : {&mixed, &exact}) {
     std::vector<Particle> records = run->backend->particles().records();
     records[0].drifting = true;
     run->backend->particles().load(records, {});

@@ -9,6 +9,7 @@
 #include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
 #include "support/catch.hpp"
+#include "support/colliding_spheres.hpp"
 #include "support/near.hpp"
 #include "unit/dem/random_box.hpp"
 
@@ -154,44 +155,17 @@ struct MixedRun {
   std::vector<MixedSpinRest> spin_rest;
 };
 
-// Pairs that collide at all angles and with all spins, and spheres that hit the floor.
-Model colliding_spheres(const NormalLawParameters& normal, const Friction& friction,
-                        const RollingParameters& rolling) {
-  Model model;
-  model.space.min = {0, 0, 0}, model.space.max = {1000, 1000, 1000};
-  model.contact.material_names = {"sphere"};
-  model.contact.laws = {normal}, model.contact.friction = {friction}, model.contact.rolling = {rolling};
-  model.contact.skin = 0.1;
-  model.integrator.particles = ParticleIntegrator::velocity_verlet;
-  model.walls = {{"floor", {0, 0, 980}, {0, 0, 1}, 0}};
-  ParticleSet& set = model.particles;
-  const auto add = [&](Vec3 position, Vec3 velocity, Vec3 spin) {
-    set.position.push_back(position), set.velocity.push_back(velocity), set.angular_velocity.push_back(spin);
-    set.radius.push_back(0.5), set.mass.push_back(1), set.material.push_back(0);
-  };
-  for (int k = 0; k < 12; ++k) {
-    const Vec3 at{900 + 1e-5 * k, 3.0 + 4 * k, 990};
-    add(at, {1, 0.05 * k, 0}, {0.2 * k, 1, 0.3 * k});
-    add(at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3}, {-1, 0.1 * k, 2});
-    add({920, 3.0 + 4 * k, 980.50503}, {0.05 * k, 0, -1}, {0.1 * k, -0.2 * k, 3});
-  }
-  count_particles(set, model.contact.materials());
-  return model;
-}
-
 template <class Law>
-void check_collisions(const NormalLawParameters& normal, const Friction& friction,
-                      const RollingParameters& resistance) {
-  const Model model = colliding_spheres(normal, friction, resistance);
-  constexpr Real kStep = 1e-4;
-  constexpr int kSteps = 400;
+void check_collisions(const NormalLawParameters& normal) {
+  const Model model = colliding_spheres(normal);
   LoadedBox exact(model, model.contact.skin);
-  REQUIRE(verlet_steps(exact, kStep, kSteps) == kSteps);
-  MixedRun<Law> mixed(
-      model, {typename Law::Normal(normal), Law::Tangential::of(friction), Law::Rolling::of(resistance)},
-      kStep);
+  REQUIRE(verlet_steps(exact, kCollisionStep, kCollisionSteps) == kCollisionSteps);
+  MixedRun<Law> mixed(model,
+                      {typename Law::Normal(normal), Law::Tangential::of(model.contact.friction[0]),
+                       Law::Rolling::of(model.contact.rolling[0])},
+                      kCollisionStep);
   // Converted in the middle of the contacts.
-  mixed.advance(150), mixed.advance(kSteps - 1 - 150);
+  mixed.advance(150), mixed.advance(kCollisionSteps - 1 - 150);
   TangentialLosses losses{}, exact_losses{};
   Real velocity = 0, spin = 0, changed = 0;
   const std::vector<Particle> records = exact.backend->particles().records();
@@ -215,20 +189,12 @@ void check_collisions(const NormalLawParameters& normal, const Friction& frictio
   }
 }
 
-constexpr RollingParameters kResistance{
-    .friction = 0.2, .stiffness_factor = 2.25, .damping = 0.02, .twisting_friction = 0.3};
-
 }  // namespace
 
 TEST_CASE("mixed precision: collisions with rolling resistance are those of double precision") {
-  NormalLawParameters linear, hertz, power;
-  linear.normal_stiffness = 2e5, linear.damping_ratio = 0.05;
-  hertz.effective_modulus = 5e6, hertz.damping_ratio = 0.1;
-  power.normal_stiffness = 1e6, power.exponent = 1.2, power.damping_ratio = 0.1;
-  const Friction slider{.friction = 0.3, .stiffness = 6e4, .shear_modulus = 2e6, .damping_ratio = 0};
-  check_collisions<ContactLaw<LinearRestitutionLaw, LinearSlider, AnyRolling>>(linear, slider, kResistance);
-  check_collisions<ContactLaw<HertzLaw, MindlinSlider, AnyRolling>>(hertz, slider, kResistance);
-  check_collisions<ContactLaw<PowerLaw, LinearSlider, AnyRolling>>(power, slider, kResistance);
+  check_collisions<ContactLaw<LinearRestitutionLaw, LinearSlider, AnyRolling>>(kCollisionLaws[0]);
+  check_collisions<ContactLaw<HertzLaw, MindlinSlider, AnyRolling>>(kCollisionLaws[1]);
+  check_collisions<ContactLaw<PowerLaw, LinearSlider, AnyRolling>>(kCollisionLaws[2]);
 }
 
 }  // namespace scree
