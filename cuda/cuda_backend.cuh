@@ -11,6 +11,7 @@
 #include "cuda_particles.cuh"
 #include "cuda_reports.cuh"
 #include "dem/backend/backend.hpp"
+#include "kernel_trace.cuh"
 
 namespace scree {
 
@@ -28,6 +29,7 @@ class CudaBackend : public Backend {
   std::unique_ptr<ExplicitRun> start_run(Real h) override;
   bool computes_asynchronously() const override { return true; }
   bool is_mixed() const override { return items_.in_mixed; }
+  std::unique_ptr<DeviceTrace> device_trace() override { return make_kernel_trace(); }
 
   std::vector<DeviceShare> device_shares() const;
 

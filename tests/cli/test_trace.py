@@ -19,14 +19,16 @@ class TraceTest(CommandLineTest):
         return self.events(self.folder / name)
 
     def events(self, path):
-        ranks, names = {}, {}
+        ranks, names, host = {}, {}, {}
         for event in json.loads(path.read_text())["traceEvents"]:
             if event["ph"] == "M":
-                names[event["pid"]] = event["args"]["name"]
+                lanes = names if event["name"] == "process_name" else host
+                lanes[event["pid"]] = event["args"]["name"]
                 continue
             self.assertEqual(event["ph"], "X")
             ranks.setdefault(event["pid"], []).append(event)
         self.assertEqual(names, {rank: f"rank {rank}" for rank in ranks})
+        self.assertEqual(host, {rank: "host" for rank in ranks})  # the only lane without a GPU
         for of in ranks.values():
             of.sort(key=lambda event: (event["ts"], -event["dur"]))
             self.assert_nested(of)

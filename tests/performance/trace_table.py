@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Where the time of a step goes, of timelines that scree run --trace wrote: per rank and stage, microseconds per step,
-of these those in which the host waits for the GPU, and calls per step; "between": of a step in no stage. Prints a
-markdown table.
+of these those in which the host waits for the GPU, and calls per step; "between": of a step in no stage. Then the same
+of kernels and copies, which may run side by side. Prints a markdown table; with --step N all that rank 0 does in the
+N-th recorded batch of steps and the next 50 us, by time.
 
-    trace_table.py TRACE.json ...
+    trace_table.py [--step N] TRACE.json ...
 """
 import argparse
 import json
@@ -13,7 +14,7 @@ COLUMNS = ["timeline", "rank", "stage", "us per step", "waiting [us]", "calls pe
 
 
 def ranks_of(path):
-    """{rank: its events, outer ones first}"""
+    """{rank: its events, outer ones first and those of its device}"""
     ranks = {}
     for event in json.loads(path.read_text())["traceEvents"]:
         if event["ph"] == "X":
@@ -24,10 +25,15 @@ def ranks_of(path):
 
 
 def stages_of(events):
-    """The number of steps, and {stage: [us, of these waiting, calls]} of the host's lane of a rank."""
-    steps, stages = 0, {"between": [0.0, 0.0, 0]}
+    """Of a rank the number of steps, {stage: [us, of these waiting, calls]} of its host, {kernel: [us, calls]}."""
+    steps, stages, kernels = 0, {"between": [0.0, 0.0, 0]}, {}
     stage = None
     for event in events:
+        if event["cat"] == "device":
+            of = kernels.setdefault(event["name"], [0.0, 0])
+            of[0] += event["dur"]
+            of[1] += 1
+            continue
         if event["cat"] == "steps":
             steps += event["args"]["steps"]
             stages["between"][0] += event["dur"]
@@ -43,19 +49,37 @@ def stages_of(events):
         if not within:  # a stage in another counts there, too
             stages["between"][0] -= event["dur"]
             stage = event
-    return steps, stages
+    return steps, stages, kernels
+
+
+def list_step(events, number):
+    """What happens in a batch of steps, by time."""
+    batch = [event for event in events if event["cat"] == "steps"][number]
+    print("| begin [us] | us | lane | what |\n|---|---|---|---|")
+    for event in events:
+        begin = event["ts"] - batch["ts"]
+        if begin + event["dur"] > 0 and begin < batch["dur"] + 50:
+            print(f"| {begin:.1f} | {event['dur']:.1f} | {event['tid']} | {event['name']} |")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("traces", nargs="+", type=pathlib.Path)
+    parser.add_argument("--step", type=int, metavar="N")
+    arguments = parser.parse_args()
+    if arguments.step is not None:
+        for path in arguments.traces:
+            list_step(ranks_of(path)[0], arguments.step)
+        return
     print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS))
-    for path in parser.parse_args().traces:
+    for path in arguments.traces:
         for rank, events in sorted(ranks_of(path).items()):
-            steps, stages = stages_of(events)
+            steps, stages, kernels = stages_of(events)
             for name, (us, waiting, calls) in sorted(stages.items(), key=lambda item: -item[1][0]):
                 print(f"| {path.stem} | {rank} | {name} | {us / steps:.1f} | {waiting / steps:.1f} | "
                       f"{calls / steps:.2f} |")
+            for name, (us, calls) in sorted(kernels.items(), key=lambda item: -item[1][0]):
+                print(f"| {path.stem} | {rank} | {name} | {us / steps:.1f} | - | {calls / steps:.2f} |")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/device_trace.hpp"
 #include "dem/backend/explicit_run.hpp"
 #include "dem/backend/implicit_step.hpp"
 #include "dem/backend/rank_list.hpp"
@@ -39,6 +40,9 @@ class Backend {
   // Whether explicit steps compute contact forces in single precision. The last step of `take_steps`, which
   // opens no further one, uses double precision: results depend bitwise on where runs end.
   virtual bool is_mixed() const { return false; }
+  // Records the work of this rank's device for a timeline; null if there is none, or if that cannot be
+  // recorded here.
+  virtual std::unique_ptr<DeviceTrace> device_trace() { return nullptr; }
   // Work for the host, called by asynchronous backends where they would only wait: from within `take_steps`
   // and `particle_correct`. It must not change the backend.
   void set_idle_work(std::function<void()> work) { idle_work_ = std::move(work); }

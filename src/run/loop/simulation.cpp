@@ -16,7 +16,7 @@
 #include "run/loop/choose_backend.hpp"
 #include "run/loop/step_loop.hpp"
 #include "run/record/recorder.hpp"
-#include "run/record/trace_file.hpp"
+#include "run/record/timeline.hpp"
 #include "run/report/balance.hpp"
 #include "run/report/bodies_outside.hpp"
 #include "run/report/live_status.hpp"
@@ -47,7 +47,7 @@ class Simulation {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
     ranks_.on_root([&] { folder_.clear(); });
-    prepare_trace();
+    prepare_timeline();
     recorder_ =
         std::make_unique<Recorder>(model, *backend_, body_coupling_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
@@ -68,7 +68,7 @@ class Simulation {
   void start_or_resume();
   void check_end() const;
   void load_state();
-  void prepare_trace();
+  void prepare_timeline();
   std::string start_change() const;
   bool continues_files() const;
   void bring_into_id_order(State& state) const;
@@ -92,7 +92,7 @@ class Simulation {
   ResultsFolder folder_;
   Restart restart_;  // without its state
   State state_;
-  std::unique_ptr<StageTrace> trace_;  // if the command line wants one
+  std::unique_ptr<Timeline> timeline_;  // if the command line wants one
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
   BodyCoupling body_coupling_;
@@ -124,12 +124,13 @@ void Simulation::start_or_resume() {
 }
 
 // The file is written once without steps, so that a path that is wrong ends the run here.
-void Simulation::prepare_trace() {
+void Simulation::prepare_timeline() {
   if (options_.trace.file.empty()) return;
   const TraceOptions& wanted = options_.trace;
-  trace_ = std::make_unique<StageTrace>(step_.counts().steps + wanted.from, wanted.steps);
-  timers_.record_in(trace_.get());
-  write_trace(wanted.file, *trace_, ranks_);
+  timeline_ =
+      std::make_unique<Timeline>(step_.counts().steps + wanted.from, wanted.steps, backend_->device_trace());
+  timers_.record_in(&timeline_->host());
+  timeline_->write(wanted.file, ranks_);
 }
 
 // If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
@@ -250,7 +251,7 @@ ExitCode Simulation::run_to_the_end() {
                         [this](const std::vector<EscapedParticle>& escaped_particles) {
                           watch_escaped_particles(escaped_particles);
                         },
-                        trace_.get()};
+                        timeline_.get()};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {
@@ -258,7 +259,7 @@ ExitCode Simulation::run_to_the_end() {
         progress(s, h);
       });
   try {
-    if (trace_) ranks_.min(0), trace_->set_origin();  // at the same instant on all ranks
+    if (timeline_) ranks_.min(0), timeline_->set_origin();  // at the same instant on all ranks
     book_.begin_loop();
     const LoopEnd end = loop.run();
     book_.end_loop();
@@ -321,7 +322,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
       body_coupling_.multibody() ? body_coupling_.multibody()->reaction_warning() : "";
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
   if (overloaded_) log_.warning(body_coupling_.load_warning());
-  if (trace_) write_trace(options_.trace.file, *trace_, ranks_);
+  if (timeline_) timeline_->write(options_.trace.file, ranks_);
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));

@@ -57,15 +57,15 @@ LoopEnd StepLoop::run(Real until) {
   while (!clock_.done()) {
     if (clock_.time() >= until) return LoopEnd::paused;
     if (poll_requests() != 0) return LoopEnd::stopped_by_signal;
-    take_traced_step(until);
+    take_recorded_step(until);
   }
   return LoopEnd::done;
 }
 
-void StepLoop::take_traced_step(Real until) {
-  if (parts_.trace != nullptr) parts_.trace->before_steps(parts_.step.counts().steps);
+void StepLoop::take_recorded_step(Real until) {
+  if (parts_.timeline != nullptr) parts_.timeline->before_steps(parts_.step.counts().steps);
   take_step(until);
-  if (parts_.trace != nullptr) parts_.trace->after_steps(parts_.step.counts().steps);
+  if (parts_.timeline != nullptr) parts_.timeline->after_steps(parts_.step.counts().steps);
 }
 
 // Handles requests between two steps, the same on all ranks: a signal on any rank, or a checkpoint that rank
@@ -119,7 +119,8 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
   const std::int64_t steps = parts_.step.counts().steps;
   if (!mixed) most = std::min(most, as_size(next_sample_ - steps));
-  if (!mixed && parts_.trace != nullptr) most = std::min(most, as_size(parts_.trace->most_steps(steps)));
+  if (!mixed && parts_.timeline != nullptr)
+    most = std::min(most, as_size(parts_.timeline->most_steps(steps)));
   std::vector<Real> times = clock_.equal_steps(most);
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = parts_.seconds();

@@ -10,6 +10,7 @@
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
+#include "run/record/timeline.hpp"
 #include "run/state/records.hpp"
 #include "run/state/state.hpp"
 #include "run/state/step_clock.hpp"
@@ -33,7 +34,7 @@ struct LoopParts {
   // Called with the particles that leave the domain, after the step in which they do.
   std::function<void(const std::vector<EscapedParticle>&)> leaving = [](const std::vector<EscapedParticle>&) {
   };
-  StageTrace* trace = nullptr;  // of some steps, or none
+  Timeline* timeline = nullptr;  // of some steps, or none
 };
 
 // Number of explicit steps of the bodies in one batch. step_seconds: wall time per step of the last batch;
@@ -60,7 +61,7 @@ class StepLoop {
  private:
   int poll_requests();
   void write_checkpoint();
-  void take_traced_step(Real until);
+  void take_recorded_step(Real until);
   void take_step(Real until);
   void reject(const StepOutcome& outcome);
   void take_explicit_steps(Real h, Real until);
