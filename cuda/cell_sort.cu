@@ -34,13 +34,13 @@ void CellSort::use_scratch(Index* scratch, std::size_t n) {
 }
 
 unsigned* CellSort::keys(std::size_t n) {
-  for (int k = 0; k < 2; ++k) keys_[k].resize(n), order_[k].resize(n);
+  for (int k = 0; k < 2; ++k) keys_[k].resize_with_spare(n), order_[k].resize_with_spare(n);
   return keys_[0].data();
 }
 
 void CellSort::sort(Device device, Index n, unsigned last_key) {
   const std::size_t starts = static_cast<std::size_t>(last_key) + 2;
-  starts_.resize(starts);
+  starts_.resize_with_spare(starts);
   starts_.zero(device.stream);
   for_each(device, n, IotaItem{order_[0].data()});
   cub::DoubleBuffer<unsigned> keys(keys_[0].data(), keys_[1].data());

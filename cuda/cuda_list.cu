@@ -199,7 +199,7 @@ void CudaList::index_ghosts() {
            GhostKeyItem{items_.now.position.data() + items_.owned, grid_, outside,
                         ghost_sort_.keys(static_cast<std::size_t>(ghosts))});
   ghost_sort_.sort(items_.device(), ghosts, outside);
-  ghost_items_.resize(static_cast<std::size_t>(ghosts));
+  ghost_items_.resize_with_spare(static_cast<std::size_t>(ghosts));
   for_each(items_.device(), ghosts, GhostItem{ghost_sort_.order(), items_.owned, ghost_items_.data()});
 }
 

@@ -255,7 +255,7 @@ template <class Call>
 void with_space(DeviceArray<unsigned char>& space, const Call& call) {
   std::size_t bytes = 0;
   call(nullptr, bytes);
-  space.resize(std::max<std::size_t>(bytes, 1));
+  space.resize_with_spare(std::max<std::size_t>(bytes, 1));
   call(space.data(), bytes);
 }
 
@@ -276,6 +276,11 @@ class PinnedArray {
       require_cuda(cudaMallocHost(&data_, size * sizeof(T)), "pinned host memory");
       capacity_ = size;
     }
+    size_ = size;
+  }
+  // As of `DeviceArray`: page-locking waits for the device.
+  void resize_with_spare(std::size_t size) {
+    if (size > capacity_) resize(size + size / DeviceArray<T>::kSpare);
     size_ = size;
   }
   std::size_t size() const { return size_; }

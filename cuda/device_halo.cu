@@ -62,8 +62,8 @@ void DeviceHalo::count_entries(Device device, const Vec4* position, Index n) {
 
 void DeviceHalo::list(Device device, const Vec4* position, Index n) {
   if (entries() == 0) return;
-  ghost_.resize(static_cast<std::size_t>(entries()));
-  for (DeviceArray<Vec4>& buffer : packed_) buffer.resize(static_cast<std::size_t>(plan_.sent()));
+  ghost_.resize_with_spare(static_cast<std::size_t>(entries()));
+  for (DeviceArray<Vec4>& buffer : packed_) buffer.resize_with_spare(static_cast<std::size_t>(plan_.sent()));
   visit_targets(device, position, n, ghost_.data());
 }
 

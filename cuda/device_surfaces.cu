@@ -200,7 +200,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   wait_for(device.stream);
   entries_ = h_index_[0];
   const auto entries = static_cast<std::size_t>(entries_);
-  surfaces_.resize(entries), particles_.resize(entries), images_.resize(entries);
+  surfaces_.resize_with_spare(entries), particles_.resize_with_spare(entries);
+  images_.resize_with_spare(entries);
   meshes_.reserve_entries(entries_);
   if (entries_ == 0) return;
   const EntryOutputs out{surfaces_.data(), particles_.data(), images_.data()};
@@ -234,8 +235,8 @@ void DeviceSurfaces::group_by_surface(Device device) {
       h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
   load_sums_.prepare(device, starts);
-  for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
-  steps_.resize(entries);
+  for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize_with_spare(entries);
+  steps_.resize_with_spare(entries);
 }
 
 void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {
@@ -294,7 +295,7 @@ std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, co
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
                                 const SurfaceQuery& query) {
-  h_step_sums_.resize(h_chunks_.size());
+  h_step_sums_.resize_with_spare(h_chunks_.size());
   meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch_over_step(device, views, start.position, poses_.start());
@@ -304,8 +305,8 @@ void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kerne
 
 void DeviceSurfaces::find_friction_steps(Device device, const DeviceContactKernels& kernels,
                                          const FrictionStart& start, const SurfaceQuery& query) {
-  friction_steps_.resize(static_cast<std::size_t>(entries_));
-  h_step_sums_.resize(h_chunks_.size());
+  friction_steps_.resize_with_spare(static_cast<std::size_t>(entries_));
+  h_step_sums_.resize_with_spare(h_chunks_.size());
   meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch_over_step(device, views, start.step.position, poses_.start());
@@ -316,7 +317,7 @@ void DeviceSurfaces::find_friction_steps(Device device, const DeviceContactKerne
 const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
                                                const SurfaceQuery& query) {
   if (!any_placed()) return nullptr;
-  shown_.resize(static_cast<std::size_t>(entries_));
+  shown_.resize_with_spare(static_cast<std::size_t>(entries_));
   kernels.shown_surfaces(device, entry_views(kernels, query), placed_entries_, loads_[0].data(),
                          shown_.data());
   return shown_.data();

@@ -52,7 +52,6 @@ constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame)
 constexpr double kDrivenArrays = 128 * (sizeof(SurfacePose) + sizeof(SurfaceFrame));
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
                                 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
-constexpr double kFrictionArraysPerEntry = sizeof(SurfaceFriction) + kFrictionArraysPerSlot;
 // Bytes per entry, group and triangle with meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
 constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(CachedContact),
@@ -199,9 +198,10 @@ double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
 double surface_bytes(const Model& model, const Sizes& n) {
   if (!n.on_bodies) return 0;
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
-  double per_entry = kEntryArrays;
-  if (implicit && model.rotates()) per_entry += kFrictionArraysPerEntry;
-  if (model.output.contacts) per_entry += sizeof(ShownContact);
+  double per_entry = kSpareCapacity * kEntryArrays;
+  if (implicit && model.rotates())
+    per_entry += kSpareCapacity * sizeof(SurfaceFriction) + kFrictionArraysPerSlot;
+  if (model.output.contacts) per_entry += kSpareCapacity * sizeof(ShownContact);
   if (const HistoryContent content = packed_content(model, history_of(model.contact)); content.exists())
     per_entry += kSpareCapacity * (3 * records_of(content.values) * sizeof(Vec4) + 2 * sizeof(Index));
   const SurfaceSet surfaces(model);
@@ -243,8 +243,8 @@ std::size_t device_memory_near_mesh(const Model& model) {
 std::size_t device_memory(const Model& model) {
   const Sizes n = sizes_of(model);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
-  double bytes =
-      field_bytes(model, n, explicit_steps) + n.ghosts * kGhostArrays + list_bytes(model, n, explicit_steps);
+  double bytes = field_bytes(model, n, explicit_steps) + kSpareCapacity * n.ghosts * kGhostArrays +
+                 list_bytes(model, n, explicit_steps);
   if (!explicit_steps)
     bytes += model.rotates() ? n.items * kFrictionArrays + n.slots * kFrictionArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
