@@ -22,12 +22,13 @@ namespace scree {
 
 class CudaExplicitRun;
 
-// The halo exchange on a stream of its own, concurrent with the kernels over rows.
+// The halo exchange and the boundary rows on a stream of their own, concurrent with the interior rows. The
+// host does not wait for boundary rows, but it does for the contacts of bodies, whose stream is urgent.
 struct HaloStream {
   HaloStream(const Ranks& ranks, Transport transport) : halo(ranks, transport) {}
 
   DeviceHalo halo;
-  Stream stream{Priority::urgent};
+  Stream stream{Priority::high};
   HaloClock clock;
   Event rows_done, done;
 };

@@ -38,8 +38,8 @@ inline void wait_for(cudaStream_t stream) {
   require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
 }
 
-// urgent: its blocks are scheduled before those waiting on other streams.
-enum class Priority { normal, urgent };
+// Blocks of a stream with a higher priority are scheduled before all others that wait.
+enum class Priority { normal, high, urgent };
 
 // A stream and an event, each owned by its object.
 class Stream {
@@ -47,9 +47,10 @@ class Stream {
   explicit Stream(Priority priority = Priority::normal) {
     int least = 0, greatest = 0;
     require_cuda(cudaDeviceGetStreamPriorityRange(&least, &greatest), "cudaDeviceGetStreamPriorityRange");
-    require_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking,
-                                              priority == Priority::urgent ? greatest : least),
-                 "cudaStreamCreate");
+    const int value = priority == Priority::normal ? least
+                      : priority == Priority::high ? std::min(greatest + 1, least)
+                                                   : greatest;
+    require_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, value), "cudaStreamCreate");
   }
   ~Stream() { cudaStreamDestroy(stream_); }
   Stream(const Stream&) = delete;
