@@ -69,12 +69,13 @@ void CudaBodies::accumulate_load_works(Real h) {
   works_accumulated_.record(stream_), works_accumulated_.hold(items_.stream);
 }
 
-void CudaBodies::find_loads_concurrently(const SurfaceQuery& query) {
+void CudaBodies::find_loads_concurrently(const SurfaceQuery& query, const std::function<void()>& meanwhile) {
   if (!have_surfaces()) return;
   if (!items_.surfaces.any_near()) return side_.take_loads({}, query.h);
   const Device on{stream_};
   items_.surfaces.send(on, side_.poses());
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_query, query);
+  meanwhile();
   take_loads(query.h);
 }
 

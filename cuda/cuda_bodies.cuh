@@ -3,6 +3,7 @@
 // which the host waits.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "cuda_items.cuh"
@@ -43,8 +44,9 @@ class CudaBodies {
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
   void accumulate_load_works(Real h);
-  // The same as queue_loads() while the step's kernel may still read its own loads. Waits.
-  void find_loads_concurrently(const SurfaceQuery& query);
+  // The same as queue_loads() while the step's kernel may still read its own loads. Waits; before that calls
+  // `meanwhile`.
+  void find_loads_concurrently(const SurfaceQuery& query, const std::function<void()>& meanwhile);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
  private:

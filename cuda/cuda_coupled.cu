@@ -28,6 +28,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
       const MovingSurfaces moving{bodies_.loads_found(), workspace_.boundary_done};
       queue_.queue(1, &moving), boundary_apart_ = items_.parts.apart();
     }
+    do_work();
     items_.idle();
     if (!reported) wait_for(bodies_.stream());
     bodies_.take_loads(h_);
@@ -75,7 +76,8 @@ bool CudaExplicitRun::queue_loads() {
 void CudaExplicitRun::shape_contacts() {
   bodies_.side().reopen_step();
   bodies_.find_loads_concurrently({closed_step_.position, closed_step_.velocity, closed_step_.spin,
-                                   items_.history.views_before(control_.velocity_parity() == 1), h_});
+                                   items_.history.views_before(control_.velocity_parity() == 1), h_},
+                                  [this] { do_work(); });
   bodies_.side().close_step();
 }
 

@@ -39,7 +39,8 @@ void BodyCoupling::solve_acceleration(MultibodyState& bodies, Real t) {
 }
 
 void BodyCoupling::take_wrench(MultibodyState& state) const {
-  state.wrench = has_driven_walls() ? end_wrench_ : wrench_of_bodies();
+  const std::size_t count = has_driven_walls() ? end_wrench_.size() : bodies_;
+  state.wrench.assign(end_wrench_.begin(), end_wrench_.begin() + static_cast<std::ptrdiff_t>(count));
   state.belt_power.clear();
   if (!walls_.run()) return;
   for (std::size_t c = bodies_; c < end_wrench_.size(); ++c)
@@ -49,6 +50,14 @@ void BodyCoupling::take_wrench(MultibodyState& state) const {
 void BodyCoupling::predict(const MultibodyState& bodies, Real t, Real h, Real end) {
   end_ = end;
   if (multibody_) multibody_->predict(bodies, t, h);
+}
+
+void BodyCoupling::predict_ahead(const MultibodyState& bodies, Real t, Real h, Real end) {
+  do_ahead([&] { predict(bodies, t, h, end), multibody_->prepare(); });
+}
+
+void BodyCoupling::begin_accept(const MultibodyState& bodies) {
+  do_ahead([&] { multibody_->begin_accept(bodies); });
 }
 
 IterationNorms BodyCoupling::correct() {
@@ -81,9 +90,7 @@ void BodyCoupling::accept(MultibodyState& bodies, bool deferred) {
 
 void BodyCoupling::throw_deferred() {
   if (!has_bodies()) return;
-  ranks_.on_root([&] {
-    if (deferred_) std::rethrow_exception(std::exchange(deferred_, nullptr));
-  });
+  ranks_.on_root([&] { throw_of_root(); });
 }
 
 void BodyCoupling::account_walls(MultibodyState& bodies, Real t, Real end,
@@ -161,7 +168,7 @@ template <class Action, class... Values>
 void BodyCoupling::broadcast(RankList& list, Real t, const Action& set_bodies, Values... values) {
   const std::span<BodyMotion> motion(motion_);
   const auto set = [&] {
-    if (deferred_) std::rethrow_exception(std::exchange(deferred_, nullptr));
+    throw_of_root();
     if (multibody_) set_bodies();
     if (walls_.move()) walls_.at(t, motion.subspan(bodies_));
   };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupling/loaded_bodies.hpp"
@@ -46,6 +47,10 @@ class BodyCoupling {
   void solve_acceleration(MultibodyState& bodies, Real t);  // uses end_wrench()
   // end: end of the step, t + h up to round-off [s].
   void predict(const MultibodyState& bodies, Real t, Real h, Real end);
+  // On rank 0, in explicit steps: predict(), and Multibody::prepare(); Multibody::begin_accept(). They read
+  // no wrenches, and their exceptions are thrown later, with one rank too, as by defer().
+  void predict_ahead(const MultibodyState& bodies, Real t, Real h, Real end);
+  void begin_accept(const MultibodyState& bodies);
   IterationNorms correct();          // uses the step's wrench; returns the norms on every rank
   IterationNorms correct_on_root();  // the same on rank 0 alone
   Real error() const;                // on every rank
@@ -74,13 +79,8 @@ class BodyCoupling {
   // way an explicit step of several ranks needs one broadcast per evaluation of the contacts.
   template <class Action>
   void defer(const Action& action) {
-    if (ranks_.alone()) return action();
-    if (!ranks_.is_root() || deferred_) return;
-    try {
-      action();
-    } catch (...) {
-      deferred_ = std::current_exception();
-    }
+    if (ranks_.alone()) return throw_of_root(), action();
+    do_ahead(action);
   }
   void throw_deferred();  // collective
 
@@ -120,6 +120,18 @@ class BodyCoupling {
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
+  template <class Action>
+  void do_ahead(const Action& action) {
+    if (!ranks_.is_root() || deferred_) return;
+    try {
+      action();
+    } catch (...) {
+      deferred_ = std::current_exception();
+    }
+  }
+  void throw_of_root() {
+    if (deferred_) std::rethrow_exception(std::exchange(deferred_, nullptr));
+  }
   std::string of_root(const std::function<std::string()>& tell);
   template <class Action, class... Values>
   void broadcast(RankList& list, Real t, const Action& set_bodies, Values... values);

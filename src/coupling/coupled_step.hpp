@@ -80,12 +80,13 @@ class CoupledStep {
   struct BodyStep {
     Real t, h, end;  // [s]
     int first, last;
-    Real end_of_last = t;  // end of the previous substep [s]
+    Real end_of_last = t;    // end of the previous substep [s]
+    bool predicted = false;  // the bodies' step is open
   };
   bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
   void correct_bodies(BodyIterations& iterations);
-  void evaluate_contacts(ExplicitRun& run, BodyIterations& iterations);
+  void evaluate_contacts(ExplicitRun& run, const MultibodyState& bodies, BodyIterations& iterations);
   // Beside walls with prescribed motion, without bodies; defined in driven_steps.cpp.
   std::vector<Real> instants_of(const std::vector<Real>& times, Real h, Real end) const;
   std::size_t driven_steps(ExplicitRun& run, MultibodyState& bodies, const std::vector<Real>& instants);

@@ -61,14 +61,15 @@ bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const 
   for (int done = 0; done < all;) {
     BodyStep part{step.t + step.h * done / all, step.h, step.end, done, done};
     open = explicit_substeps(run, bodies, step, part);
-    if (part.last < all || part.first > 0) part.h = step.h * (part.last - part.first) / all;
+    if (part.last < all) part.h = step.h * (part.last - part.first) / all;
     solve_bodies(run, bodies, part);
     done = part.last;
   }
   return open;
 }
 
-// Takes the substeps of a part and sets its end.
+// Takes the substeps of a part and sets its end. While the contacts of the last substep are evaluated, rank 0
+// opens the bodies' step.
 bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step,
                                     BodyStep& part) {
   const int substeps = model_.integrator.substeps;
@@ -84,6 +85,13 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
     {
       const auto scope = timers_.time(Stage::broadcast_motion);
       body_coupling_.broadcast_motion(backend_.list(), bodies, tau, part.end);
+    }
+    if (s == substeps) {
+      if (part.first > 0) part.h = step.h * (substeps - part.first) / substeps;
+      run.set_work([&] {
+        body_coupling_.predict_ahead(bodies, part.t, part.h, part.end);
+        part.predicted = true;
+      });
     }
     open = run.take_steps(1, s < substeps || step.keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
@@ -105,8 +113,9 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
   iterations.loaded = body_coupling_.is_loaded_on_root(step.h);
   {
     const auto scope = timers_.time(Stage::mbs_correct);
+    run.do_work();
     body_coupling_.defer([&] {
-      body_coupling_.predict(bodies, step.t, step.h, step.end);
+      if (!step.predicted) body_coupling_.predict(bodies, step.t, step.h, step.end);
       if (iterations.loaded) body_coupling_.open_loaded(step.h);
     });
   }
@@ -115,11 +124,12 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
       const auto scope = timers_.time(Stage::mbs_correct);
       body_coupling_.defer([&] { correct_bodies(iterations); });
     }
-    evaluate_contacts(run, iterations);
+    evaluate_contacts(run, bodies, iterations);
     if (follows(iterations)) body_coupling_.defer([&] { body_coupling_.follow_load(true); });
   }
   counts_.newton_iterations += iterations.count;
   const auto scope = timers_.time(Stage::accept);
+  run.do_work();
   body_coupling_.accept(bodies, true);
   if (iterations.loaded) body_coupling_.defer([&] { body_coupling_.average_accelerations(bodies); });
 }
@@ -141,13 +151,16 @@ void CoupledStep::correct_bodies(BodyIterations& iterations) {
   } while (!iterations.last);
 }
 
-// Evaluates the contacts with the bodies at their last corrected position.
-void CoupledStep::evaluate_contacts(ExplicitRun& run, BodyIterations& iterations) {
+// Evaluates the contacts with the bodies at their last corrected position. Meanwhile rank 0 does what closes
+// the bodies' step, if it is the last one.
+void CoupledStep::evaluate_contacts(ExplicitRun& run, const MultibodyState& bodies,
+                                    BodyIterations& iterations) {
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
     body_coupling_.broadcast_motion(backend_.list(), iterations);
   }
   const auto scope = timers_.time(Stage::reduce_wrench);
+  if (iterations.last) run.set_work([&] { body_coupling_.begin_accept(bodies); });
   run.shape_contacts();
   body_coupling_.reduce_end_wrench(run);
 }

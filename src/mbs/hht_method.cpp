@@ -79,6 +79,7 @@ void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
 
 void HhtMethod::update_motion() {
   const HhtCoefficients& c = coefficients_;
+  begun_ = Begun::nothing;
   for (std::size_t i = 0; i < velocity_.size(); ++i) {
     const Real v = start_velocity_[i], a0 = start_acceleration_[i], a1 = acceleration_[i];
     displacement_[i] = newmark_displacement(c, step_, v, a0, a1);
@@ -87,22 +88,30 @@ void HhtMethod::update_motion() {
   system_.displace(start_position_, displacement_, position_);
 }
 
-void HhtMethod::evaluate_residual() {
-  system_.evaluate({end_time(), position_, velocity_, &multipliers_}, terms_);
+void HhtMethod::begin_residual() {
+  begun_ = Begun::nothing;  // in case of an exception
+  system_.evaluate_uncontacted({end_time(), position_, velocity_, &multipliers_}, terms_);
   if (opened_) compliance_.update(terms_.constraint_jacobian);
   opened_ = false;
   std::fill(inertia_force_.begin(), inertia_force_.end(), 0);
   std::fill(constraint_force_.begin(), constraint_force_.end(), 0);
   terms_.mass.multiply(1, acceleration_, inertia_force_);
   terms_.constraint_jacobian.multiply_transposed(1, multipliers_, constraint_force_);
-  const Real alpha = coefficients_.hht_alpha, scale = hht_inertia_weight(coefficients_);
   const std::size_t n = inertia_force_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    residual_[i] = scale * inertia_force_[i] + constraint_force_[i] - terms_.applied_force[i] +
-                   alpha * scale * start_force_[i];
-  }
   for (std::size_t j = 0; j < terms_.constraint.size(); ++j) {
     residual_[n + j] = terms_.constraint[j] / position_gain();
+  }
+  begun_ = Begun::residual;
+}
+
+void HhtMethod::evaluate_residual() {
+  if (begun_ != Begun::residual) begin_residual();
+  begun_ = Begun::nothing;
+  system_.add_contacts(terms_);
+  const Real alpha = coefficients_.hht_alpha, scale = hht_inertia_weight(coefficients_);
+  for (std::size_t i = 0; i < inertia_force_.size(); ++i) {
+    residual_[i] = scale * inertia_force_[i] + constraint_force_[i] - terms_.applied_force[i] +
+                   alpha * scale * start_force_[i];
   }
 }
 
@@ -150,6 +159,7 @@ void HhtMethod::average_accelerations(MultibodyState& state, Real share) const {
 }
 
 void HhtMethod::evaluate_at(const MultibodyState& state, Real t, std::span<Real> values) {
+  begun_ = Begun::nothing;
   system_.evaluate({t, state.position, state.velocity}, terms_);
   compliance_.update(terms_.constraint_jacobian);
   kkt_.assemble(terms_, derivatives_, KktWeights{}, compliance(), values);
@@ -190,15 +200,30 @@ const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state,
   return rate;
 }
 
-bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Real> values,
-                              std::span<Real> rhs) {
+void HhtMethod::begin_change(const MultibodyState& state, Real t, std::span<Real> values) {
+  // Phi_q is that of the state's position.
+  system_.evaluate_uncontacted_forces({t, state.position, state.velocity, &state.multipliers}, terms_);
+  change_matrix(state, t, values);
+  begun_ = Begun::change;
+}
+
+void HhtMethod::change_matrix(const MultibodyState& state, Real t, std::span<Real> values) {
   const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
-  system_.evaluate_forces(at, terms_);  // Phi_q is that of the state's position
-  if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
   const std::vector<Real> zero(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
   if (is_loaded()) system_.differentiate(at, {zero, state.acceleration, state.multipliers}, derivatives_);
   kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
+}
+
+bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Real> values,
+                              std::span<Real> rhs) {
+  const bool begun = begun_ == Begun::change;
+  begun_ = Begun::nothing;
+  if (!begun)
+    system_.evaluate_uncontacted_forces({t, state.position, state.velocity, &state.multipliers}, terms_);
+  system_.add_contacts(terms_);
+  if (terms_.applied_force == state.applied) return false;
+  if (!begun) change_matrix(state, t, values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];
   return true;

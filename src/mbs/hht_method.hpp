@@ -38,9 +38,13 @@ class HhtMethod {
   //   e1 = M a / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
   //   e2 = Phi / (beta h^2)
   void evaluate_residual();
+  // Does what evaluate_residual() needs and the forces of contacts do not change, e2 included, so that the
+  // next call for the same iterate adds these forces.
+  void begin_residual();
   const std::vector<Real>& residual() const { return residual_; }
-  // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()]. The unknown
-  // is the change of the pose over beta h^2, so that Phi_q and its transpose enter unscaled:
+  // Eqs. 14, 15 at the iterate of the last evaluate_residual() or begin_residual(). values: [entries of
+  // pattern()]. The unknown is the change of the pose over beta h^2, so that Phi_q and its transpose enter
+  // unscaled:
   //   A = (M / (1 + alpha) - h gamma Q_v) T^-1 + beta h^2 ((M a)_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
   // The block Phi_q^T becomes Phi_q^T - Q_lambda.
   void newton_matrix(std::span<Real> values);
@@ -89,6 +93,9 @@ class HhtMethod {
   // one step of Newton's method for Q(lambda). Returns false, with nothing to solve, where the forces have
   // not changed.
   bool change_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
+  // Does what change_system() needs for this state and time and the forces of contacts do not change: the
+  // values. The next change_system() must be for the same state, if it is the method's next evaluation.
+  void begin_change(const MultibodyState& state, Real t, std::span<Real> values);
   void apply_change(std::span<const Real> solution, Real share, MultibodyState& state) const;
   // The `share` of apply_change() at the end of a step, 1 + alpha; at an instant it is 1.
   Real end_weight() const { return 1 + coefficients_.hht_alpha; }
@@ -130,6 +137,7 @@ class HhtMethod {
 
  private:
   void update_motion();
+  void change_matrix(const MultibodyState& state, Real t, std::span<Real> values);
   // The matrix of an instant at a state: M with weight 1, without stiffness and damping.
   void evaluate_at(const MultibodyState& state, Real t, std::span<Real> values);
 
@@ -145,6 +153,8 @@ class HhtMethod {
   };
   std::vector<Coupling> coupling_;
   bool opened_ = false;  // a step is open and its compliance is not known yet
+  // What terms_ hold, without the forces of contacts: begin_residual(), or begin_change().
+  enum class Begun { nothing, residual, change } begun_ = Begun::nothing;
   Real time_ = 0, step_ = 0;
   std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;
   std::vector<Real> displacement_, position_, velocity_, acceleration_, multipliers_;

@@ -79,8 +79,15 @@ class MechanicalSystem {
 
   // terms: the same object in every call; constant terms are written once.
   virtual void evaluate(const SystemInstant& at, SystemTerms& terms) = 0;
-  // The forces of evaluate() alone, where Phi_q is already that of the positions.
-  virtual void evaluate_forces(const SystemInstant& at, SystemTerms& terms) { evaluate(at, terms); }
+  // evaluate() in two parts: all but the forces of contacts, which may not be known yet, and these forces.
+  virtual void evaluate_uncontacted(const SystemInstant& at, SystemTerms& terms) { evaluate(at, terms); }
+  virtual void add_contacts(SystemTerms&) const {}
+  // The forces of evaluate_uncontacted() alone, where Phi_q is already that of the positions.
+  virtual void evaluate_uncontacted_forces(const SystemInstant& at, SystemTerms& terms) {
+    evaluate_uncontacted(at, terms);
+  }
+  // Whether differentiate() depends on the contacts.
+  virtual bool contacts_in_matrix() const { return false; }
   // Derivatives at the instant of the last evaluate().
   virtual void differentiate(const SystemInstant& at, const SystemIterate& iterate,
                              SystemDerivatives& derivatives) = 0;

@@ -9,13 +9,7 @@
 #include "base/error.hpp"
 #include "mbs/dead_point.hpp"
 #include "mbs/energy_ledger.hpp"
-#include "mbs/hht_method.hpp"
-#include "mbs/joint_readings.hpp"
-#include "mbs/newton_solver.hpp"
-#include "mbs/reaction_watch.hpp"
-#include "mbs/rigid_body_system.hpp"
-#include "mbs/start_checks.hpp"
-#include "mbs/start_elements.hpp"
+#include "mbs/multibody_impl.hpp"
 #include "mbs/start_velocities.hpp"
 #include "model/derived/connections.hpp"
 #include "physics/time_stepping.hpp"
@@ -44,66 +38,22 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartF
 
 }  // namespace
 
-struct Multibody::Impl {
-  explicit Impl(const Model& model)
-      : system(model),
-        start(checked_start(model, system, findings)),
-        method(system, model.integrator.hht_alpha, start.position, start.velocity,
-               model.integrator.redundant == RedundantRows::share ? system.inverse_mass() : SparseTerm{}),
-        newton(system, method),
-        readings(model, system.layout()),
-        watch(system.coordinate_scale(), system.constraint_scale()),
-        time_control(model.time),
-        corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
-        start_elements(model),
-        motion(model.bodies.size()) {
-    for (const Body& body : model.bodies) weight += body.mass * norm(model.gravity);
-    start.memory.assign(system.joint_forces().memory().size(), 0);
-    settle_velocities(model);
-  }
-
-  void settle_velocities(const Model& model);
-  void open_step(const MultibodyState& state, Real t, Real h) {
-    const SystemInstant at{t, state.position, state.velocity, &state.multipliers, &state.acceleration};
-    if (!system.joint_forces().empty())
-      system.joint_forces().open_step(system.passing_poses(at), at, h, state.memory);
-  }
-  void solve_acceleration(MultibodyState& state, Real t);
-  MultibodyState state_after(const MultibodyState& state, Real tau) const;
-  MultibodyState corrected_start(const MultibodyState& state, Real h);
-  void predict(const MultibodyState& state, Real t, Real h) {
-    open_step(state, t, h);
-    method.predict(state, t, h);
-  }
-  void follow_load();
-  void watch_reactions(const MultibodyState& state, Real error);
-  [[noreturn]] void fail_for_oscillation() const;
-
-  // The wrenches of the bodies alone, without those of walls.
-  std::vector<BodyWrench> wrench_of_bodies(const MultibodyState& state) const {
-    return {state.wrench.begin(), state.wrench.begin() + static_cast<std::ptrdiff_t>(motion.size())};
-  }
-  void update_motion() {
-    for (const auto& kind : system.kinds()) kind->motion(method.position(), method.velocity(), motion);
-  }
-
-  RigidBodySystem system;
-  StartFindings findings;
-  MultibodyState start;  // q of the model, and its v or the nearest consistent velocities
-  std::string start_change;
-  HhtMethod method;
-  NewtonSolver newton;
-  JointReadings readings;
-  ReactionWatch watch;
-  TimeControl time_control;
-  bool corrects_start;
-  StartElements start_elements;
-  Real weight = 0;  // of all bodies [N]
-  std::vector<BodyMotion> motion;
-  MultibodyState end;    // of the step that accept() closes; swapped with the caller's state
-  Real time = 0;         // of the open step's start [s]
-  IterationNorms norms;  // from the last correct()
-};
+Multibody::Impl::Impl(const Model& model)
+    : system(model),
+      start(checked_start(model, system, findings)),
+      method(system, model.integrator.hht_alpha, start.position, start.velocity,
+             model.integrator.redundant == RedundantRows::share ? system.inverse_mass() : SparseTerm{}),
+      newton(system, method),
+      readings(model, system.layout()),
+      watch(system.coordinate_scale(), system.constraint_scale()),
+      time_control(model.time),
+      corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
+      start_elements(model),
+      motion(model.bodies.size()) {
+  for (const Body& body : model.bodies) weight += body.mass * norm(model.gravity);
+  start.memory.assign(system.joint_forces().memory().size(), 0);
+  settle_velocities(model);
+}
 
 // Efforts that depend on the reactions are set by the reactions found without them.
 void Multibody::Impl::solve_acceleration(MultibodyState& state, Real t) {
@@ -211,7 +161,13 @@ void Multibody::predict(const MultibodyState& state, Real t, Real h) {
     impl_->predict(state, t, h);
   }
   impl_->newton.begin_step();
+  impl_->closed = false;
   impl_->update_motion();
+}
+
+void Multibody::prepare() {
+  impl_->system.drop_stiffness();  // of the last step
+  impl_->newton.prepare();
 }
 
 IterationNorms Multibody::correct(const ContactWrenches& contacts) {
@@ -243,32 +199,47 @@ std::string Multibody::dead_point() {
                            method.step(), impl_->findings.repeated);
 }
 
-Real Multibody::error() const {
+Real Multibody::error() const { return impl_->error(); }
+
+Real Multibody::Impl::error() const {
   Real largest = 0;
-  for (const auto& kind : impl_->system.kinds())
-    largest = larger_error(largest, kind->error(impl_->method, impl_->system.length_scale()));
+  for (const auto& kind : system.kinds())
+    largest = larger_error(largest, kind->error(method, system.length_scale()));
   return largest;
+}
+
+// What does not depend on the wrenches at the end of the step.
+void Multibody::Impl::close_step(const MultibodyState& state) {
+  method.close(end);
+  watch_reactions(state);
+  account_step(system, state, time, method.step(), end);
+  end.memory = system.joint_forces().memory();
+  system.count_revolutions(system.poses(), end.position);
+  end.counted_angles = state.counted_angles;
+  efforts_differ = system.joint_forces().end_step();
+  // The whole change of the joints' efforts counts: with alpha < 0 the impulse of a step with an event is
+  // then right wherever in the step the event is (mbs/README.md, "Events").
+  if (efforts_differ) newton.change_forces(end, method.end_time(), 1);
+  closed = true;
+}
+
+// The wrenches of contacts change in an explicit step, as a rule.
+void Multibody::begin_accept(const MultibodyState& state) {
+  impl_->close_step(state);
+  if (impl_->system.has_contacts()) impl_->newton.prepare_change(impl_->end, impl_->method.end_time());
 }
 
 void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench) {
   Impl& impl = *impl_;
-  impl.method.close(impl.end);
-  impl.watch_reactions(state, error());
-  account_step(impl.system, state, impl.time, impl.method.step(), impl.end);
-  impl.end.memory = impl.system.joint_forces().memory();
-  impl.system.count_revolutions(impl.system.poses(), impl.end.position);
-  impl.end.counted_angles = state.counted_angles;
+  if (!impl.closed) impl.close_step(state);
+  impl.closed = false;
   impl.end.wrench = end_wrench;
-  const bool efforts_differ = impl.system.joint_forces().end_step(),
-             contacts_differ = !impl.system.has_forces_of(end_wrench);
-  // The whole change of the joints' efforts counts: with alpha < 0 the impulse of a step with an event is
-  // then right wherever in the step the event is (mbs/README.md, "Events").
-  if (efforts_differ) impl.newton.change_forces(impl.end, impl.method.end_time(), 1);
+  const bool contacts_differ = !impl.system.has_forces_of(end_wrench);
   if (contacts_differ) {
     impl.system.set_forces(end_wrench);
     impl.newton.change_forces(impl.end, impl.method.end_time(), impl.method.end_weight());
   }
-  if (efforts_differ || contacts_differ) impl.follow_load();
+  if (impl.efforts_differ || contacts_differ) impl.follow_load();
   std::swap(state, impl.end);
 }
 
@@ -291,12 +262,12 @@ void Multibody::check_reactions() const {
 }
 
 // Adaptive steps that the oscillation governs would become shorter and shorter without gain.
-void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
+void Multibody::Impl::watch_reactions(const MultibodyState& state) {
   if (system.constraints() == 0) return;
   watch.observe(state, end, method.constraint_rate(end, method.end_time()));
   if (!watch.oscillates()) return;
   const bool governs =
-      time_control.control == StepControl::adaptive && error >= kGoverns * time_control.tolerance;
+      time_control.control == StepControl::adaptive && error() >= kGoverns * time_control.tolerance;
   const bool ruined = watch.share() >= kRuin && watch.relative_gap() >= kRuinedVelocity;
   if (ruined || (governs && watch.share() >= kOscillation)) fail_for_oscillation();
 }
@@ -321,74 +292,6 @@ std::vector<BodyMotion> Multibody::motion(const MultibodyState& state, Real tau)
 void Multibody::motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const {
   out.resize(impl_->motion.size());
   for (const auto& kind : impl_->system.kinds()) kind->motion_after(state, tau, out);
-}
-
-MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const {
-  return stored_energies(impl_->system, state, t);
-}
-
-Real Multibody::energy_of_forces(const MultibodyState& state) const {
-  return scree::energy_of_forces(impl_->system, state);
-}
-
-MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const {
-  MultibodyState now = state;
-  impl_->system.set_forces(impl_->wrench_of_bodies(state));
-  impl_->open_step(state, t, 0);
-  try {
-    impl_->newton.solve_instant(now, t);
-  } catch (const SimulationError&) {
-    return state;
-  }
-  if (impl_->system.joint_forces().are_loaded()) now.memory = impl_->system.joint_forces().memory();
-  return now;
-}
-
-std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) const {
-  const std::vector<ConstraintGroup>& groups = impl_->system.groups();
-  if (groups.empty()) return {};
-  const MultibodyState now = at_instant(state, t);
-  const auto loads = impl_->system.reactions({t, now.position, now.velocity, &now.multipliers}, now.memory);
-  std::vector<Reaction> reactions;
-  for (std::size_t i = 0; i < groups.size(); ++i)
-    reactions.push_back({groups[i].name, loads[i].force, loads[i].torque, groups[i].kind, loads[i].frame});
-  return reactions;
-}
-
-std::vector<JointReading> Multibody::joint_readings(const MultibodyState& state, Real t) const {
-  if (impl_->readings.empty()) return {};
-  const SystemInstant at{t, state.position, state.velocity};
-  return impl_->readings.at(impl_->system.poses_at(at), at);
-}
-
-std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
-  const JointForces& forces = impl_->system.joint_forces();
-  if (forces.empty()) return {};
-  const MultibodyState now = forces.are_loaded() ? at_instant(state, t) : state;
-  const SystemInstant at{t, now.position, now.velocity, &now.multipliers};
-  const auto samples = forces.samples(impl_->system.poses_at(at), at, now.memory);
-  std::vector<JointEffortSample> out;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const CoordinateInstant& c = samples[i].at;
-    out.push_back({forces.all()[i].name(), forces.all()[i].is_angle(), c.value, c.rate, samples[i].effort,
-                   samples[i].effort * c.rate});
-  }
-  return out;
-}
-
-std::vector<Real> Multibody::spring_efforts(const MultibodyState& state, Real t) const {
-  return impl_->system.spring_efforts({t, state.position, state.velocity});
-}
-
-std::vector<BushingSample> Multibody::bushings(const MultibodyState& state, Real t) const {
-  if (impl_->system.bushings().empty()) return {};
-  const BodyPoses poses = impl_->system.poses_at({t, state.position, state.velocity});
-  std::vector<BushingSample> out;
-  for (const BushingElement* bushing : impl_->system.bushings()) {
-    const BushingLoad load = bushing->load(poses);
-    out.push_back({bushing->name(), load.shift, load.turn, load.force, load.torque});
-  }
-  return out;
 }
 
 int Multibody::coordinates() const { return impl_->system.coordinates(); }

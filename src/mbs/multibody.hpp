@@ -98,6 +98,9 @@ class Multibody {
 
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.
   void predict(const MultibodyState& state, Real t, Real h);
+  // Between predict() and the first correct(): does what that correct() needs and the contacts do not change,
+  // while they are not known yet.
+  void prepare();
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
   // naming the joint or body on a singular matrix or a non-finite residual.
   IterationNorms correct(const ContactWrenches& contacts);
@@ -109,6 +112,9 @@ class Multibody {
   std::string dead_point();
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
+  // After the last correct(): does what accept() for this state needs and the wrenches at the end of the step
+  // do not change. Throws SimulationError as accept() does.
+  void begin_accept(const MultibodyState& state);
   // Closes the step into `state`. Without this call the step is rejected and `state` is unchanged.
   // end_wrench: contact wrenches at the end of the step, where they differ from those that the step was
   // corrected with because contacts opened or closed within it; the next step starts from them. Throws

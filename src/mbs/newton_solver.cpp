@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "mbs/start_checks.hpp"
@@ -41,7 +42,20 @@ NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
   acceleration_solver_.set_units(method.units());
 }
 
-void NewtonSolver::begin_step() { first_ = true; }
+void NewtonSolver::begin_step() { first_ = true, prepared_ = false; }
+
+void NewtonSolver::prepare() {
+  try {
+    method_.begin_residual();
+    if (system_.contacts_in_matrix()) return;
+    method_.newton_matrix(solver_.values());
+    const std::span<Real> gaps = solver_.rhs().subspan(system_.coordinate_scale().size());
+    std::copy(method_.residual().end() - std::ssize(gaps), method_.residual().end(), gaps.begin());
+    factored_ahead_ = !drop_misfit(solver_, true) || solver_.factor();
+    prepared_ = true;
+  } catch (const SimulationError&) {
+  }
+}
 
 // e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the
 // scale of its constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as
@@ -87,12 +101,18 @@ void NewtonSolver::solve_linear(PetscSolver& solver, bool refactor) {
                                     matrix_failure(system_, method_.pattern(), solver.values())));
 }
 
-void NewtonSolver::solve_acceleration_level() {
+bool NewtonSolver::renew_acceleration_matrix() {
   const std::span<Real> factored = acceleration_solver_.values();
-  bool refactor = !has_acceleration_factors_ ||
-                  std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) != 0;
+  if (has_acceleration_factors_ &&
+      std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) == 0)
+    return false;
+  std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
+  return true;
+}
+
+void NewtonSolver::solve_acceleration_level() {
+  bool refactor = renew_acceleration_matrix();
   has_acceleration_factors_ = false;  // until the factorization succeeds
-  if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
   refactor = drop_misfit(acceleration_solver_, refactor);
   solve_minimum_norm(acceleration_solver_, refactor, {});
   has_acceleration_factors_ = true;
@@ -184,6 +204,11 @@ void NewtonSolver::change_forces(MultibodyState& state, Real t, Real share) {
   }
 }
 
+void NewtonSolver::prepare_change(const MultibodyState& state, Real t) {
+  method_.begin_change(state, t, acceleration_matrix_);
+  if (renew_acceleration_matrix()) has_acceleration_factors_ = acceleration_solver_.factor();
+}
+
 // The change of the forces on the right-hand side, over the largest force that takes part.
 Real NewtonSolver::scaled_change() {
   const std::vector<Real>& scale = system_.coordinate_scale();
@@ -240,10 +265,16 @@ IterationNorms NewtonSolver::iterate() {
   method_.evaluate_residual();
   IterationNorms norms;
   norms.residual = scaled_residual();
+  const bool prepared = std::exchange(prepared_, false) && !system_.contacts_in_matrix();
   bool refactor = first_ || norms.residual > kReuseContraction * last_residual_;
-  if (refactor) method_.newton_matrix(solver_.values());
-  std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
-  refactor = drop_misfit(solver_, refactor);
+  if (prepared) {
+    std::copy_n(method_.residual().begin(), system_.coordinate_scale().size(), solver_.rhs().begin());
+    refactor = !factored_ahead_;
+  } else {
+    if (refactor) method_.newton_matrix(solver_.values());
+    std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
+    refactor = drop_misfit(solver_, refactor);
+  }
   solve_minimum_norm(solver_, refactor, method_.multipliers());
   const std::span<const Real> delta = method_.is_coupled() ? solve_coupled() : solver_.solution();
   norms.correction = scaled_correction(delta);

@@ -39,9 +39,16 @@ class NewtonSolver {
   // Replaces the applied forces of a state at time t by those of the system, where they differ. share: as in
   // HhtMethod::apply_change. Throws SimulationError as iterate() does.
   void change_forces(MultibodyState& state, Real t, Real share);
+  // Does what the next change_forces() for this state and time needs and the forces of contacts do not
+  // change, the factors included.
+  void prepare_change(const MultibodyState& state, Real t);
 
   // Resets the reuse of factors for a new step.
   void begin_step();
+  // Between begin_step() and the first iterate(): does what that iteration needs and the forces of contacts
+  // do not change. This includes the factors and the misfit of redundant rows, unless contacts are in the
+  // matrix. What fails here fails again in iterate().
+  void prepare();
   // Does one iteration. Throws SimulationError with the names of the joints or bodies on a singular matrix
   // or a residual that is not finite.
   IterationNorms iterate();
@@ -55,6 +62,9 @@ class NewtonSolver {
  private:
   // Solves the system of acceleration_matrix_ for the right-hand side in acceleration_solver_.
   void solve_acceleration_level();
+  // Whether the factors of acceleration_solver_ are not those of acceleration_matrix_; if so, it takes over
+  // the matrix.
+  bool renew_acceleration_matrix();
   // With redundant rows: removes from the constraints' part g of the right-hand side what no motion can
   // satisfy, as round-off and the digits of a deck leave it there; the multipliers would grow by it over C.
   // It is -C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g); the system is solved twice, the second time
@@ -88,7 +98,9 @@ class NewtonSolver {
   // Search directions and their products with the matrix, of norm 1.
   std::vector<std::vector<Real>> directions_, images_;
   Real last_residual_ = 0;
-  bool first_ = true;  // the next iteration is the first of its step
+  bool first_ = true;            // the next iteration is the first of its step
+  bool prepared_ = false;        // matrix and gaps are those of the next iteration
+  bool factored_ahead_ = false;  // and the factors
 };
 
 }  // namespace scree

@@ -127,6 +127,7 @@ struct PetscSolver::Impl {
   bool solve_by_petsc(bool refactor);
   bool is_finite() const;
 #if SCREE_REFACTORS
+  bool factor_directly();
   bool solve_directly(bool refactor);
   bool is_plain() const;
   void find_factors();
@@ -246,6 +247,19 @@ bool PetscSolver::solve(bool refactor) {
   return solved;
 }
 
+bool PetscSolver::factor() {
+#if SCREE_REFACTORS
+  if (impl_->factors == nullptr) return false;
+  if (impl_->units.empty()) return impl_->factor_directly();
+  impl_->multiply(false);
+  const bool factored = impl_->factor_directly();
+  impl_->multiply(true);
+  return factored;
+#else
+  return false;
+#endif
+}
+
 bool PetscSolver::Impl::is_finite() const {
   bool finite = true;
   for (const Real x : solution) finite = finite && std::isfinite(x);
@@ -303,12 +317,14 @@ void PetscSolver::Impl::find_factors() {
   check(factors_of(factor, &factors));
 }
 
+bool PetscSolver::Impl::factor_directly() {
+  const KluFactors::Result result = factors->factor(values);
+  if (result == KluFactors::Result::out_of_memory) throw SimulationError("KLU, rank 0: out of memory");
+  return result != KluFactors::Result::singular;
+}
+
 bool PetscSolver::Impl::solve_directly(bool refactor) {
-  if (refactor) {
-    const KluFactors::Result result = factors->factor(values);
-    if (result == KluFactors::Result::singular) return false;
-    if (result == KluFactors::Result::out_of_memory) throw SimulationError("KLU, rank 0: out of memory");
-  }
+  if (refactor && !factor_directly()) return false;
   std::copy(rhs.begin(), rhs.end(), solution.begin());
   if (!factors->solve(solution)) throw SimulationError("KLU, rank 0: it cannot solve");
   return is_finite();

@@ -36,6 +36,10 @@ class PetscSolver {
   // failure of PETSc.
   bool solve(bool refactor);
 
+  // Computes the factors of values() ahead, so that the next solve() may use the existing ones. False where
+  // solve() has to do it, as in PETSc's own calls, or where the matrix is singular.
+  bool factor();
+
   // e.g. "petsc 3.18.5, preonly + lu (klu_refactor)"; without a PetscSession the description for no options
   std::string description() const;
 

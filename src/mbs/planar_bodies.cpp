@@ -117,6 +117,7 @@ class PlanarBodies final : public RigidBodies {
       touched_.push_back(one.body);
     }
   }
+  bool wrench_in_matrix() const override { return false; }
   Real add_contact(const BodyPoses&, const std::vector<BodyWrench>& wrench, Real length,
                    std::vector<Real>& force) const override {
     Real largest = 0;

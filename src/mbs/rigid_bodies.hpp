@@ -77,6 +77,8 @@ class RigidBodies {
   virtual void add_inertial_derivatives(const BodyPoses& poses, SystemDerivatives& derivatives) const = 0;
 
   virtual void set_contact_stiffness(const std::vector<WrenchStiffness>& touched) = 0;
+  // Whether contacts without stiffness have derivatives.
+  virtual bool wrench_in_matrix() const = 0;
   // Adds the forces of the contacts; returns the largest contribution [J].
   virtual Real add_contact(const BodyPoses& poses, const std::vector<BodyWrench>& wrench, Real length,
                            std::vector<Real>& force) const = 0;

@@ -154,7 +154,12 @@ void RigidBodySystem::add_group(ConstraintGroup group, std::vector<std::unique_p
 }
 
 void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
-  evaluate_forces(at, terms);
+  evaluate_uncontacted(at, terms);
+  add_contacts(terms);
+}
+
+void RigidBodySystem::evaluate_uncontacted(const SystemInstant& at, SystemTerms& terms) {
+  evaluate_uncontacted_forces(at, terms);
   terms.constraint_jacobian.begin();
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->value(poses_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
@@ -162,7 +167,7 @@ void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   }
 }
 
-void RigidBodySystem::evaluate_forces(const SystemInstant& at, SystemTerms& terms) {
+void RigidBodySystem::evaluate_uncontacted_forces(const SystemInstant& at, SystemTerms& terms) {
   set_poses(at.position, at.velocity, poses_);
   if (terms.mass.size() == 0) {  // it is constant
     terms.mass.begin();
@@ -177,13 +182,34 @@ void RigidBodySystem::evaluate_forces(const SystemInstant& at, SystemTerms& term
   terms.force_scale =
       std::max(terms.force_scale, joint_forces_.add_force(poses_, at, length_scale_, terms.applied_force));
   for (const auto& kind : kinds_)
-    terms.force_scale = std::max({terms.force_scale, kind->add_inertial_force(poses_, terms.applied_force),
-                                  kind->add_contact(poses_, wrench_, length_scale_, terms.applied_force)});
+    terms.force_scale = std::max(terms.force_scale, kind->add_inertial_force(poses_, terms.applied_force));
+}
+
+void RigidBodySystem::add_contacts(SystemTerms& terms) const {
+  for (const auto& kind : kinds_)
+    terms.force_scale =
+        std::max(terms.force_scale, kind->add_contact(poses_, wrench_, length_scale_, terms.applied_force));
 }
 
 void RigidBodySystem::set_contacts(const ContactWrenches& contacts) {
-  wrench_ = contacts.wrench, pairs_ = contacts.pairs;
-  for (const auto& kind : kinds_) kind->set_contact_stiffness(contacts.stiffness);
+  wrench_ = contacts.wrench;
+  set_stiffness(contacts.stiffness, contacts.pairs);
+}
+
+void RigidBodySystem::set_stiffness(const std::vector<WrenchStiffness>& of_bodies,
+                                    const std::vector<PairStiffness>& of_pairs) {
+  pairs_ = of_pairs;
+  stiffened_ = !of_bodies.empty() || !of_pairs.empty();
+  for (const auto& kind : kinds_) kind->set_contact_stiffness(of_bodies);
+}
+
+bool RigidBodySystem::contacts_in_matrix() const {
+  return stiffened_ || std::ranges::any_of(kinds_, [](const auto& kind) { return kind->wrench_in_matrix(); });
+}
+
+bool RigidBodySystem::has_contacts() const {
+  return std::ranges::any_of(
+      wrench_, [](const BodyWrench& one) { return one.force != Vec3{} || one.torque != Vec3{}; });
 }
 
 bool RigidBodySystem::has_forces_of(const std::vector<BodyWrench>& wrench) const {

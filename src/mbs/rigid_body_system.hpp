@@ -45,7 +45,10 @@ class RigidBodySystem final : public MechanicalSystem {
   int coordinates() const override { return layout_.columns(); }
   int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override;
-  void evaluate_forces(const SystemInstant& at, SystemTerms& terms) override;
+  void evaluate_uncontacted(const SystemInstant& at, SystemTerms& terms) override;
+  void add_contacts(SystemTerms& terms) const override;
+  void evaluate_uncontacted_forces(const SystemInstant& at, SystemTerms& terms) override;
+  bool contacts_in_matrix() const override;
   void differentiate(const SystemInstant& at, const SystemIterate& iterate,
                      SystemDerivatives& derivatives) override;
   void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
@@ -60,10 +63,13 @@ class RigidBodySystem final : public MechanicalSystem {
 
   // Sets the contacts for the next evaluate() and differentiate(); the model starts without any.
   void set_contacts(const ContactWrenches& contacts);
+  // Keeps the wrenches alone.
+  void drop_stiffness() { set_stiffness({}, {}); }
   // Keeps the contacts' stiffness and replaces their wrenches, one per body.
   void set_forces(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
   // Whether the wrenches set last have the same forces and torques.
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
+  bool has_contacts() const;  // whether any of them has a force or torque
 
   // Number of angles of spatial joints, the last of the positions.
   int counted_angles() const { return static_cast<int>(counted_.size()); }
@@ -118,6 +124,8 @@ class RigidBodySystem final : public MechanicalSystem {
     std::unique_ptr<PrimitiveFunction> angle;
   };
 
+  void set_stiffness(const std::vector<WrenchStiffness>& of_bodies,
+                     const std::vector<PairStiffness>& of_pairs);
   void add_counted_angles(const Model& model);
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                  BodyPoses& poses) const;
@@ -144,6 +152,7 @@ class RigidBodySystem final : public MechanicalSystem {
   BodyPoses scratch_;
   std::vector<BodyWrench> wrench_;
   std::vector<PairStiffness> pairs_;
+  bool stiffened_ = false;  // whether contacts with a stiffness are set
   std::vector<std::unique_ptr<Constraint>> constraints_;
   std::vector<int> first_row_;        // per constraint object
   std::vector<std::size_t> drivers_;  // the constraint objects whose f may depend on time

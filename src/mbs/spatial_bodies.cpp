@@ -164,6 +164,9 @@ class SpatialBodies final : public RigidBodies {
     touched_.clear();
     for (const WrenchStiffness& one : touched) touched_[one.body] = one;
   }
+  bool wrench_in_matrix() const override {
+    return std::ranges::any_of(bodies_, [](const BodyData& b) { return b.touchable; });
+  }
   Real add_contact(const BodyPoses& poses, const std::vector<BodyWrench>& wrench, Real length,
                    std::vector<Real>& force) const override {
     Real largest = 0;

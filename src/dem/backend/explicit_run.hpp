@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/timer.hpp"
@@ -46,9 +48,19 @@ class ExplicitRun {
   // Evaluates the contacts of the bodies' shapes at their current poses, with the particles of the last
   // closed step.
   virtual void shape_contacts() = 0;
+  // Work for the host, done once: by the next take_steps() or shape_contacts() of an asynchronous backend
+  // while it would wait for the contacts with the bodies, else by do_work(). It must neither change the
+  // backend nor throw.
+  void set_work(std::function<void()> work) { work_ = std::move(work); }
+  void do_work() {
+    if (work_) std::exchange(work_, nullptr)();
+  }
   // Contact wrenches on the bodies after take_steps() or shape_contacts(), and the number of particles'
   // contacts in each. On rank 0; zero elsewhere.
   virtual void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) = 0;
+
+ private:
+  std::function<void()> work_;
 };
 
 }  // namespace scree
