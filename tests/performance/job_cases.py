@@ -75,7 +75,7 @@ def excavator(particles, steps):
     window = steps * scaled(particles, step)
     whole = 2.0 if particles < 1e6 else 1.5
     return [Job(f"{name}, digging", particles, deck, DIGGING + window, {**settings, **early_arm()}, start=DIGGING),
-            Job(f"{name}, falling", particles, deck, 0.1 if particles < 4e6 else 0.012, settings),
+            Job(f"{name}, falling", particles, deck, 0.1 if particles < 4e6 else 0.05, settings),
             Job(f"{name}, to {whole:g} s", particles, deck, whole, settings, asked=particles >= 1e6)]
 
 

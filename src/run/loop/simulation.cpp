@@ -125,12 +125,10 @@ void Simulation::start_or_resume() {
 
 // The file is written once without steps, so that a path that is wrong ends the run here.
 void Simulation::prepare_timeline() {
-  if (options_.trace.file.empty()) return;
-  const TraceOptions& wanted = options_.trace;
-  timeline_ =
-      std::make_unique<Timeline>(step_.counts().steps + wanted.from, wanted.steps, backend_->device_trace());
-  timers_.record_in(&timeline_->host());
-  timeline_->write(wanted.file, ranks_);
+  const auto& [file, from, steps] = options_.trace;
+  if (file.empty()) return;
+  timeline_ = std::make_unique<Timeline>(step_.counts().steps + from, steps, backend_->device_trace());
+  timeline_->write(file, ranks_);
 }
 
 // If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
@@ -259,7 +257,9 @@ ExitCode Simulation::run_to_the_end() {
         progress(s, h);
       });
   try {
-    if (timeline_) ranks_.min(0), timeline_->set_origin();  // at the same instant on all ranks
+    timers_ = {};  // without the list before the first step
+    // Timelines begin at the same instant on all ranks.
+    if (timeline_) timers_.record_in(&timeline_->host()), ranks_.min(0), timeline_->set_origin();
     book_.begin_loop();
     const LoopEnd end = loop.run();
     book_.end_loop();
