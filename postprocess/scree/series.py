@@ -16,6 +16,9 @@ from scree.fields import POSITION
 from scree.quantity import Quantity
 
 
+COUNTS = "Thinned/counts"  # number of points of each snapshot before scree-post thin left some out
+
+
 @dataclass(frozen=True)
 class SeriesFile:
     """Metadata of the snapshots in one file, without their rows."""
@@ -27,6 +30,7 @@ class SeriesFile:
     first: np.ndarray  # first row of each snapshot in Points
     field_first: dict[str, np.ndarray]  # first row of each snapshot, per field of points
     points: np.ndarray  # number of points per snapshot
+    counts: np.ndarray  # number of points per snapshot before scree-post thin left some out
     triangles: np.ndarray  # surfaces: [triangles][3], corner points counted from the first point of the snapshot
     lines: bool  # whether consecutive pairs of points are lines
     cell_first: dict[str, np.ndarray]  # first row of each snapshot, per field of triangles or lines
@@ -41,6 +45,7 @@ class SeriesFile:
             for group in ("PointData", "CellData"):
                 labels |= {name: files.label(field) for name, field in root.get(group, {}).items()}
             points, cells = steps.get("PointDataOffsets", {}), steps.get("CellDataOffsets", {})
+            of_parts = root["NumberOfPoints"][:][steps["PartOffsets"][:]]
             triangles = root["Polygons/Connectivity"][:].reshape(-1, 3) if "Polygons" in root else np.empty((0, 3), int)
             return SeriesFile(
                 path,
@@ -49,7 +54,8 @@ class SeriesFile:
                 steps["Values"][:],
                 steps["PointOffsets"][:],
                 {name: offsets[:] for name, offsets in points.items()},
-                root["NumberOfPoints"][:][steps["PartOffsets"][:]],
+                of_parts,
+                file[COUNTS][:] if COUNTS in file else of_parts,
                 triangles,
                 "LineOffsets" in steps,
                 {name: cells[name][:] if name in cells else np.zeros(len(steps["Values"]), int)
@@ -115,6 +121,11 @@ class Series:
         """Number of points."""
         file, number = self._snapshots[snapshot]
         return int(file.points[number])
+
+    def whole_count(self, snapshot: int) -> int:
+        """Number of points of the run, of which thinned results have a part."""
+        file, number = self._snapshots[snapshot]
+        return int(file.counts[number])
 
     def rows(self, snapshot: int, name: str) -> np.ndarray:
         """[points] or [points][k]; a field of triangles or lines has one row per triangle or line."""

@@ -31,7 +31,7 @@ PICTURES = {"picture": ["picture", "RUN", "--no-vtk"], "color": ["picture", "RUN
             "draw": ["draw", "RUN", "--no-vtk", "--no-animation"]}
 COMMANDS = {**PICTURES, "plot": ["plot", "RUN"], "list": ["plot", "RUN", "--list"],
             "compare": ["compare", "RUN", "WHOLE"], "paraview": ["paraview", "RUN"],
-            "settle": ["settle", "RUN", "-o", "OUT/settled"],
+            "settle": ["settle", "RUN", "-o", "OUT/settled"], "thin": ["thin", "RUN", "-o", "OUT/thin"],
             "report": ["report", "RUN", "--no-vtk"],
             **{form: ["export", "RUN", "--format", form, "-o", f"OUT/{form}"]
                for form in ("csv", "vtp", "vtu", "ply", "stl")}}
@@ -108,13 +108,14 @@ class MissingTest(unittest.TestCase):
     def test_what_the_deck_has_not(self):
         films = {*PICTURES, "settle"}
         for name, refused in {"flat": set(), "deep": set(), "no_particles": {"settle"}, "no_bodies": set(),
-                              "no_shapes": {"ply", "stl", "settle"}, "no_links": set(), "no_fields": films,
-                              "no_fields_deep": films, "radii": films, "velocities": films}.items():
+                              "no_shapes": {"ply", "stl", "settle"}, "no_links": set(), "no_fields": films | {"thin"},
+                              "no_fields_deep": films | {"thin"}, "radii": films,
+                              "velocities": films | {"thin"}}.items():
             self.ends_well(self.folder / name, refused, name)
 
     def test_files_that_are_not_there(self):
-        films, forms = {*PICTURES, "settle"}, {"vtp", "vtu", "ply", "stl"}
-        refused = {"particles": films, "history": {"plot"}, "snapshots": films | {"paraview"} | forms, "deck": films,
+        films, forms = {*PICTURES, "settle", "thin"}, {"vtp", "vtu", "ply", "stl"}
+        refused = {"particles": films, "history": {"plot"}, "record": {"thin"}, "snapshots": films | {"paraview"} | forms, "deck": films,
                    "results": films | {"plot", "paraview", "report", "csv"} | forms}
         for missing, files in FILES.items():
             name = "deep" if missing == "surfaces" else "flat"

@@ -3,7 +3,7 @@ from __future__ import annotations
 import argparse
 import pathlib
 
-from scree.commands.arguments import add_folder, add_frames, count
+from scree.commands.arguments import add_folder, add_frames, add_span, count, snapshots_in_span
 from scree.commands.picture_options import add_picture_options, picture_options
 from scree.errors import ScreeError
 from scree.run import open_run
@@ -14,9 +14,7 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/film.mp4, without ffmpeg "
                              "film.gif")
-    parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
-                        help="first snapshot [s]")
-    parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
+    add_span(parser)
     parser.add_argument("--rate", type=count, default=25, metavar="FRAMES", help="frames per second (default 25)")
     parser.add_argument("--width", type=count, metavar="PIXELS", help="width of the film; default: as pictures")
     parser.add_argument("--quality", type=quality, default=80, metavar="NUMBER",
@@ -44,11 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     if path.suffix[1:] not in FILM_FORMATS:
         raise ScreeError(f"{path}: must end in .{', .'.join(FILM_FORMATS[:-1])} or .{FILM_FORMATS[-1]}")
     drawn, options = DrawnRun(open_run(arguments.folder)), picture_options(arguments)
-    begin, end, times = arguments.begin, arguments.end, drawn.particles.times
-    within = [k for k, time in enumerate(times) if begin <= time <= end]
-    if not within:
-        raise ScreeError(f"{arguments.folder}: no snapshot from {begin:g} to {end:g} s; they go from "
-                         f"{times[0]:g} to {times[-1]:g} s")
+    within = snapshots_in_span(arguments, drawn.particles.times)
     frames = [within[k] for k in chosen_frames(len(within), arguments.frames)]
     options.fit(drawn, frames)
     save_animation(make_picture(drawn, frames, options), frames, path, arguments.rate, arguments.width,

@@ -5,6 +5,10 @@ from __future__ import annotations
 import argparse
 import pathlib
 
+import numpy as np
+
+from scree.errors import ScreeError
+
 
 def add_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=pathlib.Path, metavar="RESULT_DIR",
@@ -13,6 +17,21 @@ def add_folder(parser: argparse.ArgumentParser) -> None:
 
 def add_frames(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frames", type=count, default=200, help="largest number of frames (default 200)")
+
+
+def add_span(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
+                        help="first snapshot [s]")
+    parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
+
+
+def snapshots_in_span(arguments: argparse.Namespace, times: np.ndarray) -> list[int]:
+    """Throws ScreeError if there are none."""
+    found = [k for k, time in enumerate(times) if arguments.begin <= time <= arguments.end]
+    if not found:
+        raise ScreeError(f"{arguments.folder}: no snapshot from {arguments.begin:g} to {arguments.end:g} s" + (
+            f"; they go from {times[0]:g} to {times[-1]:g} s" if len(times) else ""))
+    return found
 
 
 def count(text: str) -> int:

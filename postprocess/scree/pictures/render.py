@@ -134,7 +134,7 @@ class Picture:
         parts = [f"t = {self.run.particles.times[snapshot]:.4g} s"]
         bodies = len(self.run.model.names)
         if self.bar:
-            parts.append(counted(len(self.run.particles.rows(snapshot, "radius")), "particle", "particles"))
+            parts.append(counted(self.run.particles.whole_count(snapshot), "particle", "particles"))
         if bodies:
             parts.append(counted(bodies, "body", "bodies") + " (orange)")
         return ", ".join(parts)
