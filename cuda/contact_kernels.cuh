@@ -14,6 +14,7 @@
 #include "dem/laws/contact_kernels.hpp"
 #include "dem/reports/escape_items.hpp"
 #include "dem/surface_contact/surface_items.hpp"
+#include "dependent_launch.cuh"
 #include "device.cuh"
 #include "device_list.cuh"
 #include "for_each.cuh"
@@ -291,12 +292,12 @@ class DeviceContactKernels {
   virtual void system(Device device, const SystemRequest& request) const = 0;
   // Contacts of particles with surfaces on bodies at an instant or over an explicit step, and their sums over
   // each surface that has chunks.
-  virtual void surface_loads(Device device, const SurfaceViews& in, const LoadChunks& chunks,
+  virtual void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
                              SurfaceLoad* loads, const LoadSumOutputs& sums) const = 0;
   // At an instant, for the first n entries by_surface, of the step that is open when the kernel runs; without
   // sums.
-  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query,
-                                    Index n, SurfaceLoad* loads) const = 0;
+  virtual void surface_loads_in_run(Device device, Follows follows, const SurfaceViews& in,
+                                    const OpenStepQuery& query, Index n, SurfaceLoad* loads) const = 0;
   // Over an implicit step, and their sums over each chunk.
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;

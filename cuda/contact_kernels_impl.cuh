@@ -141,19 +141,17 @@ class ContactKernelsOf : public DeviceContactKernels {
         <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
-  void surface_loads(Device device, const SurfaceViews& in, const LoadChunks& chunks, SurfaceLoad* loads,
-                     const LoadSumOutputs& sums) const override {
+  void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
+                     SurfaceLoad* loads, const LoadSumOutputs& sums) const override {
     if (chunks.count == 0) return;
-    load_kernel<<<static_cast<unsigned>(chunks.count), kLoadLanes, 0, device.stream>>>(chunks.chunks, in,
-                                                                                       laws_, loads, sums);
-    require_cuda(cudaGetLastError(), "contacts with bodies");
+    launch_dependent(device, follows, load_kernel<Laws>, static_cast<unsigned>(chunks.count), kLoadLanes,
+                     chunks.chunks, in, laws_, loads, sums);
   }
-  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepQuery& query, Index n,
-                            SurfaceLoad* loads) const override {
+  void surface_loads_in_run(Device device, Follows follows, const SurfaceViews& in,
+                            const OpenStepQuery& query, Index n, SurfaceLoad* loads) const override {
     if (n == 0) return;
-    load_in_run_kernel<<<blocks_for(n, kLoadThreads), kLoadThreads, 0, device.stream>>>(n, in, query, laws_,
-                                                                                        loads);
-    require_cuda(cudaGetLastError(), "contacts with surfaces");
+    launch_dependent(device, follows, load_in_run_kernel<Laws>, blocks_for(n, kLoadLanes), kLoadLanes, n, in,
+                     query, laws_, loads);
   }
   void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                      const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const override {

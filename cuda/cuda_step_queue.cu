@@ -315,8 +315,11 @@ void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
   if (!in_run) return queue_successively(key, steps, no_surfaces, queue_ghosts, queue_rows);
   surfaces.reserve_in_run(items_.device(), steps);
   const OpenStepQuery query = surface_query(r);
+  // In one launch the previous step's rows are the kernel before, and nothing else is to be waited for.
+  const bool after_rows = r.rows.follows && !items_.parts.apart() && driven == nullptr;
+  const Follows follows = after_rows ? Follows::kernel : Follows::anything;
   const auto queue_surfaces = [&](Device on) {
-    surfaces.find_loads_in_run(on, kernels, query, h_);
+    surfaces.find_loads_in_run(on, kernels, query, h_, follows);
     if (driven != nullptr) driven->queue_sums(on);
   };
   queue_successively(

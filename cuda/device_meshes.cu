@@ -2,6 +2,7 @@
 
 #include "base/countable.hpp"
 #include "dem/surface_contact/mesh_step_touches.hpp"
+#include "dependent_launch.cuh"
 #include "device_meshes.cuh"
 #include "for_each.cuh"
 #include "lane_team.cuh"
@@ -128,8 +129,8 @@ struct GroupItem {
   }
 };
 
-constexpr int kTouchThreads = 64;
-constexpr int kTouchBlocks = 6;    // blocks per multiprocessor: with more, registers spill
+constexpr int kTouchThreads = 32;
+constexpr int kTouchBlocks = 12;   // blocks per multiprocessor: with more, registers spill
 constexpr int kLanesPerGroup = 8;  // rows have about ten triangles
 constexpr Index kTeams = kTouchThreads / kLanesPerGroup;
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
@@ -160,6 +161,8 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
                  MeshTouch* touches, CachedContact* cached_contacts) {
   __shared__ TouchRecords::Shared shared;
   __shared__ Index pending[kTouchThreads], pending_count;
+  admit_next_kernel();
+  await_kernel_before();
   SurfaceViews now = views;
   if (!query.open(now)) return;
   const auto thread = static_cast<Index>(threadIdx.x);
@@ -180,18 +183,32 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     item.query(pending[k], LaneTeam<kLanesPerGroup>{});
 }
 
-template <bool kOpenSurfaces, class Query>
-void queue_touches(Device device, const TouchShares& shares, const SurfaceViews& views, const Query& query,
-                   MeshTouch* touches, CachedContact* cached_contacts) {
-  if (shares.groups == 0) return;
-  const unsigned blocks = blocks_for(shares.groups, shares.per_block);
-  if (views.interaction_range > 0)
-    touch_kernel<true, kOpenSurfaces>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(shares, views, query, touches, cached_contacts);
+// Arguments of touch_kernel.
+template <class Query>
+struct TouchRequest {
+  TouchShares shares;
+  SurfaceViews views;
+  Query query;
+  MeshTouch* touches;
+  CachedContact* cached_contacts;
+};
+
+template <bool kHasRange, bool kOpenSurfaces, class Query>
+void launch_touches(Device device, Follows follows, const TouchRequest<Query>& r) {
+  launch_dependent(device, follows, touch_kernel<kHasRange, kOpenSurfaces, Query>,
+                   blocks_for(r.shares.groups, r.shares.per_block), kTouchThreads, r.shares, r.views, r.query,
+                   r.touches, r.cached_contacts);
+}
+
+template <class Query>
+void queue_touches(Device device, Follows follows, bool open_surfaces, const TouchRequest<Query>& r) {
+  if (r.shares.groups == 0) return;
+  if (r.views.interaction_range > 0)
+    open_surfaces ? launch_touches<true, true>(device, follows, r)
+                  : launch_touches<true, false>(device, follows, r);
   else
-    touch_kernel<false, kOpenSurfaces>
-        <<<blocks, kTouchThreads, 0, device.stream>>>(shares, views, query, touches, cached_contacts);
-  require_cuda(cudaGetLastError(), "contacts with meshes");
+    open_surfaces ? launch_touches<false, true>(device, follows, r)
+                  : launch_touches<false, false>(device, follows, r);
 }
 
 // Whether a cell of the grid overlaps the box.
@@ -319,21 +336,16 @@ void DeviceMeshes::reserve_over_step(Index entries) {
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  if (open_surfaces_)
-    queue_touches<true>(device, {count_, multiprocessors_}, views, StateQuery{}, touches_.data(),
-                        cached_contacts_.data());
-  else
-    queue_touches<false>(device, {count_, multiprocessors_}, views, StateQuery{}, touches_.data(),
-                         cached_contacts_.data());
+  queue_touches<StateQuery>(
+      device, Follows::anything, open_surfaces_,
+      {{count_, multiprocessors_}, views, {}, touches_.data(), cached_contacts_.data()});
 }
 
-void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query) {
-  if (open_surfaces_)
-    queue_touches<true>(device, {count_, multiprocessors_}, views, query, touches_.data(),
-                        cached_contacts_.data());
-  else
-    queue_touches<false>(device, {count_, multiprocessors_}, views, query, touches_.data(),
-                         cached_contacts_.data());
+void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query,
+                                Follows follows) {
+  queue_touches<OpenStepQuery>(
+      device, follows, open_surfaces_,
+      {{count_, multiprocessors_}, views, query, touches_.data(), cached_contacts_.data()});
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

@@ -74,7 +74,7 @@ class DeviceMeshes {
   // Queues the contacts at the present instant, into the entries' arrays.
   void touch(Device device, const SurfaceViews& views);
   // The same for the explicit step that is open when the kernel runs.
-  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query);
+  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query, Follows follows);
   // The same over an implicit step.
   void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                        const SurfacePose* start_surface_poses);

@@ -271,8 +271,8 @@ void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kerne
                                 const SurfaceQuery& query, const ControlReport& report) {
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch(device, views);
-  kernels.surface_loads(device, views, load_sums_.chunks(), loads_[which == Loads::of_step ? 0 : 1].data(),
-                        load_sums_.next(report));
+  kernels.surface_loads(device, after_touches(Follows::anything), views, load_sums_.chunks(),
+                        loads_[which == Loads::of_step ? 0 : 1].data(), load_sums_.next(report));
 }
 
 void DeviceSurfaces::reserve_in_run(Device device, Index steps) {
@@ -280,10 +280,11 @@ void DeviceSurfaces::reserve_in_run(Device device, Index steps) {
 }
 
 void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels& kernels,
-                                       const OpenStepQuery& query, Real h) {
+                                       const OpenStepQuery& query, Real h, Follows follows) {
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
-  meshes_.touch_in_run(device, views, query);
-  kernels.surface_loads_in_run(device, views, query, placed_entries_, loads_[0].data());
+  meshes_.touch_in_run(device, views, query, follows);
+  kernels.surface_loads_in_run(device, after_touches(follows), views, query, placed_entries_,
+                               loads_[0].data());
   works_.accumulate_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, query.control);
 }
 

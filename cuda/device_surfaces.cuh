@@ -64,11 +64,11 @@ class DeviceSurfaces {
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query,
                   const ControlReport& report = {});
   // For surfaces at rest or with prescribed motion in a run of explicit steps of length h: queues the loads
-  // of the step that is open when the kernels run, and the losses at triangles. key: everything that the
-  // launches depend on.
+  // of the step that is open when the kernels run, and the losses at triangles. follows: what is queued
+  // before on the stream. key: everything that the launches depend on.
   void reserve_in_run(Device device, Index steps);  // before that many steps are queued
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepQuery& query,
-                         Real h);
+                         Real h, Follows follows);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepQuery& query, Real h) const;
   // For kernels that sum the loads of the step, evaluated last.
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
@@ -115,6 +115,8 @@ class DeviceSurfaces {
   void find_entries(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
   void group_by_surface(Device device);
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceQuery& query) const;
+  // What is before the loads, where that is before the contacts with meshes.
+  Follows after_touches(Follows before) const { return meshes_.groups() > 0 ? Follows::kernel : before; }
 
   PeriodicBox box_;
   Real interaction_range_;  // `Contact::interaction_range` [m]

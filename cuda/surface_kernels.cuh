@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact_kernels.cuh"
+#include "dependent_launch.cuh"
 #include "for_each.cuh"
 #include "lane_team.cuh"
 #include "staging.cuh"
@@ -34,10 +35,8 @@ __global__ void __launch_bounds__(kSurfaceThreads)
   if (touching > 0 && thread < kTerms) out.sum[thread] = sum;
 }
 
-inline constexpr int kLoadThreads = 128;
-inline constexpr int kLoadBlocks = 4;  // blocks per multiprocessor: with more, registers spill
-template <int kThreads>
-using LoadRecords = WarpRecords<SurfaceLoad, kThreads>;
+inline constexpr int kLoadBlocks = 12;  // blocks per multiprocessor: with more, registers spill
+using LoadRecords = WarpRecords<SurfaceLoad, kLoadLanes>;
 
 // Evaluates the load of the k-th entry by_surface into the lane's record. Returns the entry, -1 if it does
 // not touch.
@@ -58,7 +57,7 @@ class WarpLoadSums {
   static_assert(kWrenchTerms <= kGroup);
 
   // The contacts of the warp that touch, few in general; each group takes every kGroups-th of them.
-  __device__ void add_contacts(const LoadRecords<kLoadLanes>& records, bool touches) {
+  __device__ void add_contacts(const LoadRecords& records, bool touches) {
     unsigned left = __ballot_sync(~0u, touches);
     contacts_ = __popc(left);
     const auto leave_out = [&](int lanes) {
@@ -123,6 +122,14 @@ __device__ inline void copy_by_warp(const ControlReport& report) {
   for (unsigned k = threadIdx.x; k < sizeof(VerletControl) / sizeof(Word); k += kLoadLanes) to[k] = from[k];
 }
 
+// Begins to load what the contact of an entry reads of its particle.
+__device__ inline void prefetch_entry(const SurfaceViews& in, Index entry) {
+  const Index i = in.entries.particles[entry];
+  prefetch_record(in.position + i), prefetch_record(in.velocity + i);
+  if (in.spin != nullptr) prefetch_record(in.spin + i);
+  if (in.history.bodies != nullptr) prefetch_record(in.history.bodies + std::int64_t{entry} * in.records);
+}
+
 // Contacts of a chunk at an instant or over an explicit step, one per lane of a warp: few of them touch. The
 // warp that ends last of those of a surface adds up the sums of their chunks, so that the host reads one
 // record per surface. The sums are exact, so the order has no influence.
@@ -130,10 +137,12 @@ template <class Laws>
 __global__ void __launch_bounds__(kLoadLanes)
     load_kernel(const LoadChunk* chunks, const __grid_constant__ SurfaceViews in, const Laws laws,
                 SurfaceLoad* loads, const LoadSumOutputs out) {
-  __shared__ LoadRecords<kLoadLanes>::Shared shared;
-  const LoadRecords<kLoadLanes> records(shared);
+  __shared__ LoadRecords::Shared shared;
+  const LoadRecords records(shared);
   const LoadChunk chunk = chunks[blockIdx.x];
   const Index surface = chunk.of.surface, k = chunk.of.first + static_cast<Index>(threadIdx.x);
+  if (k < chunk.of.end) prefetch_entry(in, in.entries.by_surface[k]);
+  await_kernel_before();  // for the contacts with meshes
   const Index touching = k < chunk.of.end ? find_load(in, laws, k, records.own(), loads) : -1;
   records.store(loads, touching);
   if (blockIdx.x == 0) copy_by_warp(out.report);
@@ -150,16 +159,17 @@ __global__ void __launch_bounds__(kLoadLanes)
   of_surface.write_to_host(surface, out);
 }
 
-// Contacts with static surfaces of the explicit step that is open when the kernel runs, in the order
-// by_surface.
+// Contacts with surfaces of the explicit step that is open when the kernel runs, in the order by_surface.
 template <class Laws>
-__global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
+__global__ void __launch_bounds__(kLoadLanes, kLoadBlocks)
     load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepQuery query,
                        const Laws laws, SurfaceLoad* loads) {
-  __shared__ LoadRecords<kLoadThreads>::Shared shared;
+  __shared__ LoadRecords::Shared shared;
+  admit_next_kernel();
+  await_kernel_before();
   SurfaceViews now = in;
   if (!query.open(now)) return;
-  const LoadRecords<kLoadThreads> records(shared);
+  const LoadRecords records(shared);
   const Index k = thread_index();
   Index touching = -1;
   if (k < n) touching = find_load(now, laws, k, records.own(), loads);
