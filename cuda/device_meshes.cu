@@ -7,111 +7,28 @@
 #include "for_each.cuh"
 #include "lane_team.cuh"
 #include "mesh/surface_mesh.hpp"
+#include "mesh_search.cuh"
 #include "staging.cuh"
 
 namespace scree {
 namespace {
 
-// Counters of groups and triangles.
-enum Cursor { kGroups, kTriangles, kCursors };
-
-// The cells near meshes, numbered one after the other: cells[k] has the numbers first[k] ... first[k + 1] -
-// 1.
-struct SearchedCells {
-  const CellsNear* cells;
-  const std::int64_t* first;
-  Index count;  // number of cells[]
-
-  // The k of the cells[k] that contains a numbered cell.
-  __device__ Index owner(std::int64_t c) const {
-    Index low = 0, high = count;
-    while (high - low > 1) {
-      const Index middle = low + (high - low) / 2;
-      (first[middle] <= c ? low : high) = middle;
-    }
-    return low;
-  }
-};
-
-// Makes the groups, in any order, with their triangles and the number of their entries; those beyond the
-// capacity are only counted.
-struct FindNearItem {
-  MeshSearch in;
-  const MeshView* meshes;
-  SearchedCells searched;
-  std::int64_t first_cell;
-  Index* cursors;
-  NearMesh* near;
-  MeshGroup* groups;
-  Index* triangles;
-  std::size_t capacity[kCursors];
-
-  __device__ void operator()(Index k) const {
-    const std::int64_t c = first_cell + k;
-    const Index owner = searched.owner(c);
-    const CellsNear& cells = searched.cells[owner];
-    const SurfacePose& surface = in.placed[cells.placed];
-    const SurfaceFrame& frame = in.frames[surface.frame];
-    cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
-      const Vec4 p = in.position[i];
-      const MeshQuery query{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
-      constexpr Index kStored = 24;  // long enough that few rows are searched twice
-      Index near_triangles[kStored], found = 0;
-      query.for_each_triangle([&](Index t) {
-        if (found < kStored) near_triangles[found] = t;
-        ++found;
-      });
-      if (found == 0) return;
-      const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
-      if (g < 0 || static_cast<std::size_t>(g) >= capacity[kGroups]) return;
-      if (first < 0 ||
-          static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > capacity[kTriangles])
-        return;
-      Index* to = triangles + first;
-      if (found <= kStored)
-        for (Index t = 0; t < found; ++t) to[t] = near_triangles[t];
-      else
-        query.for_each_triangle([&](Index t) { *to++ = t; });
-      near[g] = {i, cells.number, cells.image};
-      const RowKind kind = kind_of_row(query.mesh, triangles + first, found);
-      const Index stored_contacts = in.stored_contacts.contacts_with(i, cells.number);
-      groups[g] = {0, query.entries(kind, triangles + first, found, stored_contacts), first, found, kind};
-    });
-  }
-};
-
-constexpr int kFindThreads = 64;
-constexpr int kFindBlocks = 8;  // blocks per multiprocessor: a search loads one bounding box after the other,
-                                // and many threads hide the latency
-
-__global__ void __launch_bounds__(kFindThreads, kFindBlocks)
-    find_near_kernel(Index cells, const __grid_constant__ FindNearItem item) {
-  const Index k = thread_index();
-  if (k < cells) item(k);
-}
-
-struct CountItem {
-  const NearMesh* near;
-  const MeshGroup* groups;
-  Index* counts;  // number of entries per particle
-
-  __device__ void operator()(Index g) const { atomicAdd(&counts[near[g].particle], groups[g].entries); }
-};
-
 struct FillItem {
+  const CellsNear* cells;
   const NearMesh* near;
   const MeshGroup* groups;
   Index *next, *surfaces;
   std::int8_t* images;
 
   __device__ void operator()(Index g) const {
+    const CellsNear& of = cells[near[g].cells];
     const Index first = atomicAdd(&next[near[g].particle], groups[g].entries);
-    for (Index k = first; k < first + groups[g].entries; ++k)
-      surfaces[k] = near[g].surface, images[k] = near[g].image;
+    for (Index k = first; k < first + groups[g].entries; ++k) surfaces[k] = of.number, images[k] = of.image;
   }
 };
 
 struct GroupItem {
+  const CellsNear* cells;
   const NearMesh* near;
   const Index *offsets, *surfaces;
   const std::int8_t* images;
@@ -120,9 +37,9 @@ struct GroupItem {
   MeshTouch* touches;
 
   __device__ void operator()(Index g) const {
-    const NearMesh& of = near[g];
-    Index entry = offsets[of.particle];
-    while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
+    const CellsNear& of = cells[near[g].cells];
+    Index entry = offsets[near[g].particle];
+    while (surfaces[entry] != of.number || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
     cached_contacts[g] = kNoCachedContact;
     touches[entry].triangle = -1;  // no triangle to start the first query at
@@ -230,7 +147,7 @@ const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStrea
 }  // namespace
 
 DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream)
-    : surfaces_(model), open_surfaces_(has_open_surfaces(model)), cursors_(kCursors) {
+    : surfaces_(model), open_surfaces_(has_open_surfaces(model)), cursors_(kCursors), h_counts_(kCursors) {
   std::vector<MeshView> views;
   meshes_.reserve(model.meshes.size());
   for (const ModelMesh& mesh : model.meshes) {
@@ -275,56 +192,70 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePo
   count_ = 0;
   if (instances_.empty()) return;
   const std::vector<CellsNear> near = cells_near_meshes(search, poses, largest_radius);
-  if (!find_groups(device, search, near)) find_groups(device, search, near);
-  for_each(device, count_, CountItem{near_.data(), groups_.data(), counts});
+  if (near.empty()) return resize_groups(0, 0);
+  std::vector<std::int64_t> first{0};
+  for (const CellsNear& cells : near) first.push_back(first.back() + cells.bricks());
+  cells_.resize_with_spare(near.size()), first_brick_.resize_with_spare(first.size());
+  copy_async(cells_.data(), near.data(), near.size(), device.stream);
+  copy_async(first_brick_.data(), first.data(), first.size(), device.stream);
+  const SearchedCells searched{cells_.data(), first_brick_.data(), static_cast<Index>(near.size())};
+  while (!find_groups(device, search, searched, first.back())) {
+  }
+  for_each(device, count_,
+           EntriesItem{search, views_.data(), cells_.data(), near_.data(), triangles_.data(), groups_.data(),
+                       counts});
 }
 
-// False: the capacity did not suffice, and has been enlarged.
-bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near) {
-  std::vector<std::int64_t> first{0};
-  for (const CellsNear& cells : near) first.push_back(first.back() + cells.count());
-  const SearchedCells searched{uploaded(cells_, near, device.stream),
-                               uploaded(first_cell_, first, device.stream), static_cast<Index>(near.size())};
+// Waits for the device. False: the capacity did not suffice, and has been enlarged.
+bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const SearchedCells& cells,
+                               std::int64_t bricks) {
   cursors_.zero(device.stream);
-  const std::size_t capacity = std::min(near_.capacity(), groups_.capacity());
-  constexpr std::int64_t kAtOnce = 1 << 30;
-  for (std::int64_t c = 0; c < first.back(); c += kAtOnce) {
-    const auto cells = static_cast<Index>(std::min(kAtOnce, first.back() - c));
-    const FindNearItem item{search,
-                            views_.data(),
-                            searched,
-                            c,
-                            cursors_.data(),
-                            near_.data(),
-                            groups_.data(),
-                            triangles_.data(),
-                            {capacity, triangles_.capacity()}};
-    find_near_kernel<<<blocks_for(cells, kFindThreads), kFindThreads, 0, device.stream>>>(cells, item);
-    require_cuda(cudaGetLastError(), "triangles near particles");
-  }
+  const std::size_t capacity[kCursors] = {
+      particles_.capacity(), std::min(near_.capacity(), groups_.capacity()), triangles_.capacity()};
+  const FindParticlesItem particles{search,          views_.data(),     cells,
+                                    cursors_.data(), particles_.data(), capacity[kParticles]};
+  const auto blocks = static_cast<unsigned>((bricks + kSearchWarps - 1) / kSearchWarps);
+  find_particles_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(bricks, particles);
+  const FindTrianglesItem triangles{search,
+                                    views_.data(),
+                                    cells.cells,
+                                    particles_.data(),
+                                    cursors_.data(),
+                                    near_.data(),
+                                    groups_.data(),
+                                    triangles_.data(),
+                                    {capacity[kParticles], capacity[kGroups], capacity[kTriangles]}};
+  const auto at_once = static_cast<unsigned>(multiprocessors_ * kSearchBlocks);
+  find_triangles_kernel<<<at_once, kSearchThreads, 0, device.stream>>>(triangles);
+  require_cuda(cudaGetLastError(), "triangles near particles");
   copy_async(h_counts_.data(), cursors_.data(), kCursors, device.stream);
   wait_for(device.stream);
   if (h_counts_[kTriangles] < 0)
     countable(std::size_t{1} << 32, "stage neighbors: more triangles near particles");
-  count_ = h_counts_[kGroups];
-  const auto groups = static_cast<std::size_t>(count_),
-             triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
-  const bool complete = groups <= capacity && triangles <= triangles_.capacity();
-  near_.resize_with_spare(groups), groups_.resize_with_spare(groups),
-      cached_contacts_.resize_with_spare(groups);
+  std::size_t found[kCursors];
+  for (int k = 0; k < kCursors; ++k) found[k] = static_cast<std::size_t>(h_counts_[k]);
+  particles_.resize_with_spare(found[kParticles]);
+  if (found[kParticles] > capacity[kParticles]) return false;
+  resize_groups(found[kGroups], found[kTriangles]);
+  return found[kGroups] <= capacity[kGroups] && found[kTriangles] <= capacity[kTriangles];
+}
+
+void DeviceMeshes::resize_groups(std::size_t groups, std::size_t triangles) {
+  count_ = static_cast<Index>(groups);
+  near_.resize_with_spare(groups), groups_.resize_with_spare(groups);
+  cached_contacts_.resize_with_spare(groups);
   triangles_.resize_with_spare(triangles);
-  return complete;
 }
 
 void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t* images) {
-  for_each(device, count_, FillItem{near_.data(), groups_.data(), next, surfaces, images});
+  for_each(device, count_, FillItem{cells_.data(), near_.data(), groups_.data(), next, surfaces, images});
 }
 
 void DeviceMeshes::group(Device device, const Index* offsets, const Index* surfaces,
                          const std::int8_t* images) {
   for_each(device, count_,
-           GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), cached_contacts_.data(),
-                     touches_.data()});
+           GroupItem{cells_.data(), near_.data(), offsets, surfaces, images, groups_.data(),
+                     cached_contacts_.data(), touches_.data()});
 }
 
 void DeviceMeshes::reserve_entries(Index entries) {

@@ -17,10 +17,9 @@
 
 namespace scree {
 
-// A particle near a mesh, before it has a row.
+// A particle near a mesh image, before it has a row.
 struct NearMesh {
-  Index particle, surface;  // surface: its number
-  std::int8_t image;
+  Index particle, cells;  // cells: index of the `CellsNear`
 };
 
 // Where the search finds particles, sorted by cell, and the poses of surfaces; device pointers.
@@ -43,19 +42,30 @@ struct CellsNear {
   std::int8_t image;
   CellRange range;
 
-  Index count() const {
-    return (range.upper.x - range.lower.x + 1) * (range.upper.y - range.lower.y + 1) *
-           (range.upper.z - range.lower.z + 1);
+  // Bricks of 4 x 4 x 2 cells, one for each lane of a warp, that contain all of them.
+  std::int64_t bricks() const {
+    return std::int64_t{along(range.lower.x, range.upper.x, 2)} * along(range.lower.y, range.upper.y, 2) *
+           along(range.lower.z, range.upper.z, 1);
   }
-  // Calls visit(i) for the particles in the c-th of them.
-  template <class Visit>
-  __device__ void for_each_particle(const MeshSearch& in, Index c, const Visit& visit) const {
-    const Index nx = range.upper.x - range.lower.x + 1, ny = range.upper.y - range.lower.y + 1;
-    const Index key =
-        in.grid.key(range.lower.x + c % nx, range.lower.y + c / nx % ny, range.lower.z + c / (nx * ny));
-    for (Index i = in.starts[key]; i < in.starts[key + 1]; ++i) visit(i);
+  // A cell of a brick; x is -1 if it is none of these cells.
+  __device__ CellIndex cell(Index brick, Index lane) const {
+    const CellIndex &low = range.lower, &up = range.upper;
+    const Index nx = along(low.x, up.x, 2), ny = along(low.y, up.y, 2);
+    const CellIndex c{(((low.x >> 2) + brick % nx) << 2) + (lane & 3),
+                      (((low.y >> 2) + brick / nx % ny) << 2) + (lane >> 2 & 3),
+                      (((low.z >> 1) + brick / (nx * ny)) << 1) + (lane >> 4)};
+    const bool inside =
+        c.x >= low.x && c.x <= up.x && c.y >= low.y && c.y <= up.y && c.z >= low.z && c.z <= up.z;
+    return inside ? c : CellIndex{-1, -1, -1};
+  }
+
+ private:
+  SCREE_HD static Index along(Index lower, Index upper, int shift) {
+    return (upper >> shift) - (lower >> shift) + 1;
   }
 };
+
+struct SearchedCells;
 
 class DeviceMeshes {
  public:
@@ -104,7 +114,8 @@ class DeviceMeshes {
 
   std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePoses& poses,
                                            Real largest_radius) const;
-  bool find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near);
+  bool find_groups(Device device, const MeshSearch& search, const SearchedCells& cells, std::int64_t bricks);
+  void resize_groups(std::size_t groups, std::size_t triangles);
 
   std::vector<Arrays> meshes_;
   DeviceArray<MeshView> views_;
@@ -114,12 +125,12 @@ class DeviceMeshes {
   std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
   Index count_ = 0;               // number of groups
   DeviceArray<CellsNear> cells_;
-  DeviceArray<std::int64_t> first_cell_;
-  DeviceArray<NearMesh> near_;
+  DeviceArray<std::int64_t> first_brick_;
+  DeviceArray<NearMesh> particles_, near_;  // near boxes of meshes; per group
   DeviceArray<MeshGroup> groups_;
   DeviceArray<CachedContact> cached_contacts_;
   DeviceArray<Index> triangles_, cursors_;
-  PinnedArray<Index> h_counts_{2};
+  PinnedArray<Index> h_counts_;
   DeviceArray<MeshTouch> touches_;
   DeviceArray<MeshTouchBefore> before_;
 };

@@ -54,7 +54,8 @@ constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * si
                                 2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
 // Bytes per entry, group and triangle with meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
-constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(CachedContact),
+// Some two particles are near a box of a mesh's tree where one has a group.
+constexpr double kGroupArrays = 3 * 2 * sizeof(Index) + sizeof(MeshGroup) + sizeof(CachedContact),
                  kRowOfTriangle = sizeof(Index);
 constexpr double kSpareCapacity = 1.125;  // capacity over size of arrays that may grow with every list
 constexpr double kFilledSlots = 0.8;      // of a list of a settled bed; only these have a contact history
