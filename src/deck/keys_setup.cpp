@@ -150,8 +150,8 @@ const TableKeys& integrator_keys() {
        choice<Precision>("precision")
            .otherwise_choice(Precision::full)
            .about("GPU, velocity-verlet. mixed: state and sums at about double precision, contact forces in "
-                  "single. With adhesion, rolling resistance or shapes of bodies, and on the CPU, everything "
-                  "is computed in double, and the log says so."),
+                  "single. With adhesion or shapes of bodies, and on the CPU, everything is computed in "
+                  "double, and the log says so."),
        real("residual_tolerance", "")
            .within(0, 1)
            .above(0)

@@ -48,10 +48,12 @@ SCREE_HD float single_contact_stiffness(const NormalPair& law, float d, [[maybe_
 // For springs with one component.
 SCREE_HD float dot(float a, float b) { return a * b; }
 
-// 1 / x to a few units in the last place, without the compiler's branch for arguments that are not normal.
+// 1 / x to a few units in the last place, without the compiler's branch for numbers that are not normal.
 SCREE_HD float near_reciprocal(float x) {
 #ifdef __CUDA_ARCH__
-  return __fdividef(1.0f, x);
+  float y;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
 #else
   return 1 / x;
 #endif
@@ -59,15 +61,18 @@ SCREE_HD float near_reciprocal(float x) {
 
 // `stiffness_step()`.
 struct SingleStiffness {
-  float of_step;    // force per displacement [N/m]
-  float remaining;  // fraction of the old force that remains [-]
-  float inverse0;   // 1 / k0 where k shrinks
+  float of_step;   // force per displacement [N/m]
+  float lost;      // fraction of the old force that is lost where k shrinks [-]
+  float inverse0;  // 1 / k0 where k shrinks
 };
+// `lost` from the difference: 1 less a quotient would have the quotient's round-off, which adds up over
+// steps.
 SCREE_HD SingleStiffness single_stiffness_step(const SingleSlider& p) {
   const float k0 = p.stiffness0, k1 = p.stiffness;
   const bool grows = k1 > k0, shrinks = k1 < k0;
   const float inverse = near_reciprocal(grows ? 1.5f * (k1 + k0) : k0);
-  return {grows ? fused(k1, k1, fused(k1, k0, k0 * k0)) * inverse : k1, shrinks ? k1 * inverse : 1, inverse};
+  return {grows ? fused(k1, k1, fused(k1, k0, k0 * k0)) * inverse : k1, shrinks ? (k0 - k1) * inverse : 0,
+          inverse};
 }
 
 // `unloading_loss()`. start, spring: a `Vec3f` or one component.
@@ -77,7 +82,7 @@ SCREE_HD float single_unloading_loss(const SingleSlider& p, const SingleStiffnes
   const bool grows = p.stiffness > p.stiffness0, shrinks = p.stiffness < p.stiffness0;
   if (!grows && !shrinks) return 0;
   const float before = dot(start, start);
-  if (shrinks) return before / 2 * (1 - k.remaining) * k.inverse0;
+  if (shrinks) return before / 2 * k.lost * k.inverse0;
   const float after =
       dot(spring, spring) * (p.stiffness - k.of_step) * near_reciprocal(p.stiffness * k.of_step);
   if (!(p.stiffness0 > 0)) return after / 2;
@@ -97,12 +102,13 @@ template <class Spring>
 SCREE_HD SingleStep<Spring> single_slider_step(const SingleSlider& p, Spring start, Spring displacement,
                                                float h) {
   const SingleStiffness k = single_stiffness_step(p);
-  SingleStep<Spring> out{fused(k.of_step, displacement, (k.remaining - 1) * start), {}, 0};
+  SingleStep<Spring> out{fused(k.of_step, displacement, -k.lost * start), {}, 0};
   const Spring trial = start + out.change;
   if (const float square = dot(trial, trial); square > p.limit * p.limit) {
     const float share = p.limit * root_and_inverse(square).inverse;
     out.change = out.change - (1 - share) * trial;
-    out.loss = dot(k.remaining * start + share * trial, (1 - share) * trial) * near_reciprocal(2 * k.of_step);
+    out.loss =
+        dot((1 - k.lost) * start + share * trial, (1 - share) * trial) * near_reciprocal(2 * k.of_step);
   } else if (p.dashpot > 0) {
     const Spring sum = fused(p.dashpot * near_reciprocal(h), displacement, trial);
     const float length = dot(sum, sum);
