@@ -56,9 +56,11 @@ void CudaBodies::queue_loads(const SurfaceQuery& query, const Event& ready, cons
   loads_found_.record(stream_);
 }
 
+// The shapes' contacts are found while the device evaluates those of the particles.
 void CudaBodies::take_loads(Real h) {
+  side_.find_shape_loads(h);
   items_.surfaces.load_sums().await(stream_);
-  side_.take_loads(items_.surfaces.load_sums().touched(), h);
+  side_.take_particle_loads(items_.surfaces.load_sums().touched());
 }
 
 // The next query on this stream overwrites what the accumulation of works still reads, and so does the next

@@ -30,8 +30,8 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     }
     do_work();
     items_.idle();
-    if (!reported) wait_for(bodies_.stream());
     bodies_.take_loads(h_);
+    if (!reported) wait_for(bodies_.stream());
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
     if (before.expired) {  // the queued step has done nothing

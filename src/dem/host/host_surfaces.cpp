@@ -76,12 +76,14 @@ Vec3 HostSurfaces::to_middle(Index s) const {
   return snap(axes * frame.middle, subdomain_.snap_constant());
 }
 
-void HostSurfaces::take_loads(std::span<const InstantSums> of_particles, Real h) {
-  loads_.assign(of_particles.begin(), of_particles.end());
+void HostSurfaces::find_shape_loads(Real h) {
+  if (ranks_.is_root()) bodies_.find_loads(poses(), h);
+}
+
+void HostSurfaces::take_particle_loads(std::span<const InstantSums> sums) {
+  loads_.assign(sums.begin(), sums.end());
   particle_loads_ = loads_.size();
-  if (!ranks_.is_root()) return;
-  bodies_.find_loads(poses(), h);
-  bodies_.add_sums(loads_);
+  if (ranks_.is_root()) bodies_.add_sums(loads_);
 }
 
 void HostSurfaces::take_steps(std::span<const StepSums> of_particles, Real h) {

@@ -82,7 +82,12 @@ class HostSurfaces {
   // Takes the contact sums of the backend's particles at an instant (h = 0) or over the explicit step that
   // ends now, and over an implicit step, in any order and in any number of parts per surface; rank 0 adds the
   // contacts of bodies' shapes.
-  void take_loads(std::span<const InstantSums> of_particles, Real h);
+  void take_loads(std::span<const InstantSums> of_particles, Real h) {
+    find_shape_loads(h), take_particle_loads(of_particles);
+  }
+  // The same in two parts, for a backend that evaluates the particles' contacts meanwhile.
+  void find_shape_loads(Real h);
+  void take_particle_loads(std::span<const InstantSums> sums);
   void take_steps(std::span<const StepSums> of_particles, Real h);
 
   // Stage reduce_wrench: gathers the sums of all ranks on rank 0, one message per rank, and adds them up to
