@@ -39,7 +39,7 @@ DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const V
 void CudaItems::reorder(const Index* order, Index n) {
   other.grow(now.position.size(), static_cast<std::size_t>(n));
   history.reorder(order, n, list_scratch());
-  scree::reorder(device(), now, other, order, n);
+  scree::reorder(device(), now, other, order, n, open_run != nullptr);
   owned = n;
 }
 

@@ -57,7 +57,8 @@ MixedViews MixedArrays::views(SecondArrays& scratch) {
   return views;
 }
 
-void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n) {
+void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n,
+             bool in_run) {
   if (n == 0) return;
   ParticleViews motion;
   motion.position = second.position.data(), motion.velocity = second.velocity.data();
@@ -66,7 +67,10 @@ void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Ind
   now.position.swap(second.position), now.velocity.swap(second.velocity);
   now.angular_velocity.swap(second.angular_velocity);
 
-  const ParticleViews state = views_of(now);
+  ParticleViews state = views_of(now);
+  if (in_run) state.force = nullptr;
+  if (in_run && now.rotates)
+    state.acceleration = state.angular_acceleration = nullptr, state.loss_power = nullptr;
   ReorderScratch scratch(second, static_cast<std::size_t>(n));
   ParticleViews stored;
   const auto bring_back = [&] {
@@ -76,11 +80,12 @@ void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Ind
   };
   for_each_array<kKeys | kGhostCopies | kOwnedArrays>(
       FieldsThere(now),
-      [&](auto*& array) {
+      [&](auto*& array, const auto* values) {
+        if (values == nullptr) return;
         using T = std::remove_reference_t<decltype(*array)>;
         if ((array = scratch.take<T>()) == nullptr) bring_back(), array = scratch.take<T>();
       },
-      stored);
+      stored, state);
   bring_back();
 }
 

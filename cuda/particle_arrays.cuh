@@ -87,8 +87,11 @@ struct ReorderItem {
 };
 
 // Moves particle order[i] to i for i = 0 ... n - 1. now: arrays with a counterpart in `second` are swapped
-// with it; the others are copied there and back, as many at a time as the memory holds.
-void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n);
+// with it; the others are copied there and back, as many at a time as the memory holds. in_run: a run of
+// explicit steps is open, which reads no values at an instant before it writes all of them; those whose
+// memory its steps use otherwise are left as they are.
+void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n,
+             bool in_run);
 
 // Records of the particles from `first` on: position inside the periodic box, except for drifting ones.
 struct RecordItem {
