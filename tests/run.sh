@@ -17,8 +17,10 @@ done
 jobs/build.sh release
 
 status=0
-ctest --test-dir build/release --output-on-failure --no-tests=error --parallel "$(nproc)" "${selection[@]}" "$@" ||
-  status=$?
+# Many tests wait: for SLURM, signals, processes that start, disks. Half as many again as there are processors keep these busy.
+processors=$(nproc)
+ctest --test-dir build/release --output-on-failure --no-tests=error --parallel $((processors + processors / 2)) \
+  "${selection[@]}" "$@" || status=$?
 if ((status == 0)); then
   echo "tests/run.sh: all tests passed in $SECONDS s, set-up and build included"
 else
