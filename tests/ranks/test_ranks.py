@@ -30,115 +30,128 @@ LINES = ["output.contacts=true"]
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
 SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
-# The cases that a restart continues, too.
+# On one rank, on these numbers, and from the middle on with a restart: three ranks in the first half, two in the second.
 MAIN_CASES = {
-    "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
+    "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (4, 8)),
     "the same, explicit": ([*NET, *EXPLICIT, "integrator.substeps=10", "time.end=0.85", "space.leaving=remove"],
-                           (1, 2, 3, 4)),
-    "dam break, implicit": ([*DAM, *IMPLICIT, "time.end=0.24"], (1, 2, 3, 4, 8)),
-    "dam break, explicit": ([*DAM, *EXPLICIT, "time.end=0.24", "integrator.substeps=3"], (1, 2, 3, 4, 8)),
-    "periodic gas, implicit": ([*GAS, *LINES, *IMPLICIT], (1, 2, 3, 4, 8)),
-    "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
-    "friction": ([*FRICTION, "time.end=0.08"], (1, 2, 3, 4, 8)),
+                           (4,)),
+    "dam break, implicit": ([*DAM, *IMPLICIT, "time.end=0.24"], (4, 8)),
+    "dam break, explicit": ([*DAM, *EXPLICIT, "time.end=0.24", "integrator.substeps=3"], (4, 8)),
+    "periodic gas, implicit": ([*GAS, *LINES, *IMPLICIT], (4, 8)),
+    "periodic gas, explicit": ([*GAS, *EXPLICIT], (4, 8)),
+    "friction": ([*FRICTION, "time.end=0.08"], (4, 8)),
     "friction after Hertz and Mindlin": ([HERE / "friction_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
-                                        (1, 2, 3, 4)),
-    "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
-    "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (1, 2, 4)),
-    "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
+                                        (4,)),
+    "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
+    "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
+    "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
     # Bodies among them that turn and go through a side, driven, and some in friction with them.
     "friction on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
-                           "output.snapshot_interval=0.02"], (1, 2, 3, 4)),
+                           "output.snapshot_interval=0.02"], (4,)),
     "meshes, a light plate under heavy spheres": ([HERE / "loaded_plate.toml", "parallel.imbalance=0.0",
-                                                   "time.end=0.08"], (1, 2, 4)),
-    "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 4)),
-    "elements in space": ([*ELEMENTS, "time.end=0.08"], (1, 2, 4)),
-    "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (1, 2, 3, 4)),
-    "meshes at rest and their works": ([*AT_REST, *WORKS], (1, 2, 3, 4)),
-    "meshes, soft sheets": ([*SHEETS, "time.end=0.08"], (1, 2, 4)),
-    "friction, implicit": ([*FRICTION, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
+                                                   "time.end=0.08"], (4,)),
+    "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (4,)),
+    "elements in space": ([*ELEMENTS, "time.end=0.08"], (4,)),
+    "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (4,)),
+    "meshes at rest and their works": ([*AT_REST, *WORKS], (4,)),
+    "meshes, soft sheets": ([*SHEETS, "time.end=0.08"], (4,)),
+    "friction, implicit": ([*FRICTION, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (4, 8)),
     "friction after Hertz and Mindlin, implicit": ([HERE / "friction_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
-                                                  (1, 2, 3, 4)),
+                                                  (4,)),
     "friction on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
-                                     "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
+                                     "parallel.imbalance=0.0", "time.end=0.08"], (4,)),
 }
-CASES = {
-    **MAIN_CASES,
+# On one rank and on these numbers.
+OTHER_CASES = {
     "bodies in space, implicit": ([HERE / "spatial_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
-                                   "parallel.imbalance=0.0", "time.end=0.08"], (1, 2)),
+                                   "parallel.imbalance=0.0", "time.end=0.08"], (2,)),
     "elements in space, implicit": ([*ELEMENTS, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.08"],
-                                    (1, 2, 4)),
-    "meshes": ([*MESHES, "time.end=0.08"], (1, 3)),
-    "meshes at rest": (AT_REST, (1, 3)),
-    "crates on planes": ([HERE / "crates.toml", *LINES, "parallel.imbalance=0.0"], (1, 2, 4)),
+                                    (2, 4)),
+    "meshes": ([*MESHES, "time.end=0.08"], (3,)),
+    "meshes at rest": (AT_REST, (3,)),
+    "crates on planes": ([HERE / "crates.toml", *LINES, "parallel.imbalance=0.0"], (2, 4)),
     "crates on planes, implicit": ([HERE / "crates.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
-                                    "parallel.imbalance=0.0", "time.step=8e-5"], (1, 2, 4)),
+                                    "parallel.imbalance=0.0", "time.step=8e-5"], (2, 4)),
     "meshes and their works, implicit": ([*MESHES, *WORKS, *IMPLICIT, *FIXED, "integrator.substeps=1",
-                                          "time.end=0.08"], (1, 2, 4)),
-    "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 3)),
+                                          "time.end=0.08"], (2, 4)),
+    "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (3,)),
     "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
-                                              "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 4)),
-    "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (1, 3)),
-    "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
+                                              "contact.pairs.0.friction=0.4", "time.end=0.08"], (4,)),
+    "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (3,)),
+    "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (2,)),
 }
+CASES = {**MAIN_CASES, **OTHER_CASES}
 
 
-class SameBitsTest(RanksTest):
-    def test_every_number_of_ranks_gives_the_bits_of_one(self):
-        for name, ((deck, *overrides), counts) in CASES.items():
-            migrated = rebalances = 0
-            for ranks in counts:
-                with self.subTest(case=name, ranks=ranks):
-                    output = f"{name} {ranks}"
-                    self.run_deck(DONE, ranks, deck, output, [*overrides, "output.history_csv=true"])
-                    record, first = self.record(output), f"{name} 1"
-                    self.assertEqual(record["run"]["ranks"], ranks)
-                    self.assertEqual(self.hash(output), self.hash(first))
-                    for count in ("steps", "newton_iterations", "linear_iterations", "list_builds",
-                                  "particles_escaped"):
-                        self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
-                    self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
-                    for kind in ("particles", "bodies", "surfaces", "contacts", "links"):
-                        series = self.datasets(output, f"{kind}.vtkhdf")
-                        self.assertEqual(series, self.datasets(first, f"{kind}.vtkhdf"), kind)
-                    self.assertGreaterEqual(record["counts"]["steps"], 500 if "adaptive" in name else 1000)
-                    migrated += record["counts"]["migrated"]
-                    rebalances += record["counts"]["rebalances"]
-            self.assertGreater(migrated, 0, name)
-            if name in MAIN_CASES:
-                self.assertGreater(rebalances, 0, name)
+class ComparedTest(RanksTest):
+    """Runs whose bits are compared."""
+    def run_compared(self, ranks, deck, output, settings, first):
+        """A run that has the bits of another; returns its counts."""
+        self.run_deck(DONE, ranks, deck, output, settings)
+        record = self.record(output)
+        self.assertEqual(record["run"]["ranks"], ranks)
+        self.assertEqual(self.hash(output), self.hash(first))
+        for count in ("steps", "newton_iterations", "linear_iterations", "list_builds", "particles_escaped"):
+            self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
+        self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
+        for kind in ("particles", "bodies", "surfaces", "contacts", "links"):
+            self.assertEqual(self.datasets(output, f"{kind}.vtkhdf"), self.datasets(first, f"{kind}.vtkhdf"), kind)
+        return record["counts"]
 
-
-class ContinuedTest(RanksTest):
     def assert_same_content(self, parts, whole, name):
         """The first part of a run plans the chunks of its files, for fewer snapshots than the whole run has."""
         self.assertEqual(self.datasets(parts, name, chunks=False), self.datasets(whole, name, chunks=False), name)
 
-    def test_a_restart_on_another_number_of_ranks_continues_the_run(self):
-        for name, ((deck, *overrides), _) in MAIN_CASES.items():
+
+class SameBitsTest(ComparedTest):
+    def test_every_number_of_ranks_gives_the_bits_of_one(self):
+        for name, ((deck, *overrides), counts) in OTHER_CASES.items():
+            migrated, settings, first = 0, [*overrides, "output.history_csv=true"], f"{name} 1"
+            self.run_deck(DONE, 1, deck, first, settings)
+            self.assertGreaterEqual(self.record(first)["counts"]["steps"], 500 if "adaptive" in name else 1000)
+            for ranks in counts:
+                with self.subTest(case=name, ranks=ranks):
+                    migrated += self.run_compared(ranks, deck, f"{name} {ranks}", settings, first)["migrated"]
+            self.assertGreater(migrated, 0, name)
+
+
+class ContinuedTest(ComparedTest):
+    def test_many_ranks_and_a_restart_on_another_number_of_them_give_the_bits_of_one(self):
+        for name, ((deck, *overrides), counts) in MAIN_CASES.items():
+            end = next(float(word.removeprefix("time.end=")) for word in overrides if "time.end=" in word)
+            settings = [*overrides, f"output.checkpoint_interval={end / 2}", "output.history_csv=true"]
+            whole, parts, moved = f"whole {name}", f"parts {name}", []
+            self.run_deck(DONE, 1, deck, whole, settings)
+            for ranks in counts:
+                with self.subTest(case=name, ranks=ranks):
+                    moved.append(self.run_compared(ranks, deck, f"{name} {ranks}", settings, whole))
             with self.subTest(case=name):
-                end = next(float(word.removeprefix("time.end=")) for word in overrides if "time.end=" in word)
-                settings = [*overrides, f"output.checkpoint_interval={end / 2}", "output.history_csv=true"]
-                whole, parts = f"whole {name}", f"parts {name}"
-                self.run_deck(DONE, 1, deck, whole, settings)
                 self.run_deck(DONE, 3, deck, parts, [*settings, f"time.end={end / 2}"])
+                moved.append(self.record(parts)["counts"])
                 self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
-                self.assertEqual(self.hash(parts), self.hash(whole))
-                self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
-                self.assert_same_content(parts, whole, "surfaces.vtkhdf")
-                surfaces = self.datasets(parts, "surfaces.vtkhdf")
-                self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
-                if surfaces is not None and "works" in name:
-                    self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
-                if results is not None and LINES[0] in overrides:
-                    for lines in ("contacts.vtkhdf", "links.vtkhdf"):
-                        self.assert_same_content(parts, whole, lines)
-                    self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
-                for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
-                    self.assert_same_content(parts, whole, series)
-                counts = self.record(parts)["counts"]
-                self.assertGreaterEqual(counts["steps"], 1000)
-                self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])
+                moved.append(self.record(parts)["counts"])
+                self.assert_continued(name, overrides, parts, whole)
+            for count in ("migrated", "rebalances"):
+                self.assertGreater(sum(counts[count] for counts in moved), 0, f"{name}: {count}")
+
+    def assert_continued(self, name, overrides, parts, whole):
+        self.assertEqual(self.hash(parts), self.hash(whole))
+        self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
+        self.assert_same_content(parts, whole, "surfaces.vtkhdf")
+        surfaces = self.datasets(parts, "surfaces.vtkhdf")
+        self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
+        if surfaces is not None and "works" in name:
+            self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
+        if results is not None and LINES[0] in overrides:
+            for lines in ("contacts.vtkhdf", "links.vtkhdf"):
+                self.assert_same_content(parts, whole, lines)
+            self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
+        for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
+            self.assert_same_content(parts, whole, series)
+        counts = self.record(parts)["counts"]
+        self.assertGreaterEqual(counts["steps"], 1000)
+        self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])
 
 
 class FilesTest(RanksTest):
@@ -209,7 +222,7 @@ class FilesTest(RanksTest):
         self.assertEqual(self.hash("oscillating 1"), self.hash("oscillating 2"))
 
     def test_uneven_loads_move_the_boxes(self):
-        deck, *overrides = CASES["dam break, explicit"][0]
+        deck, *overrides = MAIN_CASES["dam break, explicit"][0]
         log = self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"]).stdout
         self.assertEqual(log.count("\nt = "), 11)  # progress is one line per tenth, then the summary
         self.assertNotIn("\r", log)
