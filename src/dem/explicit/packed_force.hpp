@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstring>
 
 #include "dem/contact/contact_items.hpp"
 
@@ -13,6 +14,24 @@ using Real4 = Real __attribute__((vector_size(4 * sizeof(Real))));
 // Packs four numbers from registers, or four from memory; the opposite choice stalls the processor.
 inline Real4 packed(Real a, Real b, Real c, Real d) { return Real4{a, b, c, d}; }
 inline Real4 packed(const Vec4& a) { return std::bit_cast<Real4>(a); }
+inline Vec4 unpacked(Real4 a) { return std::bit_cast<Vec4>(a); }
+
+// Reads values[k] ... values[k + 3].
+inline Real4 four_of(const Real* values, Index k) {
+  Real4 out;
+  std::memcpy(&out, values + k, sizeof(out));
+  return out;
+}
+
+// Exchanges rows and columns.
+inline void transpose(Real4 (&rows)[4]) {
+  const Real4 a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6),
+              b = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7),
+              c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6),
+              d = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+  rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5), rows[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7), rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 
 // A TotalForce packed in groups of four numbers, with the same addition.
 template <int kKinds>

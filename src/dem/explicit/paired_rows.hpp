@@ -68,7 +68,8 @@ class PairSweep {
 
  private:
   using Batch = PairBatch<Laws>;
-  using Packed = typename Batch::Packed;
+  using Packed = typename Batch::Loads::Packed;
+  static constexpr Index kGroup = Batch::Loads::kGroup;
   using Law = typename Batch::Law;
 
   // A contact of i; mirror: its slot in the row of j, if j may get the mirrored result.
@@ -112,15 +113,24 @@ class PairSweep {
     batch_.evaluate(found, walk.laws, walk.kinematics.h);
     results_.reserve(2 * found);
     Index again = 0;
-    for (Index k = 0; k < found; ++k) {
-      const Found pair = found_[k];
-      if (batch_.acts(k)) results_.put(pair.slot) = batch_.of_i().packed(k);
-      if (batch_.closed(k)) std::copy_n(batch_.records(k), Batch::kRecords, pair.records);
-      if (pair.mirror == ListedPair::kNone || !batch_.acts(k)) continue;
-      if (batch_.is_mirrored(k))
-        results_.put(pair.mirror) = batch_.of_j().packed(k);
-      else
-        found_[again++] = {pair.j, pair.i, pair.mirror, ListedPair::kNone, mirror_records(k, history)};
+    for (Index first = 0; first < found; first += kGroup) {
+      Packed *of_i[kGroup], *of_j[kGroup];
+      Vec4* records[kGroup];
+      for (Index n = 0; n < kGroup; ++n) {
+        const Index k = first + n;
+        of_i[n] = of_j[n] = &unused_load_, records[n] = unused_records_;
+        if (k >= found) continue;
+        const Found pair = found_[k];
+        if (batch_.closed(k)) records[n] = pair.records;
+        if (!batch_.acts(k)) continue;
+        of_i[n] = &results_.put(pair.slot);
+        if (pair.mirror == ListedPair::kNone) continue;
+        if (batch_.is_mirrored(k))
+          of_j[n] = &results_.put(pair.mirror);
+        else
+          found_[again++] = {pair.j, pair.i, pair.mirror, ListedPair::kNone, mirror_records(k, history)};
+      }
+      batch_.loads().store(first, of_i, of_j), batch_.store_records(first, records);
     }
     if (again > 0) evaluate(walk, again);
   }
@@ -151,6 +161,8 @@ class PairSweep {
   Index next_ = 0;            // next pair to evaluate
   PendingResults<Packed> results_;
   Batch batch_;
+  Packed unused_load_;  // written in place of loads and records that are not stored
+  Vec4 unused_records_[Batch::kRecords];
   Found found_[Batch::kCapacity];
 };
 

@@ -63,35 +63,48 @@ bool same_bits(const Vec4& a, const Vec4& b) {
   using Bits = std::array<std::uint64_t, 4>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
+template <int kKinds>
+bool same_bits(const PackedForce<kKinds>& a, const PackedForce<kKinds>& b) {
+  bool same = true;
+  for (int n = 0; n < PackedForce<kKinds>::kParts; ++n)
+    same = same && same_bits(unpacked(a.part[n]), unpacked(b.part[n]));
+  return same;
+}
 
 // Evaluates n contacts in a batch and each alone.
 template <class Law>
 void compare(const std::vector<Law>& laws, Index materials, Index n, std::mt19937& random) {
   using Batch = PairBatch<LawTable<Law>>;
+  using Packed = typename Batch::Loads::Packed;
+  constexpr std::size_t kSize = Batch::kSize;
   const LawTable<Law> table{laws.data(), materials};
   std::vector<Contact> contacts;
   for (Index k = 0; k < n; ++k) contacts.push_back(random_contact(random, materials));
   static Batch batch;  // keeps results of earlier calls
   for (Index k = 0; k < n; ++k) batch.put(k, contacts[k].i, contacts[k].j, contacts[k].records, kNumber);
   batch.evaluate(n, table, kStep);
+  std::vector<Packed> of_i(kSize), of_j(kSize);
+  std::vector<std::array<Vec4, 2>> stored(kSize);
+  for (std::size_t k = 0; k < contacts.size(); k += 4) {
+    batch.loads().store(static_cast<Index>(k), {&of_i[k], &of_i[k + 1], &of_i[k + 2], &of_i[k + 3]},
+                        {&of_j[k], &of_j[k + 1], &of_j[k + 2], &of_j[k + 3]});
+    batch.store_records(static_cast<Index>(k),
+                        {stored[k].data(), stored[k + 1].data(), stored[k + 2].data(), stored[k + 3].data()});
+  }
   HistoryViews history;
   history.step = kNumber;
-  for (Index k = 0; k < n; ++k) {
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
     const auto& [i, j, records] = contacts[k];
     const PairState state = AtInstant::pair(i.p, i.u, j.p, j.u);
     const MovingPair pair{state, OverExplicitStep{kStep}.motion(state, OverExplicitStep::partner(i.p, i.spin),
                                                                 OverExplicitStep::partner(j.p, j.spin))};
     const auto outcome = table.get(i.material, j.material).load(pair, history.read<Law>(records, 0));
-    const auto of_i = Batch::Packed::Total::of(outcome.load, outcome.losses());
-    const auto of_j = Batch::Packed::Total::of(outcome.load.exchanged(), outcome.losses());
-    bool same = true;
-    for (int part = 0; part < Batch::Packed::kParts; ++part)
-      same = same && same_bits(batch.of_i().part[part][k], Batch::Packed::part_of(of_i, part)) &&
-             same_bits(batch.of_j().part[part][k], Batch::Packed::part_of(of_j, part));
+    bool same = same_bits(of_i[k], Packed::of(Packed::Total::of(outcome.load, outcome.losses()))) &&
+                same_bits(of_j[k], Packed::of(Packed::Total::of(outcome.load.exchanged(), outcome.losses())));
     Vec4 expected[2];
     history.write<Law>(expected, 0, outcome.history);
-    same = same && same_bits(batch.records(k)[0], expected[0]);
-    if (Batch::kRecords > 1) same = same && same_bits(batch.records(k)[Batch::kRecords - 1], expected[1]);
+    for (Index r = 0; r < Batch::kRecords; ++r) same = same && same_bits(stored[k][r], expected[r]);
+    same = same && batch.is_mirrored(static_cast<Index>(k)) == Law::is_mirrored(outcome.history);
     CAPTURE(k, n);
     REQUIRE(same);
   }
