@@ -115,7 +115,8 @@ class MissingTest(unittest.TestCase):
 
     def test_files_that_are_not_there(self):
         films, forms = {*PICTURES, "settle", "thin"}, {"vtp", "vtu", "ply", "stl"}
-        refused = {"particles": films, "history": {"plot"}, "record": {"thin"}, "snapshots": films | {"paraview"} | forms, "deck": films,
+        refused = {"particles": films, "history": {"plot"}, "record": {"thin"},
+                   "snapshots": films | {"paraview"} | forms, "deck": films,
                    "results": films | {"plot", "paraview", "report", "csv"} | forms}
         for missing, files in FILES.items():
             name = "deep" if missing == "surfaces" else "flat"
