@@ -117,7 +117,14 @@ void CudaList::wrap_positions() {
   long long* bad = items_.results.clear_id();
   for_each(items_.device(), items_.owned,
            WrapItem{views_of(items_.now), items_.model.space.min, items_.subdomain.period(), bad});
-  if (const long long id = items_.results.smallest_id(); id < kNoId)
+  items_.results.copy(&Results::worst_id);
+  if (items_.ranks.alone()) return;  // the sort waits, and counts unsound particles as outside
+  wait_for(items_.stream);
+  require_sound_positions();
+}
+
+void CudaList::require_sound_positions() {
+  if (const long long id = items_.ranks.min(items_.results.host().worst_id); id < kNoId)
     throw SimulationError(kUnsoundPosition[0] + std::to_string(id) + kUnsoundPosition[1]);
 }
 
@@ -142,6 +149,7 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
   copy_async(&found.active, starts + outside, 1, items_.stream);
   copy_async(&found.staying, starts + outside + 1, 1, items_.stream);
   wait_for(items_.stream);
+  if (ranks.alone()) require_sound_positions();
   items_.reorder(particle_sort_.order(), found.staying);
   owners_.arrived();
   items_.interior = found.interior / kStepBlock * kStepBlock;
@@ -214,7 +222,7 @@ void CudaList::search(Real skin) {
   in.ghost_items = ghosts ? ghost_items_.data() : nullptr;
   in.active = items_.layout.active, in.owned = items_.owned;
   in.skin = builder_.search_margin(skin);
-  items_.list.build(items_.device(), in);
+  items_.list.search(items_.device(), in);
   const DeviceSurfaces::Particles particles{now.position.data(),
                                             now.material.data(),
                                             items_.owned,
@@ -226,6 +234,7 @@ void CudaList::search(Real skin) {
                                             items_.history.stored_contacts()};
   items_.surfaces.build(items_.device(), particles, bodies_.side().poses(),
                         builder_.search_margin(skin) + frame_.reach());
+  items_.list.complete(items_.device(), in);
 }
 
 // Arrays of explicit steps that depend on the list. Forces, and with rotation all other values at an instant,
@@ -261,15 +270,18 @@ void CudaList::find_rows(Real skin) {
   } else {
     items_.history.unpack_history(items_.listed());  // the packed history leaves the scratch memory
     reserve_for_steps();
-    items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
   for_each(items_.device(), items_.layout.active, BuiltAtItem{items_.now.position.data(), built_at_.data()});
+  if (items_.model.integrator.particles != ParticleIntegrator::hht)
+    items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
+  items_.surfaces.complete(items_.device());
 }
 
 // Where an allocation fails the particles are unchanged. Phases in which that is likely run in
 // `collectively`, so that all ranks fail at once and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
-  commit_open_step();
+  if (!committed_) commit_open_step();
+  committed_ = false;
   plan_surfaces(skin);
   current_ = false;
   pack_history();

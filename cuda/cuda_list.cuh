@@ -33,28 +33,28 @@ class CudaList : public RankList {
   void outdate() { current_ = false; }
   Real cutoff() const { return builder_.cutoff(skin_); }
   Real bound() const { return bound_; }  // upper bound of the displacement of any item since it was built [m]
-  void set_bound(Real bound) { bound_ = bound; }
+  void set_bound(Real bound) { bound_ = bound, committed_ = false; }
   CudaOwners& owners() { return owners_; }
   // The frame that displacement() refers to. open_run(): a run opens its first step of
   // length h [s]; follow(): steps were closed and others opened since then.
   const ListFrame& frame() const { return frame_; }
-  void open_run(Real h) { frame_.move(h), followed_step_ = items_.history.step(); }
+  void open_run(Real h) { frame_.move(h), followed_step_ = items_.history.step(), committed_ = false; }
   void follow(Real h) {
     frame_.move(h, items_.history.step() - followed_step_), followed_step_ = items_.history.step();
+    committed_ = false;
   }
 
  private:
   std::int64_t steps() const { return std::llround(items_.history.step() - built_step_); }
   bool measure();
   void limit_skin();
-  template <class Item>
-  Real largest_of(const Item& item);
   void choose_frame(Real skin);
   // Phases of build(), in order.
   void plan_surfaces(Real skin);
   void commit_open_step();
   void pack_history();
   void wrap_positions();
+  void require_sound_positions();
   void sort_cells(Real skin, std::int64_t particles);
   void lay_out_items(Real skin);
   void collect_ghosts(Real width);
@@ -74,10 +74,13 @@ class CudaList : public RankList {
   DeviceArray<Index> ghost_items_;
   DeviceArray<Vec3> built_at_;  // positions of the searched particles when the list was built
   bool current_ = false;
+  bool committed_ = false;  // whether the open step is in the state, and none was taken since
   Real skin_ = 0, bound_ = 0;
   std::int64_t builds_ = 0;
   SkinChoice choice_;
   ListFrame frame_;
+  DeviceArray<Real> falls_;  // what the frame is chosen from
+  PinnedArray<Real> h_falls_;
   Real followed_step_ = 0;  // DeviceHistory::step() up to which the frame has moved
   Real built_step_ = 0;     // DeviceHistory::step() when the list was built
   Real measured_step_ = 0;  // and when `moved_` was measured

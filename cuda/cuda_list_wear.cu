@@ -20,7 +20,10 @@ struct MovedItem {
   }
 };
 
-// Speed along a direction, and its difference from `most`.
+// Largest values over the particles, of which each is found with those before.
+enum Fall { kMostFall, kSlower, kSpeed, kInFrame, kFalls };
+
+// Speed along a direction, and how much slower than the fastest.
 struct FallItem {
   const Vec4* velocity;
   Vec3 down;
@@ -28,15 +31,24 @@ struct FallItem {
 };
 struct SlowerItem {
   FallItem fall;
-  Real most;
-  SCREE_HD Real operator()(Index i) const { return most - fall(i); }
+  const Real* falls;
+  SCREE_HD Real operator()(Index i) const { return falls[kMostFall] - fall(i); }
 };
-// Square of the speed relative to a frame.
+// Squares of the speed, and of that relative to the mean of the slowest and the fastest fall.
 struct SpeedItem {
   const Vec4* velocity;
-  Vec3 frame;
   SCREE_HD Real operator()(Index i) const {
-    const Vec3 v = xyz(velocity[i]) - frame;
+    const Vec3 v = xyz(velocity[i]);
+    return dot(v, v);
+  }
+};
+struct InFrameItem {
+  const Vec4* velocity;
+  Vec3 gravity;
+  const Real* falls;
+  SCREE_HD Real operator()(Index i) const {
+    const Real most = falls[kMostFall];
+    const Vec3 v = xyz(velocity[i]) - ListFrame::mean_fall(gravity, most - falls[kSlower], most);
     return dot(v, v);
   }
 };
@@ -52,31 +64,32 @@ bool CudaList::measure() {
   return items_.history.step() == measured_step_ || displacement() < kInfinity;
 }
 
-// Over the particles of all ranks that are searched, at least 0.
-template <class Item>
-Real CudaList::largest_of(const Item& item) {
-  max_over(items_.device(), items_.layout.active, item, items_.results.at(&Results::largest));
-  return items_.ranks.max(items_.results.fetch(&Results::largest));
-}
-
-// The frame moves only where some particles fall.
+// The frame moves only where some particles fall. All that it follows from is found by kernels before the
+// host waits.
 void CudaList::choose_frame(Real skin) {
   frame_ = {};
   const Model& model = items_.model;
   if (!lists_leave_no_trace(model) || model.gravity == Vec3{}) return;
+  falls_.resize(kFalls), h_falls_.resize(kFalls);
+  const auto find = [&](Fall which, const auto& item) {
+    max_over(items_.device(), items_.layout.active, item, falls_.data() + which);
+    items_.halo_stream.halo.max(items_.device(), falls_.data() + which, 1);
+  };
   const Vec4* const velocity = items_.now.velocity.data();
   const FallItem fall{velocity, (1 / norm(model.gravity)) * model.gravity};
-  const Real most = largest_of(fall);
+  find(kMostFall, fall);
+  find(kSlower, SlowerItem{fall, falls_.data()});
+  find(kSpeed, SpeedItem{velocity});
+  find(kInFrame, InFrameItem{velocity, model.gravity, falls_.data()});
+  copy_async(h_falls_.data(), falls_.data(), kFalls, items_.stream);
+  wait_for(items_.stream);
+  const Real most = h_falls_[kMostFall];
   if (!(most > 0)) return;
-  const Real least = most - largest_of(SlowerItem{fall, most}),
-             speed = std::sqrt(largest_of(SpeedItem{velocity, {}})),
-             in_frame =
-                 std::sqrt(largest_of(SpeedItem{velocity, ListFrame::mean_fall(model.gravity, least, most)}));
   frame_ = {model.gravity,
-            least,
+            most - h_falls_[kSlower],
             most,
-            speed,
-            in_frame,
+            std::sqrt(h_falls_[kSpeed]),
+            std::sqrt(h_falls_[kInFrame]),
             skin,
             kMostFrameReach * model.particles.totals.largest_radius};
 }
@@ -105,6 +118,7 @@ void CudaList::limit_skin() {
 Real CudaList::displacement() {
   if (!current_) return 2;
   commit_open_step();
+  committed_ = true;
   const MovedItem moved{built_at_.data(), items_.now.position.data(), frame_.displacement()};
   DeviceResults& results = items_.results;
   max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));

@@ -43,21 +43,24 @@ void DeviceHalo::count_entries(Device device, const Vec4* position, Index n) {
   const std::vector<HaloTarget>& targets = plan_.targets();
   std::vector<std::size_t> sent(plan_.neighbors().size());
   if (targets.empty()) return plan_.set_counts(0, sent);
-  targets_.upload(targets, device.stream);
+  targets_.resize(targets.size());
+  copy_async(targets_.data(), targets.data(), targets.size(), device.stream);
   counts_.resize(targets.size());
   counts_.zero(device.stream);
   visit_targets(device, position, n, nullptr);
-  std::vector<unsigned long long> first = counts_.download(device.stream);
+  h_counts_.resize(targets.size());
+  copy_async(h_counts_.data(), counts_.data(), targets.size(), device.stream);
+  wait_for(device.stream);
   std::size_t own = 0, all = 0;
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    const std::size_t count = first[t];
+    const std::size_t count = h_counts_[t];
     (targets[t].neighbor == HaloTarget::kItself ? own
                                                 : sent[static_cast<std::size_t>(targets[t].neighbor)]) +=
         count;
-    first[t] = all, all += count;
+    h_counts_[t] = all, all += count;
   }
   plan_.set_counts(own, sent);
-  counts_.upload(first, device.stream);
+  copy_async(counts_.data(), h_counts_.data(), targets.size(), device.stream);
 }
 
 void DeviceHalo::list(Device device, const Vec4* position, Index n) {

@@ -126,6 +126,7 @@ class DeviceHalo {
   DeviceArray<Ghost> ghost_;
   DeviceArray<HaloTarget> targets_;
   DeviceArray<unsigned long long> counts_;
+  PinnedArray<unsigned long long> h_counts_;
   // Messages of the motion, and of what ghosts get once per list.
   static constexpr std::size_t kBuffers =
       std::max(count_arrays<kMotion | kSpins>(), count_arrays<kKeys | kGhostCopies>());

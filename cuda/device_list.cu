@@ -178,7 +178,7 @@ PrunedRows<0> DeviceList::pruned_rows() {
   return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0, entry_indices_.data()};
 }
 
-void DeviceList::search(Device device, const ListInput& in) {
+void DeviceList::queue(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);
   const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
@@ -191,19 +191,20 @@ void DeviceList::search(Device device, const ListInput& in) {
   copy_async(h_totals_.data(), totals_.data(), 1, device.stream);
 }
 
-void DeviceList::build(Device device, const ListInput& in) {
+void DeviceList::search(Device device, const ListInput& in) {
   const auto owned = static_cast<std::size_t>(in.owned);
   const bool first = slice_start_.size() == 0;
   slice_start_.resize(owned / kSlice + 1), counts_.resize(owned),
       first_entry_.resize(has_history_ ? owned : 0);
   if (first) scratch_space(static_cast<std::size_t>(slots_at_start_ * static_cast<double>(owned)) + kSlice);
   h_totals_[0].entries = h_totals_[0].used = 0;
-  if (in.owned == 0) return;
-  search(device, in);
-  wait_for(device.stream);
+  if (in.owned > 0) queue(device, in);
+}
+
+void DeviceList::complete(Device device, const ListInput& in) {
   if (h_totals_[0].used > neighbors_.size()) {
     neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
-    search(device, in);
+    queue(device, in);
     wait_for(device.stream);
   }
   if (!has_history_) return;

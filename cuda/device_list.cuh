@@ -173,10 +173,12 @@ class DeviceList {
   // has_history: whether contacts have a history. slots: initial capacity per particle.
   DeviceList(bool has_history, double slots);
 
-  // Fills the list. Waits for the device once, to learn whether the capacity sufficed, and repeats with more
-  // if not. Throws `DeviceError` where memory does not suffice, and `SimulationError` where contacts have a
-  // history and a row is too long for `RowIndex` or there are more entries than an `Index` can count.
-  void build(Device device, const ListInput& in);
+  // Queues the search that fills the list. To be followed by complete(), once the stream has been waited for,
+  // which repeats the search with more memory if that did not suffice. They throw `DeviceError` where there
+  // is too little memory, and `SimulationError` where contacts have a history and a row is too long for
+  // `RowIndex` or there are more entries than an `Index` can count.
+  void search(Device device, const ListInput& in);
+  void complete(Device device, const ListInput& in);
 
   SlicedRows rows() const {
     return {slice_start_.data(), counts_.data(), neighbors_.data(), first_entry_.data()};
@@ -203,7 +205,7 @@ class DeviceList {
     unsigned long long entries;  // number of entries
     Index longest;               // row
   };
-  void search(Device device, const ListInput& in);
+  void queue(Device device, const ListInput& in);
 
   const bool has_history_;
   const double slots_at_start_;  // initial slots per particle

@@ -223,20 +223,25 @@ void DeviceSurfaces::group_by_surface(Device device) {
   const auto entries = static_cast<std::size_t>(entries_);
   for_each(device, entries_, SurfaceKeyItem{surfaces_.data(), numbers(), last, by_surface_.keys(entries)});
   by_surface_.sort(device, entries_, last);
-  std::vector<Index> starts(static_cast<std::size_t>(placed_count_) + 1);
-  require_cuda(cudaMemcpyAsync(starts.data(), by_surface_.starts(), starts.size() * sizeof(Index),
-                               cudaMemcpyDeviceToHost, device.stream),
-               "cudaMemcpyAsync");
+  h_starts_.resize(static_cast<std::size_t>(placed_count_) + 1);
+  copy_async(h_starts_.data(), by_surface_.starts(), h_starts_.size(), device.stream);
+  for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize_with_spare(entries);
+  steps_.resize_with_spare(entries);
+}
+
+// Divides the entries of each surface into chunks.
+void DeviceSurfaces::complete(Device device) {
+  if (!any_placed()) return;
   wait_for(device.stream);
+  const PinnedArray<Index>& starts = h_starts_;
   placed_entries_ = starts[static_cast<std::size_t>(placed_count_)];
   h_chunks_.clear();
   for (Index s = 0; s < placed_count_; ++s)
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunkEntries)
       h_chunks_.push_back({s, first, std::min(first + kChunkEntries, starts[s + 1])});
-  chunks_.upload(h_chunks_, device.stream);
-  load_sums_.prepare(device, starts);
-  for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize_with_spare(entries);
-  steps_.resize_with_spare(entries);
+  chunks_.resize_with_spare(h_chunks_.size());
+  copy_async(chunks_.data(), h_chunks_.data(), h_chunks_.size(), device.stream);
+  load_sums_.prepare(device, {starts.data(), starts.size()});
 }
 
 void DeviceSurfaces::upload(Device device, const SurfacePoses& poses) {

@@ -38,8 +38,10 @@ class DeviceSurfaces {
   // period: of the domain [m].
   DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream);
 
-  // Fills the rows. poses: the present ones of the surfaces. Waits for the device.
+  // Fills the rows. poses: the present ones of the surfaces. Waits for the device. To be followed by
+  // complete(), which waits, too: what is queued in between needs the rows alone.
   void build(Device device, const Particles& particles, const SurfacePoses& poses, Real skin);
+  void complete(Device device);
   bool any_placed() const { return placed_count_ > 0; }
   // Whether any particle of this rank is near a posed surface.
   bool any_near() const { return placed_entries_ > 0; }
@@ -143,7 +145,7 @@ class DeviceSurfaces {
   SurfaceLoadSums load_sums_;
   // Written by the device for chunks with contacts; the number of contacts is written for all.
   PinnedArray<StepSums> h_step_sums_;
-  PinnedArray<Index> h_index_;
+  PinnedArray<Index> h_index_, h_starts_;  // h_starts_: of the entries of each placed surface
 };
 
 }  // namespace scree

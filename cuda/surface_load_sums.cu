@@ -5,7 +5,7 @@
 
 namespace scree {
 
-void SurfaceLoadSums::prepare(Device device, const std::vector<Index>& starts) {
+void SurfaceLoadSums::prepare(Device device, std::span<const Index> starts) {
   const std::size_t surfaces = starts.size() - 1;
   std::vector<LoadChunk> chunks;
   has_chunks_.assign(surfaces, false);
@@ -17,7 +17,8 @@ void SurfaceLoadSums::prepare(Device device, const std::vector<Index>& starts) {
       chunks.push_back(
           {{static_cast<Index>(s), first, std::min(first + kLoadLanes, starts[s + 1])}, first_part, parts});
   }
-  chunks_.upload(chunks, device.stream);
+  chunks_.resize_with_spare(chunks.size());
+  copy_async(chunks_.data(), chunks.data(), chunks.size(), device.stream);
   of_chunks_.resize_with_spare(chunks.size());
   if (summed_.size() == 0) summed_.resize(surfaces), summed_.zero(device.stream);
   sums_.resize(surfaces), written_by_.resize(surfaces);

@@ -1,6 +1,7 @@
 // Sums of the loads of contacts with placed surfaces, which the device writes to the memory of the host.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "contact_kernels.cuh"
@@ -11,7 +12,7 @@ namespace scree {
 class SurfaceLoadSums {
  public:
   // For a new list. starts: first entry by_surface of each surface, and the end. Waits for the device.
-  void prepare(Device device, const std::vector<Index>& starts);
+  void prepare(Device device, std::span<const Index> starts);
   LoadChunks chunks() const { return {chunks_.data(), static_cast<Index>(chunks_.size())}; }
   // For the next evaluation. report: the control block that the first warp copies to the host, if any.
   LoadSumOutputs next(const ControlReport& report);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/data/model.hpp"
@@ -32,7 +33,7 @@ class ListFrame {
   }
 
   // Mean of the velocities along gravity [m/s].
-  static Vec3 mean_fall(Vec3 gravity, Real least, Real most) {
+  SCREE_HD static Vec3 mean_fall(Vec3 gravity, Real least, Real most) {
     return ((least + most) / 2 / norm(gravity)) * gravity;
   }
 
