@@ -23,7 +23,7 @@ namespace {
 // slower.
 template <int kEntries>
 struct RowBuffer {
-  static constexpr int kThreads = kEntries <= 16 ? 128 : 64;
+  static constexpr int kThreads = kEntries <= 24 ? 128 : 64;
   std::int64_t key[kEntries][kThreads];
   Index neighbor[kEntries][kThreads];
 };
@@ -159,7 +159,14 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
   }
 }
 
-constexpr int kShortRow = 16, kLongRow = 48;
+// The longer the rows, the fewer of them a multiprocessor holds at once: 1,152, 768, 512, or 384.
+constexpr int kRowLengths[] = {16, 24, 32, 48};
+
+template <int kEntries>
+void find_rows(Device device, const ListInput& in, const RowOutputs& out) {
+  constexpr int kThreads = RowBuffer<kEntries>::kThreads;
+  find_rows_kernel<kEntries><<<blocks_for(in.owned, kThreads), kThreads, 0, device.stream>>>(in, out);
+}
 
 }  // namespace
 
@@ -179,14 +186,18 @@ PrunedRows<0> DeviceList::pruned_rows() {
 }
 
 void DeviceList::queue(Device device, const ListInput& in) {
-  const bool long_rows = h_totals_[0].longest > kShortRow;
+  const Index longest = h_totals_[0].longest;  // of the last list
   totals_.zero(device.stream);
   const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
                        first_entry_.data(), neighbors_.size(), totals_.data()};
-  if (long_rows)
-    find_rows_kernel<kLongRow><<<blocks_for(in.owned, 64), 64, 0, device.stream>>>(in, out);
+  if (longest <= kRowLengths[0])
+    find_rows<kRowLengths[0]>(device, in, out);
+  else if (longest <= kRowLengths[1])
+    find_rows<kRowLengths[1]>(device, in, out);
+  else if (longest <= kRowLengths[2])
+    find_rows<kRowLengths[2]>(device, in, out);
   else
-    find_rows_kernel<kShortRow><<<blocks_for(in.owned, 128), 128, 0, device.stream>>>(in, out);
+    find_rows<kRowLengths[3]>(device, in, out);
   require_cuda(cudaGetLastError(), "neighbour list");
   copy_async(h_totals_.data(), totals_.data(), 1, device.stream);
 }
