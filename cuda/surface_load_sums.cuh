@@ -11,7 +11,7 @@ namespace scree {
 
 class SurfaceLoadSums {
  public:
-  // For a new list. starts: first entry by_surface of each surface, and the end. Waits for the device.
+  // For a new list. starts: first entry by_surface of each surface, and the end.
   void prepare(Device device, std::span<const Index> starts);
   LoadChunks chunks() const { return {chunks_.data(), static_cast<Index>(chunks_.size())}; }
   // For the next evaluation. report: the control block that the first warp copies to the host, if any.
