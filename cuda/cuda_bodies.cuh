@@ -34,25 +34,30 @@ class CudaBodies {
   void find_friction_steps(const FrictionStart& start);  // for laws with friction
   void take_steps(Real h);
 
-  // Concurrently with an explicit step, after `ready`: copies the poses of the surfaces and queues the
-  // contacts of particles in the state of `query`. The kernel of the step reads them after loads_found();
-  // take_loads() waits for their sums, and with them for the report.
-  // Nothing is queued or reported where no particle of this rank is near a surface.
-  void queue_loads(const SurfaceQuery& query, const Event& ready, const ControlReport& report = {});
+  // Queues the poses of the surfaces and the contacts of particles in the state of `query`, in the order of
+  // the particles' stream. take_loads() waits for their sums, and with them for the report. Nothing is queued
+  // or reported where no particle of this rank is near a surface.
+  void queue_loads(const SurfaceQuery& query, const ControlReport& report);
+  // The same on a stream of their own, after `ready`. The kernel of the step reads them after loads_found().
+  void queue_loads_after(const Event& ready, const SurfaceQuery& query, const ControlReport& report);
   const Event& loads_found() const { return loads_found_; }
   void take_loads(Real h);
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
   void accumulate_load_works(Real h);
-  // The same as queue_loads() while the step's kernel may still read its own loads. Waits; before that calls
-  // `meanwhile`.
+  // The same as queue_loads() concurrently, while the step's kernel may still read its own loads. Waits; before
+  // that calls `meanwhile`.
   void find_loads_concurrently(const SurfaceQuery& query, const std::function<void()>& meanwhile);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
  private:
+  void send_and_find(cudaStream_t on, DeviceSurfaces::Loads which, const SurfaceQuery& query,
+                     const ControlReport& report);
+
   CudaItems& items_;
   HostSurfaces side_;
   Stream stream_{Priority::urgent};
+  cudaStream_t loads_on_ = nullptr;  // stream of the last loads
   Event loads_found_, works_accumulated_;
   DeviceArray<Vec3> step_, step_rotation_;
 };

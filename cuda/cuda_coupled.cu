@@ -1,5 +1,5 @@
-// Explicit steps coupled to bodies: one at a time, with the contacts on their surfaces on a stream of their
-// own.
+// Explicit steps coupled to bodies: one at a time, with the contacts on their surfaces before it, and those
+// at their corrected poses beside it.
 #include "cuda_explicit.cuh"
 
 namespace scree {
@@ -19,13 +19,13 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
         !(bodies_.side().list_displacement() < list_.skin() / 2))
       list_.build(list_.choose_skin(), timers), control_.resume(), boundary_apart_ = false;
     const auto scope = timers.time(Stage::contact_force);
-    const bool reported = queue_loads();
+    const bool in_order = contacts_in_order(), reported = queue_loads();
     if (!reported) {
       workspace_.step_queued.hold(bodies_.stream());
       items_.results.copy(&Results::control, bodies_.stream());
     }
     if (keep_open) {
-      const MovingSurfaces moving{bodies_.loads_found(), workspace_.boundary_done};
+      const MovingSurfaces moving{in_order ? nullptr : &bodies_.loads_found(), workspace_.boundary_done};
       queue_.queue(1, &moving), boundary_apart_ = items_.parts.apart();
     }
     do_work();
@@ -54,20 +54,29 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   }
 }
 
+// Whether the open step's contacts with surfaces are evaluated on the particles' stream, without events
+// between streams. Otherwise they do not wait for interior rows of the previous step, or for the halo.
+bool CudaExplicitRun::contacts_in_order() const { return items_.ranks.alone() && !boundary_apart_; }
+
 // Queues the open step's contacts with surfaces, which its kernel reads; their sums go to the host
 // concurrently. The particles near surfaces are in the boundary rows of the previous step, so that its
 // interior rows may still be under way. Returns whether the control block comes with the sums: it does where
 // the contacts wait for all of the previous step, which closed it.
 bool CudaExplicitRun::queue_loads() {
-  workspace_.step_queued.record(items_.stream);
   const SurfaceQuery query{control_.open_position(), control_.open_velocity(), control_.open_spin(),
                            items_.history.views(control_.velocity_parity() == 1), h_};
-  if (boundary_apart_) {
-    bodies_.queue_loads(query, workspace_.boundary_done);
-    return false;
+  const ControlReport report{control_.on_device(), &items_.results.host().control};
+  const bool reported = items_.surfaces.any_near() && !boundary_apart_;
+  if (reported && contacts_in_order()) {
+    bodies_.queue_loads(query, report);
+    return true;
   }
-  bodies_.queue_loads(query, workspace_.step_queued, {control_.on_device(), &items_.results.host().control});
-  return items_.surfaces.any_near();
+  workspace_.step_queued.record(items_.stream);
+  if (boundary_apart_)
+    bodies_.queue_loads_after(workspace_.boundary_done, query, {});
+  else
+    bodies_.queue_loads_after(workspace_.step_queued, query, report);
+  return reported;
 }
 
 // Runs concurrently with the step queued last: its kernel reads the same state arrays but has contacts of its

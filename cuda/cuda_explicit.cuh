@@ -38,6 +38,7 @@ class CudaExplicitRun : public ExplicitRun {
   // Defined in cuda_coupled.cu.
   StepsTaken take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers);
   bool step_with_bodies(bool keep_open, StageTimers& timers);
+  bool contacts_in_order() const;
   bool queue_loads();
 
   CudaItems& items_;

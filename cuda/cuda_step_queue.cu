@@ -310,8 +310,11 @@ void StepQueue::queue_double(Index steps, const MovingSurfaces* moving) {
   const auto no_surfaces = [](Device) {};
   if (moving != nullptr)
     return queue_successively(
-        key, steps, [&](Device on) { moving->loads_found.hold(on.stream); }, queue_ghosts, queue_rows,
-        &moving->boundary_done);
+        key, steps,
+        [&](Device on) {
+          if (moving->loads_found != nullptr) moving->loads_found->hold(on.stream);
+        },
+        queue_ghosts, queue_rows, &moving->boundary_done);
   if (!in_run) return queue_successively(key, steps, no_surfaces, queue_ghosts, queue_rows);
   surfaces.reserve_in_run(items_.device(), steps);
   const OpenStepQuery query = surface_query(r);

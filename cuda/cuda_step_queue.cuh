@@ -19,9 +19,9 @@ struct RunWorkspace {
   std::unique_ptr<DrivenSurfaces> driven;  // null unless the motion of the surfaces is known ahead
 };
 
-// What orders a step and the contacts of moving surfaces, which are evaluated on a stream of their own.
+// What orders a step and the contacts of moving surfaces.
 struct MovingSurfaces {
-  const Event& loads_found;  // the boundary rows wait for it
+  const Event* loads_found;  // the boundary rows wait for it; null: it is queued on the particles' stream
   Event& boundary_done;      // recorded after the boundary rows: the surfaces' next contacts need no others
 };
 

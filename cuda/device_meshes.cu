@@ -266,9 +266,9 @@ void DeviceMeshes::reserve_over_step(Index entries) {
   if (exist()) before_.resize_with_spare(static_cast<std::size_t>(entries));
 }
 
-void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
+void DeviceMeshes::touch(Device device, const SurfaceViews& views, Follows follows) {
   queue_touches<StateQuery>(
-      device, Follows::anything, open_surfaces_,
+      device, follows, open_surfaces_,
       {{count_, multiprocessors_}, views, {}, touches_.data(), cached_contacts_.data()});
 }
 

@@ -81,8 +81,8 @@ class DeviceMeshes {
   void fill(Device device, Index* next, Index* surfaces, std::int8_t* images);
   void group(Device device, const Index* offsets, const Index* surfaces, const std::int8_t* images);
 
-  // Queues the contacts at the present instant, into the entries' arrays.
-  void touch(Device device, const SurfaceViews& views);
+  // Queues the contacts at the present instant, into the entries' arrays. follows: what is queued before.
+  void touch(Device device, const SurfaceViews& views, Follows follows);
   // The same for the explicit step that is open when the kernel runs.
   void touch_in_run(Device device, const SurfaceViews& views, const OpenStepQuery& query, Follows follows);
   // The same over an implicit step.

@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "dependent_launch.cuh"
 #include "device_poses.cuh"
 #include "for_each.cuh"
 
@@ -12,6 +13,7 @@ constexpr int kSendThreads = 32;
 constexpr Index kAtOnce = 2, kSentByBlock = kAtOnce * kSendThreads;  // reads that do not wait for each other
 
 __global__ void __launch_bounds__(kSendThreads) send_kernel(Index words, const uint4* from, uint4* to) {
+  admit_next_kernel();
   const Index first = static_cast<Index>(blockIdx.x) * kSentByBlock + static_cast<Index>(threadIdx.x);
   uint4 word[kAtOnce];
 #pragma unroll

@@ -272,11 +272,11 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           interaction_range_};
 }
 
-void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const SurfaceQuery& query, const ControlReport& report) {
+void DeviceSurfaces::find_loads(Device device, Follows follows, const DeviceContactKernels& kernels,
+                                Loads which, const SurfaceQuery& query, const ControlReport& report) {
   const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch(device, views);
-  kernels.surface_loads(device, after_touches(Follows::anything), views, load_sums_.chunks(),
+  meshes_.touch(device, views, follows);
+  kernels.surface_loads(device, after_touches(follows), views, load_sums_.chunks(),
                         loads_[which == Loads::of_step ? 0 : 1].data(), load_sums_.next(report));
 }
 

@@ -61,10 +61,10 @@ class DeviceSurfaces {
   void send(Device device, const SurfacePoses& poses) { poses_.send(device, poses); }
   void store_start(Device device);  // at the start of an implicit step
   // Queues the contacts of particles in the state of `query` with the surfaces on bodies at their present
-  // poses, and their sums, which the device writes to the memory of the host. report: as in SurfaceLoadSums;
-  // there is none if no particle is near.
-  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceQuery& query,
-                  const ControlReport& report = {});
+  // poses, and their sums, which the device writes to the memory of the host. follows: what is queued before
+  // on the stream; report: as in SurfaceLoadSums; there is none if no particle is near.
+  void find_loads(Device device, Follows follows, const DeviceContactKernels& kernels, Loads which,
+                  const SurfaceQuery& query, const ControlReport& report = {});
   // For surfaces at rest or with prescribed motion in a run of explicit steps of length h: queues the loads
   // of the step that is open when the kernels run, and the losses at triangles. follows: what is queued
   // before on the stream. key: everything that the launches depend on.

@@ -138,6 +138,7 @@ __global__ void __launch_bounds__(kLoadLanes)
     load_kernel(const LoadChunk* chunks, const __grid_constant__ SurfaceViews in, const Laws laws,
                 SurfaceLoad* loads, const LoadSumOutputs out) {
   __shared__ LoadRecords::Shared shared;
+  admit_next_kernel();
   const LoadRecords records(shared);
   const LoadChunk chunk = chunks[blockIdx.x];
   const Index surface = chunk.of.surface, k = chunk.of.first + static_cast<Index>(threadIdx.x);
