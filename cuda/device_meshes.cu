@@ -194,11 +194,11 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePo
   const std::vector<CellsNear> near = cells_near_meshes(search, poses, largest_radius);
   if (near.empty()) return resize_groups(0, 0);
   std::vector<std::int64_t> first{0};
-  for (const CellsNear& cells : near) first.push_back(first.back() + cells.bricks());
-  cells_.resize_with_spare(near.size()), first_brick_.resize_with_spare(first.size());
+  for (const CellsNear& cells : near) first.push_back(first.back() + cells.tiles());
+  cells_.resize_with_spare(near.size()), first_tile_.resize_with_spare(first.size());
   copy_async(cells_.data(), near.data(), near.size(), device.stream);
-  copy_async(first_brick_.data(), first.data(), first.size(), device.stream);
-  const SearchedCells searched{cells_.data(), first_brick_.data(), static_cast<Index>(near.size())};
+  copy_async(first_tile_.data(), first.data(), first.size(), device.stream);
+  const SearchedCells searched{cells_.data(), first_tile_.data(), static_cast<Index>(near.size())};
   while (!find_groups(device, search, searched, first.back())) {
   }
   for_each(device, count_,
@@ -208,14 +208,14 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePo
 
 // Waits for the device. False: the capacity did not suffice, and has been enlarged.
 bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const SearchedCells& cells,
-                               std::int64_t bricks) {
+                               std::int64_t tiles) {
   cursors_.zero(device.stream);
   const std::size_t capacity[kCursors] = {
       particles_.capacity(), std::min(near_.capacity(), groups_.capacity()), triangles_.capacity()};
   const FindParticlesItem particles{search,          views_.data(),     cells,
                                     cursors_.data(), particles_.data(), capacity[kParticles]};
-  const auto blocks = static_cast<unsigned>((bricks + kSearchWarps - 1) / kSearchWarps);
-  find_particles_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(bricks, particles);
+  const auto blocks = static_cast<unsigned>((tiles + kSearchWarps - 1) / kSearchWarps);
+  find_particles_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(tiles, particles);
   const FindTrianglesItem triangles{search,
                                     views_.data(),
                                     cells.cells,

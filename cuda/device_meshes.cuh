@@ -43,17 +43,17 @@ struct CellsNear {
   CellRange range;
 
   // Bricks of 4 x 4 x 2 cells, one for each lane of a warp, that contain all of them.
-  std::int64_t bricks() const {
+  std::int64_t tiles() const {
     return std::int64_t{along(range.lower.x, range.upper.x, 2)} * along(range.lower.y, range.upper.y, 2) *
            along(range.lower.z, range.upper.z, 1);
   }
-  // A cell of a brick; x is -1 if it is none of these cells.
-  __device__ CellIndex cell(Index brick, Index lane) const {
+  // A cell of a tile; x is -1 if it is none of these cells.
+  __device__ CellIndex cell(Index tile, Index lane) const {
     const CellIndex &low = range.lower, &up = range.upper;
     const Index nx = along(low.x, up.x, 2), ny = along(low.y, up.y, 2);
-    const CellIndex c{(((low.x >> 2) + brick % nx) << 2) + (lane & 3),
-                      (((low.y >> 2) + brick / nx % ny) << 2) + (lane >> 2 & 3),
-                      (((low.z >> 1) + brick / (nx * ny)) << 1) + (lane >> 4)};
+    const CellIndex c{(((low.x >> 2) + tile % nx) << 2) + (lane & 3),
+                      (((low.y >> 2) + tile / nx % ny) << 2) + (lane >> 2 & 3),
+                      (((low.z >> 1) + tile / (nx * ny)) << 1) + (lane >> 4)};
     const bool inside =
         c.x >= low.x && c.x <= up.x && c.y >= low.y && c.y <= up.y && c.z >= low.z && c.z <= up.z;
     return inside ? c : CellIndex{-1, -1, -1};
@@ -114,7 +114,7 @@ class DeviceMeshes {
 
   std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePoses& poses,
                                            Real largest_radius) const;
-  bool find_groups(Device device, const MeshSearch& search, const SearchedCells& cells, std::int64_t bricks);
+  bool find_groups(Device device, const MeshSearch& search, const SearchedCells& cells, std::int64_t tiles);
   void resize_groups(std::size_t groups, std::size_t triangles);
 
   std::vector<Arrays> meshes_;
@@ -125,7 +125,7 @@ class DeviceMeshes {
   std::vector<Index> instances_;  // indices of the meshes among the placed surfaces
   Index count_ = 0;               // number of groups
   DeviceArray<CellsNear> cells_;
-  DeviceArray<std::int64_t> first_brick_;
+  DeviceArray<std::int64_t> first_tile_;
   DeviceArray<NearMesh> particles_, near_;  // near boxes of meshes; per group
   DeviceArray<MeshGroup> groups_;
   DeviceArray<CachedContact> cached_contacts_;

@@ -1,5 +1,5 @@
 // The search for the triangles near particles when a list is built, by warps: first particles near a box of
-// the mesh's tree, brick of cells by brick, then the triangles near each of these.
+// the mesh's tree, tile of cells by tile, then the triangles near each of these.
 #pragma once
 
 #include "dem/surfaces/mesh_rows.hpp"
@@ -98,12 +98,12 @@ struct SearchedCells {
   const std::int64_t* first;
   Index count;  // number of cells[]
 
-  // The k of the cells[k] with a numbered brick.
-  __device__ Index owner(std::int64_t brick) const {
+  // The k of the cells[k] with a numbered tile.
+  __device__ Index owner(std::int64_t tile) const {
     Index low = 0, high = count;
     while (high - low > 1) {
       const Index middle = low + (high - low) / 2;
-      (first[middle] <= brick ? low : high) = middle;
+      (first[middle] <= tile ? low : high) = middle;
     }
     return low;
   }
@@ -131,7 +131,7 @@ struct MeshInCells {
 };
 
 // Finds the particles that are near a box of the lowest level of a mesh's tree, in any order; those beyond
-// the capacity are only counted. A warp takes a brick of cells, which mostly is far from the mesh as a whole,
+// the capacity are only counted. A warp takes a tile of cells, which mostly is far from the mesh as a whole,
 // and then each lane takes a particle.
 struct FindParticlesItem {
   MeshSearch in;
@@ -143,19 +143,19 @@ struct FindParticlesItem {
 
   struct Space {
     NodeSpace nodes;
-    Index begin[32], before[32];  // per cell of the brick
+    Index begin[32], before[32];  // per cell of the tile
   };
 
-  __device__ void operator()(std::int64_t brick, Space& space) const {
-    const Index lane = lane_of_warp(), owner = searched.owner(brick);
+  __device__ void operator()(std::int64_t tile, Space& space) const {
+    const Index lane = lane_of_warp(), owner = searched.owner(tile);
     const MeshInCells mesh(in, meshes, searched.cells[owner]);
-    const CellIndex cell = mesh.cells.cell(static_cast<Index>(brick - searched.first[owner]), lane);
+    const CellIndex cell = mesh.cells.cell(static_cast<Index>(tile - searched.first[owner]), lane);
     Index begin = 0, count = 0;
     if (cell.x >= 0) {
       const Index key = in.grid.key(cell.x, cell.y, cell.z);
       begin = in.starts[key], count = in.starts[key + 1] - begin;
     }
-    Index end = count;  // of the cell, among the particles of the brick
+    Index end = count;  // of the cell, among the particles of the tile
     for (int step = 1; step < 32; step *= 2) {
       const Index lower = __shfl_up_sync(~0u, end, step);
       if (lane >= step) end += lower;
@@ -168,7 +168,7 @@ struct FindParticlesItem {
   }
 
  private:
-  // Whether a brick with particles begin ... begin + count - 1 in each lane's cell, `all` together, may have
+  // Whether a tile with particles begin ... begin + count - 1 in each lane's cell, `all` together, may have
   // some near the mesh: a sphere around all of them.
   __device__ bool is_near(const MeshInCells& mesh, Index begin, Index count, Index all,
                           NodeSpace& nodes) const {
@@ -193,7 +193,7 @@ struct FindParticlesItem {
     });
     return near;
   }
-  // The lane's particle, by its number in the brick.
+  // The lane's particle, by its number in the tile.
   __device__ void add_particle(const MeshInCells& mesh, Index owner, Index number, Index all,
                                const Space& space) const {
     bool near = false;
@@ -288,10 +288,10 @@ struct FindTrianglesItem {
 };
 
 __global__ void __launch_bounds__(kSearchThreads)
-    find_particles_kernel(std::int64_t bricks, const __grid_constant__ FindParticlesItem item) {
+    find_particles_kernel(std::int64_t tiles, const __grid_constant__ FindParticlesItem item) {
   __shared__ FindParticlesItem::Space space[kSearchWarps];
-  const std::int64_t brick = std::int64_t{blockIdx.x} * kSearchWarps + warp_of_block();
-  if (brick < bricks) item(brick, space[warp_of_block()]);
+  const std::int64_t tile = std::int64_t{blockIdx.x} * kSearchWarps + warp_of_block();
+  if (tile < tiles) item(tile, space[warp_of_block()]);
 }
 
 __global__ void __launch_bounds__(kSearchThreads)

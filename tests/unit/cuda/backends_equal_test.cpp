@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dem/backend/device.hpp"
+#include "dem/surfaces/surfaces.hpp"
 #include "support/catch.hpp"
 #include "support/contact_line_bits.hpp"
 #include "support/near.hpp"
@@ -24,6 +25,7 @@ struct Pair {
         motion(motion_of(model.bodies)),
         cpu(make_cpu_backend(model)),
         cuda(make_cuda_backend(model)) {
+    motion.resize(SurfaceSet(model).parents());  // walls are where they start
     for (Backend* backend : {cpu.get(), cuda.get()}) {
       backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
       backend->list().set_body_motion(motion);
@@ -112,6 +114,20 @@ TEST_CASE("forces, lists and sums at the start are the same on both backends") {
     }
     check_wrenches(wrench, allowed(c));
     check_contacts(pair, allowed(c));
+  }
+}
+
+// More triangles in a row than a warp keeps, and more boxes of a level than it descends through at once.
+TEST_CASE("contacts of particles near many triangles are the same on both backends") {
+  for (const int squares : {40, 150, 400}) {
+    CAPTURE(squares);
+    Model model = dense_box(kBoxes[6], ParticleIntegrator::velocity_verlet, kParticles);
+    const Pair bare(model);
+    add_floor(model, squares);
+    const Pair pair(model);
+    CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <=
+          allowed(kBoxes[6]));
+    CHECK(difference(pair.cpu->particles().records(), bare.cpu->particles().records()) > 0);
   }
 }
 
