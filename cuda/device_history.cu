@@ -30,6 +30,9 @@ struct CountUpItem {
 
 // Reserve of an array that had to grow: 1 / kPackedReserve of what is needed.
 constexpr std::size_t kPackedReserve = 32, kEntriesReserve = 32;
+// Share of the list's slots, at first those of a settled bed, for whose entries there are records at least: a
+// bed that settles enlarges them seldom. In a settled bed a larger share of the slots has entries.
+constexpr double kFilledSlots = 0.75;
 
 // All rows in one contiguous part.
 template <class Rows>
@@ -205,8 +208,10 @@ void DeviceHistory::unpack_history(const Listed& at) {
   if (!exists()) return;
   clear_records();
   const auto records = static_cast<std::size_t>(records_of(width()));
-  if (const auto needed = static_cast<std::size_t>(at.list.entries()) * records; needed > neighbors_.size())
-    neighbors_.resize(needed + needed / kEntriesReserve);
+  if (const auto needed = static_cast<std::size_t>(at.list.entries()) * records; needed > neighbors_.size()) {
+    const auto settled = static_cast<std::size_t>(kFilledSlots * static_cast<double>(at.list.slots()));
+    neighbors_.resize(std::max(needed + needed / kEntriesReserve, settled * records));
+  }
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   for (DeviceArray<Index>* of_meshes : {&features_, &next_features_})
