@@ -42,7 +42,7 @@ struct CellsNear {
   std::int8_t image;
   CellRange range;
 
-  // Bricks of 4 x 4 x 2 cells, one for each lane of a warp, that contain all of them.
+  // Tiles of 4 x 4 x 2 cells, one for each lane of a warp, that contain all of them.
   std::int64_t tiles() const {
     return std::int64_t{along(range.lower.x, range.upper.x, 2)} * along(range.lower.y, range.upper.y, 2) *
            along(range.lower.z, range.upper.z, 1);

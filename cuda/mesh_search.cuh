@@ -91,7 +91,7 @@ __device__ inline Real squared_range(const MeshView& mesh, Real range) {
   return (range + mesh.round_off) * (range + mesh.round_off);
 }
 
-// Bricks of cells near meshes, numbered one after the other: those of cells[k] are first[k] ... first[k + 1]
+// Tiles of cells near meshes, numbered one after the other: those of cells[k] are first[k] ... first[k + 1]
 // - 1.
 struct SearchedCells {
   const CellsNear* cells;
