@@ -1,5 +1,4 @@
-// Two spheres over an explicit step in single precision, and the arithmetic that contacts of such a step
-// share.
+// Two spheres over an explicit step in single precision, and the parameters of a spring of their contact.
 #pragma once
 
 #include "base/hd.hpp"
