@@ -16,25 +16,35 @@ namespace scree {
 template <class Packed>
 class PendingResults {
  public:
+  PendingResults() = default;
+  PendingResults(const PendingResults&) = delete;
+  PendingResults& operator=(const PendingResults&) = delete;
+
   // Resets all slots to no load.
   void resize(std::size_t slots) { indices_.resize(slots + kAhead); }
   // Prefetches the place of the load at the slot.
   void prepare(std::ptrdiff_t slot) const { __builtin_prefetch(indices_.data() + slot, 1); }
   // Ensures that `more` entries are free.
   void reserve(Index more) {
-    while (free_count_ < more) {
+    auto count = static_cast<Index>(end_free_ - free_.data());
+    for (; count < more; ++count) {
       free_.push_back(0);
-      free_[free_count_++] = static_cast<Index>(results_.size());
+      free_[count] = static_cast<Index>(results_.size());
       results_.push_back(nothing());
     }
+    end_free_ = free_.data() + count;
   }
-  Packed& put(Index slot) { return results_[indices_[slot] = free_[--free_count_]]; }
-  // Adds the load at the slot to the sum and frees its entry.
-  void take(Index slot, Packed& sum) {
-    __builtin_prefetch(&results_[indices_[slot + kAhead]]);
-    const Index index = std::exchange(indices_[slot], kNothing);
-    sum += results_[index];
-    free_[free_count_] = index, free_count_ += index != kNothing;
+  Packed& put(Index slot) { return results_[indices_[slot] = *--end_free_]; }
+  // Adds the loads at these slots to the sum, in this order, and frees their entries.
+  void take(Index slot, Index end_slot, Packed& sum) {
+    Index* end_free = end_free_;  // in a register: a count in memory would take longer than the sum
+    for (; slot < end_slot; ++slot) {
+      __builtin_prefetch(&results_[indices_[slot + kAhead]]);
+      const Index index = std::exchange(indices_[slot], kNothing);
+      sum += results_[index];
+      *end_free = index, end_free += index != kNothing;
+    }
+    end_free_ = end_free;
   }
 
  private:
@@ -43,8 +53,8 @@ class PendingResults {
   static constexpr Index kAhead = 12;  // slots, about one or two rows: loads prefetched before they are taken
   std::vector<Index> indices_;         // index of the load per slot
   std::vector<Packed> results_{nothing()};
-  std::vector<Index> free_{0};  // the first free_count_ indices are free
-  Index free_count_ = 0;
+  std::vector<Index> free_{0};  // those before end_free_ are free; one more is written
+  Index* end_free_ = free_.data();
 };
 
 // The contacts of one step, evaluated some rows ahead of the row that is summed.
@@ -62,7 +72,7 @@ class PairSweep {
   void add_row(Index i, Index slot, Index end_slot, const Contact& contact, Sum& sum) {
     while (i >= evaluated_rows_) evaluate_ahead(contact);
     Packed packed = Packed::of(sum);
-    for (; slot < end_slot; ++slot) results_.take(slot, packed);
+    results_.take(slot, end_slot, packed);
     sum = packed.total();
   }
 
