@@ -76,15 +76,23 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
   const Index cx = cell % grid.cells[0], cy = cell / grid.cells[0] % grid.cells[1],
               cz = cell / (grid.cells[0] * grid.cells[1]);
   const Index x0 = std::max(cx - 1, 0), x1 = std::min(cx + 1, grid.cells[0] - 1);
+  const Real margin = search_margin(list.skin);
+  std::size_t count = list.neighbors.size();
   for (Index z = std::max(cz - 1, 0); z <= std::min(cz + 1, grid.cells[2] - 1); ++z)
-    for (Index y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.cells[1] - 1); ++y)
-      for (Index k = near_.start[grid.index(x0, y, z)]; k < near_.start[grid.index(x1, y, z) + 1]; ++k) {
+    for (Index y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.cells[1] - 1); ++y) {
+      const Index first = near_.start[grid.index(x0, y, z)], last = near_.start[grid.index(x1, y, z) + 1];
+      list.neighbors.resize(count + static_cast<std::size_t>(last - first));
+      Index* const entries = list.neighbors.data();
+      for (Index k = first; k < last; ++k) {
         const Index j = near_.items[k];
-        const Vec4 q = store.position[j];
-        const Vec3 d = xyz(p) - xyz(q);
-        const Real distance = p.w + q.w + search_margin(list.skin);
-        if (dot(d, d) < distance * distance && j != i) list.neighbors.push_back(j);
+        const Vec4& q = store.position[j];  // a copy would go through memory
+        const Vec3 d{p.x - q.x, p.y - q.y, p.z - q.z};
+        const Real distance = p.w + q.w + margin;
+        entries[count] = j;  // kept or overwritten: a branch would be mispredicted often
+        count += static_cast<std::size_t>((dot(d, d) < distance * distance) & (j != i));
       }
+    }
+  list.neighbors.resize(count);
 }
 
 void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
