@@ -17,6 +17,8 @@ done
 jobs/build.sh release
 
 status=0
+# mpirun binds one or two ranks to the first processors, those of several tests at a time to the same ones.
+export OMPI_MCA_hwloc_base_binding_policy=none
 # Many tests wait: for SLURM, signals, processes that start, disks. Half as many again as there are processors keep these busy.
 processors=$(nproc)
 ctest --test-dir build/release --output-on-failure --no-tests=error --parallel $((processors + processors / 2)) \
