@@ -70,7 +70,8 @@ class TraceTest(CommandLineTest):
     def test_ranks(self):
         words = [*DIGGER, "--trace-steps", "10", "--trace", self.folder / "trace.json", "--output", self.folder / "out"]
         subprocess.run(["mpirun", "--oversubscribe", "-n", "2", SCREE, "run", *map(str, words)], check=True,
-                       env=ENVIRONMENT | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
+                       env=ENVIRONMENT | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                                          "OMPI_MCA_mpi_yield_when_idle": "1"},
                        timeout=LIMIT, stdout=subprocess.DEVNULL)
         ranks = self.events(self.folder / "trace.json")
         self.assertEqual(sorted(ranks), [0, 1])

@@ -19,7 +19,7 @@ PAGE = (ROOT / "input/tutorial/README.md").read_text()
 SCREE = pathlib.Path(os.environ["SCREE"]).resolve()
 LIMIT = 300  # [s] for any one command
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1")
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1")
 DONE, STOPPED = 0, 5
 
 NUMBER = r"-?\d+(?:\.\d+)?"

@@ -27,7 +27,7 @@ SETTINGS = ("integrator.particles=velocity-verlet", "integrator.substeps=3", "ti
             "output.snapshot_interval=0.003", "output.history_interval=0.0006", "output.checkpoint_interval=0.012",
             "output.history_csv=true", "output.contacts=true")
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1")
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1")
 DONE, IO_FAILED = 0, 4
 LIMIT = 300  # [s] for a run: past it, it hangs
 SERIES = ("particles.vtkhdf", "bodies.vtkhdf", "contacts.vtkhdf", "history.h5")
