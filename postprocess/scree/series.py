@@ -15,7 +15,6 @@ from scree.errors import ScreeError
 from scree.fields import POSITION
 from scree.quantity import Quantity
 
-
 COUNTS = "Thinned/counts"  # number of points of each snapshot before scree-post thin left some out
 
 
