@@ -118,8 +118,8 @@ class ContactKernelsOf : public DeviceContactKernels {
     if constexpr (LawOf<Laws>::kNeedsMotion) {
       constexpr std::size_t kShared =
           kFrictionBlocks<Laws> * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>);
+      prefer_cache(friction_advance_kernel<Laws>, kShared);
       prefer_cache(friction_finish_kernel<Laws>, kShared);
-      allow_shared(friction_advance_kernel<Laws>, sizeof(FrictionMemory<Laws>), kFrictionBlocks<Laws>);
     } else {
       prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
     }
@@ -230,7 +230,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     if constexpr (LawOf<Laws>::kNeedsMotion) {
-      launch(device, r, friction_advance_kernel<Laws>, sizeof(FrictionMemory<Laws>));
+      launch(device, r, friction_advance_kernel<Laws>);
     } else {
       const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
       launch(device, r,
@@ -271,16 +271,15 @@ class ContactKernelsOf : public DeviceContactKernels {
     launch(device, r,
            eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Laws> : mixed_advance_kernel<0, Laws>);
   }
-  // shared: bytes of dynamic shared memory.
   template <class Request>
-  void launch(Device device, const Request& r, void (*kernel)(Request, Laws), std::size_t shared = 0) const {
+  void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {
     // Programmatic dependent launch: blocks of a step start while those of the previous step finish.
     cudaLaunchAttribute overlap{};
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = r.rows.launched, config.blockDim = kStepBlock;
-    config.dynamicSmemBytes = shared, config.stream = device.stream, config.attrs = &overlap,
+    config.stream = device.stream, config.attrs = &overlap,
     config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
   }

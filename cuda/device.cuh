@@ -102,25 +102,16 @@ class TimedEvent {
 // Leaves the on-chip memory of a multiprocessor to the L1 cache, except for `shared` bytes and what the
 // driver reserves. By default the driver assigns more to shared memory than the blocks need.
 template <class Kernel>
-void prefer_cache(Kernel* kernel, std::size_t shared, std::size_t blocks = 16) {
-  const std::size_t driver = blocks * 1024;  // reserved by the driver
+void prefer_cache(Kernel* kernel, std::size_t shared) {
+  constexpr std::size_t kDriver = 16 * 1024;  // reserved by the driver: 1 KB per block
   int device = 0, most = 0;
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
   require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device),
                "cudaDeviceGetAttribute");
   const auto percent =
-      static_cast<int>(std::min<std::size_t>(100, 100 * (shared + driver) / static_cast<std::size_t>(most)));
+      static_cast<int>(std::min<std::size_t>(100, 100 * (shared + kDriver) / static_cast<std::size_t>(most)));
   require_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, percent),
                "cudaFuncSetAttribute");
-}
-
-// For a kernel with this dynamic shared memory per block and so many blocks per multiprocessor.
-template <class Kernel>
-void allow_shared(Kernel* kernel, std::size_t shared, std::size_t blocks) {
-  require_cuda(
-      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
-      "cudaFuncSetAttribute");
-  prefer_cache(kernel, blocks * shared, blocks);
 }
 
 // The architecture for which the code of a kernel on this GPU was compiled: 90 for compute capability 9.0.

@@ -1,7 +1,6 @@
 // Explicit steps of one law as kernels.
 #pragma once
 
-#include "block_rows.cuh"
 #include "contact_kernels.cuh"
 #include "for_each.cuh"
 #include "staging.cuh"
@@ -141,63 +140,31 @@ using WarpRowsOf = WarpRows<Word, kWordsOf<Laws>>;
 template <class Laws>
 inline constexpr int kFrictionBlocks = LawOf<Laws>::Rolling::acts ? 3 : 4;
 
-// Whether a contact of two rows of a block is evaluated once for both: where the law takes longer than the
-// exchange of the result, and contacts are closed where the particles touch.
-template <class Laws>
-inline constexpr bool kEvaluatesPairs = LawOf<Laws>::Rolling::acts && !kHasRange<LawOf<Laws>>;
-
-// Rows of `friction_advance_kernel` in the block's shared memory.
-template <class Laws, bool kPairs = kEvaluatesPairs<Laws>>
-struct FrictionMemory {
-  using Rows = WarpRowsOf<double, Laws>;
-  static constexpr bool kWholeBlock = false;  // whether all threads of the block take part in a sum
-  union {
-    typename Rows::Contacts contacts[kStepBlock / kSlice];  // one per warp
-    alignas(16) unsigned char stage[kStepBlock / kSlice][sizeof(typename Rows::Contacts)];
-  };
-  __device__ Rows rows(const PrunedRows<0>& of, bool idle) {
-    return {of, contacts + threadIdx.x / kSlice, idle};
-  }
-};
-template <class Laws>
-struct FrictionMemory<Laws, true> {
-  using Rows = BlockRows<kLossKindsOf<LawOf<Laws>>, kStepBlock>;
-  static constexpr bool kWholeBlock = true;
-  union {
-    typename Rows::Contacts contacts;
-    alignas(16) unsigned char stage[kStepBlock / kSlice][kSlice * sizeof(Vec4)];
-  };
-  __device__ Rows rows(const PrunedRows<0>& of, bool idle) { return {of, &contacts, idle}; }
-};
-
-// The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts, or the threads of a block.
-// Shared memory: a FrictionMemory.
+// The same for laws with `kNeedsMotion`: the lanes of a warp share its contacts.
 template <class Laws>
 __global__ void __launch_bounds__(kStepBlock, kFrictionBlocks<Laws>)
     friction_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
-  using Memory = FrictionMemory<Laws>;
   await_step_before();
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
-  extern __shared__ __align__(16) unsigned char block_memory[];
-  Memory& memory = *reinterpret_cast<Memory*>(block_memory);
+  __shared__ union {
+    WarpContactsOf<double, Laws> contacts;
+    alignas(16) unsigned char stage[kSlice * sizeof(Vec4)];
+  } shared[kStepBlock / kSlice];  // one per warp
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
   const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const bool idle = i >= r.rows.end;
-  const PrunedRows<0>& rows = r.in.rows;
-  const auto views =
-      at_open_step<Laws>(with_rows(r.in, memory.rows({rows.rows, rows.counts, rows.neighbors, r.control->rows,
-                                                      r.control->margin, rows.entry_indices},
-                                                     idle)),
-                         r);
-  VerletAdvanceItem<Laws, typename Memory::Rows> item{
+  auto& warp_shared = shared[threadIdx.x / kSlice];
+  const auto views = at_open_step<Laws>(
+      warp_views(r.in, r.control->rows, r.control->margin, &warp_shared.contacts, idle), r);
+  VerletAdvanceItem<Laws, WarpRowsOf<double, Laws>> item{
       {explicit_walk(views, laws, r.state.h), r.gravity, nullptr, nullptr, nullptr}, r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
   item.forces.walk.in.spin = v == 0 ? r.spin[0] : r.spin[1];
   typename decltype(item)::Total force;
-  if (Memory::kWholeBlock || first < r.rows.end) {
+  if (first < r.rows.end) {
     auto self = item.forces.walk.self(idle ? r.rows.end - 1 : i);
     self.i = i;
     force = item.forces.weight(self);
@@ -215,8 +182,7 @@ __global__ void __launch_bounds__(kStepBlock, kFrictionBlocks<Laws>)
     if (is_outside(r, i, item.forces.walk.in.position[i], position, d_squared)) r.control->outside = 1;
   }
   __syncwarp();
-  const VerletStage stage(memory.stage[threadIdx.x / kSlice], first,
-                          min(static_cast<Index>(warpSize), r.rows.end - first));
+  const VerletStage stage(warp_shared.stage, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
   stage.put(spin, v == 0 ? r.spin[1] : r.spin[0]);

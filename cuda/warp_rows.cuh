@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "row_search.cuh"
+#include "device_list.cuh"
 
 namespace scree {
 
@@ -46,19 +46,55 @@ struct WarpRows {
     static_assert(sizeof(Sum) == kWords * sizeof(double));
     const Index lane = lane_of_warp();
     reinterpret_cast<Sum&>(shared->sum[lane]) = sum;
+    const std::int64_t start = rows.rows.slice_start[i / kSlice] + lane;
     const Index number = idle ? 0 : rows.rows.first_entry[i];
-    RowSearch<Test> search(rows, i, idle);
-    Index earlier = 0;
+    constexpr bool kPrunes = requires { test.near(Index{}, Real{}); };
+    const RowUse use = kPrunes ? rows.use : RowUse::all;
+    const bool whole = use != RowUse::pruned;
+    const Index* const row = (whole ? rows.rows.neighbors : rows.neighbors) + start;
+    const Index count = idle ? 0 : (whole ? rows.rows.counts : rows.counts)[i];
+    Index next = 0, pruned_count = 0, earlier = 0;
     do {
-      const Index found = search.find(test, Contacts::kCapacity, [&](Index k, Index j, RowIndex entry_index) {
-        shared->neighbor[lane][k] = j;
-        evaluate.prepare(std::int64_t{number} + entry_index);
-        shared->entry_index[lane][k] = entry_index;
-      });
+      Index found = 0;
+      // A few entries at once while the next are loaded: independent loads hide latency.
+      constexpr Index kAtOnce = 4;
+      struct Entries {
+        Index j[kAtOnce];
+        RowIndex entry_index[kAtOnce];
+      };
+      const auto entries = [&](Index first) {
+        Entries at;
+        for (Index k = 0; k < kAtOnce; ++k) {
+          const bool is_entry = first + k < count;
+          at.j[k] = is_entry ? row[(first + k) * kSlice] : i;
+          at.entry_index[k] = whole || !is_entry ? static_cast<RowIndex>(first + k)
+                                                 : rows.entry_indices[start + (first + k) * kSlice];
+        }
+        return at;
+      };
+      Entries at = entries(next);
+      for (; next < count && found + kAtOnce <= Contacts::kCapacity; next += kAtOnce) {
+        const Entries ahead = entries(next + kAtOnce);
+        bool touches[kAtOnce];
+        for (Index k = 0; k < kAtOnce; ++k) touches[k] = test(at.j[k]) & (next + k < count);
+        if constexpr (kPrunes)
+          if (use == RowUse::prune)
+            for (Index k = 0; k < kAtOnce && next + k < count; ++k)
+              if (test.near(at.j[k], rows.margin))
+                store_pruned(start + pruned_count++ * kSlice, at.j[k], next + k);
+        for (Index k = 0; k < kAtOnce; ++k) {
+          if (!touches[k]) continue;
+          shared->neighbor[lane][found] = at.j[k];
+          evaluate.prepare(std::int64_t{number} + at.entry_index[k]);
+          shared->entry_index[lane][found] = at.entry_index[k];
+          ++found;
+        }
+        at = ahead;
+      }
       share({found, earlier}, i - lane, number, evaluate);
       earlier += found;
-    } while (__any_sync(~0u, !search.done()));
-    search.store_count(idle);
+    } while (__any_sync(~0u, next < count));
+    if (use == RowUse::prune && !idle) rows.counts[i] = pruned_count;
     sum = reinterpret_cast<const Sum&>(shared->sum[lane]);
     return earlier;
   }
@@ -70,6 +106,9 @@ struct WarpRows {
   __device__ static void put(Word (&words)[Contacts::kStride], const Result& result) {
     static_assert(sizeof(Result) == kWords * sizeof(Word));
     reinterpret_cast<Result&>(words) = result;
+  }
+  __device__ void store_pruned(std::int64_t slot, Index j, Index row_index) const {
+    rows.entry_indices[slot] = static_cast<RowIndex>(row_index), rows.neighbors[slot] = j;
   }
 
   // Contacts that a lane has found in this round, and in earlier ones.
