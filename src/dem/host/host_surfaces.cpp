@@ -8,6 +8,27 @@
 #include "mesh/surface_mesh.hpp"
 
 namespace scree {
+namespace {
+
+// Calls visit(sum) for the merged sums of all ranks, in the order of their surfaces; on rank 0. In every step
+// there may be many parts, of hundreds of bytes each: they stay where they are.
+template <class Sums, class Visit>
+void for_each_merged(const Ranks& ranks, const std::vector<Sums>& own, const Visit& visit) {
+  const std::vector<Sums> gathered = ranks.alone() ? std::vector<Sums>{} : ranks.gather(own);
+  std::vector<const Sums*> parts;
+  parts.reserve(ranks.alone() ? own.size() : gathered.size());
+  for (const Sums& part : ranks.alone() ? own : gathered) parts.push_back(&part);
+  const auto before = [](const Sums* a, const Sums* b) { return a->key() < b->key(); };
+  if (!std::is_sorted(parts.begin(), parts.end(), before))
+    std::stable_sort(parts.begin(), parts.end(), before);
+  for (auto part = parts.begin(); part != parts.end();) {
+    Sums sum = **part;
+    for (++part; part != parts.end() && (*part)->key() == sum.key(); ++part) sum.add(**part);
+    visit(sum);
+  }
+}
+
+}  // namespace
 
 HostSurfaces::HostSurfaces(const Model& model, const Subdomain& subdomain, const Ranks& ranks)
     : model_(model),
@@ -107,10 +128,10 @@ void HostSurfaces::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) c
   // Index of a body's blocks plus one; 0: none yet. A body may occur again, because meshes come after the
   // shapes of all bodies.
   std::vector<std::size_t> block_of(model_.bodies.size());
-  for (const StepSums& sums : merged(steps_)) {
+  for_each_merged(ranks_, steps_, [&](const StepSums& sums) {
     const int body = surfaces_.at(sums.surface).parent;
     end[body] += sums.wrench(), step.wrench[body] += sums.wrench(kWrenchTerms);
-    if (!surfaces_.is_on_body(sums.surface)) continue;
+    if (!surfaces_.is_on_body(sums.surface)) return;
     std::size_t& own = block_of[static_cast<std::size_t>(body)];
     if (own == 0) step.stiffness.push_back({body, {}, {}}), own = step.stiffness.size();
     WrenchStiffness& blocks = step.stiffness[own - 1];
@@ -118,7 +139,7 @@ void HostSurfaces::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) c
       blocks.stiffness[k] += sums.sum[2 * kWrenchTerms + k].value();
       blocks.damping[k] += sums.sum[2 * kWrenchTerms + kBlockTerms + k].value();
     }
-  }
+  });
 }
 
 void HostSurfaces::reduce(std::vector<BodyWrench>& end) const {
@@ -132,8 +153,9 @@ void HostSurfaces::reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t
   const auto parent = [this](const InstantSums& sums) {
     return static_cast<std::size_t>(surfaces_.at(sums.surface).parent);
   };
-  for (const InstantSums& sums : merged(loads_))
+  for_each_merged(ranks_, loads_, [&](const InstantSums& sums) {
     end[parent(sums)] += sums.wrench(), contacts[parent(sums)] += sums.contacts;
+  });
   for (std::size_t own = particle_loads_; own < loads_.size() && ranks_.is_root(); ++own)
     contacts[parent(loads_[own])] -= loads_[own].contacts;
 }
