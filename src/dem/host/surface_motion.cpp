@@ -15,6 +15,17 @@ Vec3 corner_of(const AnyBox& box, int k) {
   return {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z};
 }
 
+// Not below displacement_of() of a mesh: a corner c moves by d + (A - A0) c.
+Real displacement_bound(const SurfaceFrame& frame, const MeshBox& box, Vec3 moved, const Mat3& from) {
+  constexpr Real kRoundOff = 1e-14;  // of both
+  const Vec3 x = frame.axes.x - from.x, y = frame.axes.y - from.y, z = frame.axes.z - from.z;
+  const Vec3 far{std::max(std::abs(box.min.x), std::abs(box.max.x)),
+                 std::max(std::abs(box.min.y), std::abs(box.max.y)),
+                 std::max(std::abs(box.min.z), std::abs(box.max.z))};
+  const Real turn = std::sqrt(dot(x, x) + dot(y, y) + dot(z, z));
+  return (1 + kRoundOff) * norm(moved) + norm(far) * (turn + kRoundOff);
+}
+
 }  // namespace
 
 void HostSurfaces::plan_list(Real skin, Real moved) {
@@ -173,21 +184,36 @@ Real HostSurfaces::weight_in_list(std::size_t s) const {
   return extra_travel_[s] == 0 ? 1 : skin_ / (skin_ + 2 * extra_travel_[s]);
 }
 
+// The mesh with the largest bound comes first: with its displacement most others need no more than theirs.
 Real HostSurfaces::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from,
                                         Weight weight) const {
-  Real squared = 0;  // of spheres, squared
-  Real largest = 0;  // of other surfaces
+  const auto weight_of = [&](std::size_t s) { return weight == Weight::of_list ? weight_in_list(s) : 1; };
+  const auto from_of = [&](std::size_t s) { return from[static_cast<std::size_t>(placed_[s].frame)]; };
+  const auto bound_of = [&](std::size_t s) {
+    if (placed_[s].kind == SurfaceKind::plane) return kInfinity;
+    const SurfaceFrame& frame = frames_[static_cast<std::size_t>(placed_[s].frame)];
+    const MeshBox& box = boxes_[static_cast<std::size_t>(frame.mesh)];
+    return weight_of(s) * displacement_bound(frame, box, moved[s], from_of(s));
+  };
+  Real squared = 0, most = -1;  // of spheres, squared; the largest bound of other surfaces
+  std::size_t first = 0;
   for (std::size_t s = 0; s < placed_.size(); ++s) {
-    const bool is_sphere = placed_[s].kind == SurfaceKind::sphere;
-    const Real size = is_sphere ? dot(moved[s], moved[s])
-                                : (weight == Weight::of_list ? weight_in_list(s) : 1) *
-                                      displacement_of(placed_[s], moved[s],
-                                                      from[static_cast<std::size_t>(placed_[s].frame)]);
-    if (std::isnan(size)) return size;
-    Real& most = is_sphere ? squared : largest;
-    most = std::max(most, size);
+    if (placed_[s].kind == SurfaceKind::sphere) {
+      const Real size = dot(moved[s], moved[s]);
+      if (std::isnan(size)) return size;
+      squared = std::max(squared, size);
+    } else if (const Real bound = bound_of(s); !(bound <= most)) {
+      most = bound, first = s;
+    }
   }
-  return std::max(std::sqrt(squared), largest);
+  if (frames_.empty()) return std::sqrt(squared);
+  Real largest = weight_of(first) * displacement_of(placed_[first], moved[first], from_of(first));
+  for (std::size_t s = 0; s < placed_.size() && !std::isnan(largest); ++s) {
+    if (s == first || placed_[s].kind == SurfaceKind::sphere || bound_of(s) <= largest) continue;
+    const Real size = weight_of(s) * displacement_of(placed_[s], moved[s], from_of(s));
+    if (!(size <= largest)) largest = size;
+  }
+  return std::isnan(largest) ? largest : std::max(std::sqrt(squared), largest);
 }
 
 Real HostSurfaces::displacement_since(const std::vector<SurfacePose>& then, const std::vector<Mat3>& axes,
