@@ -36,6 +36,16 @@ class FilmTest(CommandTest):
             sizes.append(path.stat().st_size)
         self.assertEqual(sizes, sorted(sizes, reverse=True))
 
+    def test_the_colour_bar_stays_where_it_is(self):
+        for folder, options in ((NET, PictureOptions()), (DRUM, PictureOptions(with_vtk=False))):
+            picture, places = make_picture(DrawnRun(scree.open(folder)), [0, 1], options), []
+            for snapshot in (0, 0, 1):
+                picture.draw(snapshot)
+                picture.figure.canvas.draw()
+                places.append(picture.bar.ax.get_window_extent().bounds)
+            self.assertEqual(len(set(places)), 1, places)
+            self.assertGreater(places[0][3], 20 * places[0][2])
+
     def test_what_is_refused(self):
         for words, text in ((("--from", "7"), "no snapshot from 7 to inf s; they go from 0 to 1 s"),
                             (("-o", "film.avi"), "must end in .mp4, .webp or .gif"), (("--frames", "0"), "not above 0"),

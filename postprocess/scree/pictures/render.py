@@ -7,7 +7,7 @@ import pathlib
 import subprocess
 import sys
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FixedLocator, MaxNLocator
+from matplotlib.transforms import Bbox
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
@@ -89,6 +90,11 @@ class DrawnRun:
 def wrapped(text: str, size: float, width: float) -> str:
     """The text in lines of at most a width [inch]. size: font size [pt]."""
     return textwrap.fill(text, max(int(72 * width / (WIDE * size)), 8))
+
+
+def always(box: Bbox) -> Callable[[Any, Any], Bbox]:
+    """A locator of axes that do not move."""
+    return lambda axes, renderer: box
 
 
 class Picture:
@@ -156,6 +162,13 @@ class Picture:
             self.figure.canvas.draw()
             self.figure.set_layout_engine("none")  # laid out once: faster, and without jumps between frames
             self._make_room()
+            self._hold_bars()
+
+    def _hold_bars(self) -> None:
+        """Colour bars stay as they are: matplotlib's own locator would shorten those with a tip at each drawing."""
+        for axes in self.figure.axes[1:]:
+            axes.set_axes_locator(always(axes.get_position().frozen()))
+            axes.set_box_aspect(None)
 
     def _make_room(self) -> None:
         """Enlarges the figure so that it contains all text."""
