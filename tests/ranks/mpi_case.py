@@ -24,8 +24,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parent.parent / "input"
 LIMIT = 300  # [s] for any one run: past it, the run hangs
 # Without OpenCL, which may take SIGUSR1 from mpirun (jobs/README.md). Ranks that wait leave their core to others: two
-# ranks beside other tests are more than twice as fast so, and take less than half of the time of processors. mpirun would
-# bind one or two ranks to the first cores, those of other tests to the same ones.
+# ranks beside other tests are more than twice as fast so, and take less than half of the time of processors. mpirun
+# would bind one or two ranks to the first cores, those of other tests to the same ones.
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                    OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
                    OMPI_MCA_hwloc_base_binding_policy="none", HWLOC_COMPONENTS="-opencl")

@@ -30,7 +30,7 @@ LINES = ["output.contacts=true"]
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
 SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
-# On one rank, on these numbers, and from the middle on with a restart: three ranks in the first half, two in the second.
+# On one rank, on these numbers, and with a restart in the middle: three ranks in the first half, two in the second.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (4, 8)),
     "the same, explicit": ([*NET, *EXPLICIT, "integrator.substeps=10", "time.end=0.85", "space.leaving=remove"],
