@@ -68,7 +68,8 @@ def write_case(folder, count, steps):
     density = 1 / (4 / 3 * np.pi * RADIUS ** 3)
     lines = ["bed", "", f"{count} atoms", "1 atom types", "", f"{-RADIUS} {x} xlo xhi", f"{-RADIUS} {y} ylo yhi",
              f"0 {HEIGHT} zlo zhi", "", "Atoms # sphere", ""]
-    lines += [f"{n} 1 {2 * RADIUS} {density:.17g} {a:.17g} {b:.17g} {c:.17g}" for n, (a, b, c) in enumerate(position, 1)]
+    lines += [f"{n} 1 {2 * RADIUS} {density:.17g} {x:.17g} {y:.17g} {z:.17g}"
+              for n, (x, y, z) in enumerate(position, 1)]
     (folder / "bed.data").write_text("\n".join(lines) + "\n")
     # Dampers in gran/hooke/history are in proportion to the effective mass: half a kg, at a wall 1 kg.
     (folder / "in.bed").write_text(INPUT.format(
@@ -109,8 +110,8 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--steps", type=int, default=500)
     options = parser.parse_args()
-    print("| spheres | bed, particle-steps/s | LAMMPS | times as fast (median of pairs) | listed per particle: bed, LAMMPS "
-          "| contacts per particle (LAMMPS) |\n|---|---|---|---|---|---|")
+    print("| spheres | bed, particle-steps/s | LAMMPS | times as fast (median of pairs) "
+          "| listed per particle: bed, LAMMPS | contacts per particle (LAMMPS) |\n|---|---|---|---|---|---|")
     for count in options.particles:
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch)
