@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Makes the pictures and films of runs in this folder from their decks.
 
-    postprocess/pictures/make.py RESULTS [--scree SCREE] [NAME ...]     (NAME: as excavator.png; default: all)
+    postprocess/pictures/make.py RESULTS [--scree SCREE] [NAME ...]     (NAME: as excavator.webp; default: all of CPUs)
     postprocess/pictures/make.py --list
 
-Runs the decks into the folder RESULTS unless the run exists already, and writes the files into this folder. All of them
+Runs the decks into the folder RESULTS unless the run exists already, and writes the files into this folder. Those of
+runs on a GPU are made if they are named; their results may have been thinned there (scree-post thin). All others
 take one core a quarter of an hour. Needs postprocess/requirements.txt and, for paraview.png, the packages of
 jobs/setup.sh --paraview. The plots in this folder are made by tests/performance/table4.py,
 tests/performance/scaling_model.py and tests/verification/bulk/plots.py.
@@ -24,27 +25,34 @@ FILM = ("--frames", "25", "--rate", "8", "--width", "1000")
 @dataclasses.dataclass(frozen=True)
 class Picture:
     """deck: under input, without .toml; settings: of the run, as for --set; command: of scree-post, or "paraview" for
-    its script; options: options of the command."""
+    its script; options: options of the command. folder: of the results, default: the deck's name."""
 
     deck: str
     command: str
     options: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
+    folder: str = ""
+    on_gpu: bool = False
 
     @property
     def results(self) -> str:
-        return self.deck.rsplit("/", 1)[-1]
+        return self.folder or self.deck.rsplit("/", 1)[-1]
 
 
+# For a million particles as in the deck's head.
+MILLION = ("particles.bed.count=1000000", "particles.bed.radius.min=0.00205", "particles.bed.radius.max=0.00273",
+           "time.step=1.3e-5", "output.snapshot_interval=0.075", "time.end=2.6")
 EXCAVATOR = ("examples/excavator", ("output.surface_fields=['pressure']",))
 PICTURES = {
     "tutorial_heap.png": Picture("tutorial/2_heap", "picture"),
     "tutorial_digging.png": Picture("tutorial/4_digging", "picture"),
     "net_400.png": Picture("paper/net_400", "picture", settings=("time.end=0.62",)),
-    "excavator.png": Picture(EXCAVATOR[0], "picture", ("--time", "3", "--fastest", "1"), EXCAVATOR[1]),
     "paraview.png": Picture(EXCAVATOR[0], "paraview", ("--time", "2.2", "--size", "1400", "1050"), EXCAVATOR[1]),
     "drum_lifters.webp": Picture("examples/drum_lifters", "animate", (*FILM, "--quality", "50")),
     "excavator.webp": Picture(EXCAVATOR[0], "animate", (*FILM, "--quality", "70", "--fastest", "1"), EXCAVATOR[1]),
+    "excavator_million.webp": Picture(
+        EXCAVATOR[0], "animate", (*FILM, "--from", "1.05", "--to", "3.55", "--quality", "40", "--fastest", "1"),
+        MILLION, "excavator_million", on_gpu=True),
     "screw_lift.webp": Picture("examples/screw_lift", "animate", (*FILM, "--fastest", "1")),
     "wheel_rig.webp": Picture("examples/wheel_rig", "animate", (*FILM, "--fastest", "0.2")),
 }
@@ -60,7 +68,8 @@ def make(name: str, results: pathlib.Path, program: pathlib.Path) -> None:
     folder = results / picture.results
     if not (folder / "run_record.json").exists():
         settings = [word for setting in picture.settings for word in ("--set", setting)]
-        call(program, "run", ROOT / f"input/{picture.deck}.toml", "--output", folder, "--overwrite", *settings)
+        call(program, "run", ROOT / f"input/{picture.deck}.toml", "--output", folder, "--overwrite", *settings,
+             *(("--backend", "cuda") if picture.on_gpu else ()))
     post = ROOT / "postprocess/scree-post"
     if picture.command != "paraview":
         call(post, picture.command, folder, *picture.options, "-o", HERE / name)
@@ -86,7 +95,7 @@ def main() -> int:
     for name in arguments.names:
         if name not in PICTURES:
             parser.error(f"{name}: allowed: {', '.join(PICTURES)}")
-    for name in arguments.names or PICTURES:
+    for name in arguments.names or [name for name, picture in PICTURES.items() if not picture.on_gpu]:
         make(name, arguments.results.resolve(), arguments.scree)
     return 0
 
