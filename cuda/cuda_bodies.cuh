@@ -45,8 +45,8 @@ class CudaBodies {
   // Once the host knows that this step of length h is closed: accumulates the losses of its contacts at
   // triangles.
   void accumulate_load_works(Real h);
-  // The same as queue_loads() concurrently, while the step's kernel may still read its own loads. Waits; before
-  // that calls `meanwhile`.
+  // The same as queue_loads() concurrently, while the step's kernel may still read its own loads. Waits;
+  // before that calls `meanwhile`.
   void find_loads_concurrently(const SurfaceQuery& query, const std::function<void()>& meanwhile);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
