@@ -112,9 +112,10 @@ SCREE_HD SingleOutcome<kLossKindsOf<Law>> single_load(const Law& law, const Sing
   const float radius = single_contact_radius(step.size, g.overlap),
               radius0 = single_contact_radius(step.size, step.overlap0);
   const auto stiffness = [&](float of) { return static_cast<float>(law.tangential.stiffness_at(of)); };
+  const float load = f.force > 0 ? f.force : 0;
   SingleSlider slider{
       stiffness(radius), stiffness(radius0), 0,
-      single_quotient<kNear>(static_cast<float>(law.tangential.friction) * f.force, step.lever_arm_ratio)};
+      single_quotient<kNear>(static_cast<float>(law.tangential.friction) * load, step.lever_arm_ratio)};
   if (law.tangential.damping_ratio > 0) {
     const float i = step.size.radius_i, j = step.size.radius_j;
     const float inverse_mass =
@@ -130,7 +131,7 @@ SCREE_HD SingleOutcome<kLossKindsOf<Law>> single_load(const Law& law, const Sing
   out.loss = f.loss + single_quotient<kNear>(spring.loss, step.h), out.losses[kFrictionLoss] = spring.loss;
   out.history = {spring.spring, {}, false};
   if constexpr (Law::Rolling::acts) {
-    const SingleNormal contact{f.force > 0 ? f.force : 0,
+    const SingleNormal contact{load,
                                radius,
                                radius0,
                                single_contact_stiffness(normal, g.overlap, radius),

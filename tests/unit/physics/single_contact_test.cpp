@@ -184,6 +184,31 @@ TEST_CASE("single precision: a stiffness of rolling that the deck gives, and one
   }
 }
 
+// With tensile damping ("limit_damping = false") the normal force of a fast rebound is negative.
+TEST_CASE("single precision: no friction acts while the normal force is tensile") {
+  NormalLawParameters normal;
+  normal.normal_stiffness = 2e5, normal.damping_ratio = 0.5, normal.tension = true;
+  using Law = ContactLaw<LinearRestitutionLaw, LinearSlider>;
+  const Law law{LinearRestitutionLaw(normal), {6e4, 0.3, 0}};
+  const Spheres spheres;
+  ContactHistory exact, single;
+  Real smallest = 0, largest = 0;
+  for (int k = 0; k < 100; ++k) {
+    const auto at = [](int step) { return Vec3{0, 0, 0.895 + 5e-5 * step}; };
+    const Motion motion{at(k), at(k + 1), {1, 0.5, 0}, {1, 0, 0}};
+    const MovingPair pair = exact_pair(spheres, motion, kStep);
+    if (!(pair.geometry.overlap > 0)) break;
+    const ContactOutcome outcome = law.load(pair, exact);
+    const auto in_single = single_load(law, pair_in_single(spheres, motion, kStep), single);
+    exact = outcome.history, single = in_single.history;
+    smallest = std::min(smallest, outcome.load.force.z), largest = std::max(largest, norm(exact.spring));
+    CHECK(norm(in_double(in_single.torque_i) - outcome.load.torque_i) < 2e-2);
+    CHECK(norm(single.spring - exact.spring) < 2e-2);
+  }
+  CHECK(smallest < 0);
+  CHECK(largest > 10);
+}
+
 // The squares of their moments cannot be represented in single precision.
 TEST_CASE("single precision: particles of 5 um slide at the limits of rolling and twisting") {
   Spheres fine;
