@@ -1,25 +1,34 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/index.hpp"
 #include "surface_load_sums.cuh"
 
 namespace scree {
+namespace {
+
+// Chunks of so many entries.
+Index parts_of(Index entries) { return (entries + kLoadLanes - 1) / kLoadLanes; }
+
+}  // namespace
 
 void SurfaceLoadSums::prepare(Device device, std::span<const Index> starts) {
   const std::size_t surfaces = starts.size() - 1;
-  std::vector<LoadChunk> chunks;
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < surfaces; ++s) count += as_size(parts_of(starts[s + 1] - starts[s]));
+  h_chunks_.resize_with_spare(count);
+  count = 0;
   has_chunks_.assign(surfaces, false);
   for (std::size_t s = 0; s < surfaces; ++s) {
-    const auto first_part = static_cast<Index>(chunks.size()),
-               parts = (starts[s + 1] - starts[s] + kLoadLanes - 1) / kLoadLanes;
+    const auto first_part = static_cast<Index>(count), parts = parts_of(starts[s + 1] - starts[s]);
     has_chunks_[s] = parts > 0;
     for (Index first = starts[s]; first < starts[s + 1]; first += kLoadLanes)
-      chunks.push_back(
-          {{static_cast<Index>(s), first, std::min(first + kLoadLanes, starts[s + 1])}, first_part, parts});
+      h_chunks_[count++] = {
+          {static_cast<Index>(s), first, std::min(first + kLoadLanes, starts[s + 1])}, first_part, parts};
   }
-  chunks_.resize_with_spare(chunks.size());
-  copy_async(chunks_.data(), chunks.data(), chunks.size(), device.stream);
-  of_chunks_.resize_with_spare(chunks.size());
+  chunks_.resize_with_spare(count);
+  copy_async(chunks_.data(), h_chunks_.data(), count, device.stream);
+  of_chunks_.resize_with_spare(count);
   if (summed_.size() == 0) summed_.resize(surfaces), summed_.zero(device.stream);
   sums_.resize(surfaces), written_by_.resize(surfaces);
   for (std::size_t s = 0; s < surfaces; ++s) sums_[s].contacts = 0, written_by_[s] = evaluation_;
@@ -47,7 +56,10 @@ void SurfaceLoadSums::await(cudaStream_t stream) const {
     for (int look = 0; look < kLooks; ++look)
       if (have_arrived()) return;
     const cudaError_t status = cudaStreamQuery(stream);
-    if (status == cudaErrorNotReady) continue;
+    if (status == cudaErrorNotReady) {
+      cudaGetLastError();  // or the next launch would report it
+      continue;
+    }
     return require_cuda(status, "contacts with bodies");
   }
 }

@@ -11,7 +11,8 @@ namespace scree {
 
 class SurfaceLoadSums {
  public:
-  // For a new list. starts: first entry by_surface of each surface, and the end.
+  // For a new list, after a wait for the device since the last call. starts: first entry by_surface of each
+  // surface, and the end.
   void prepare(Device device, std::span<const Index> starts);
   LoadChunks chunks() const { return {chunks_.data(), static_cast<Index>(chunks_.size())}; }
   // For the next evaluation. report: the control block that the first warp copies to the host, if any.
@@ -25,6 +26,7 @@ class SurfaceLoadSums {
  private:
   bool have_arrived() const;
 
+  PinnedArray<LoadChunk> h_chunks_;
   DeviceArray<LoadChunk> chunks_;
   DeviceArray<InstantSums> of_chunks_;
   DeviceArray<unsigned> summed_;  // per surface: number of its chunks; zero between evaluations

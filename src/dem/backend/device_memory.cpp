@@ -51,7 +51,8 @@ constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame)
 // The same for walls with prescribed motion and conveyors, in explicit steps: the rows of DrivenSurfaces.
 constexpr double kDrivenArrays = 128 * (sizeof(SurfacePose) + sizeof(SurfaceFrame));
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
-                                2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
+                                2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep) +
+                                (sizeof(InstantSums) + 5 * sizeof(Index)) / 32.0;  // per warp of entries
 // Bytes per entry, group and triangle with meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
 // Some two particles are near a box of a mesh's tree where one has a group.

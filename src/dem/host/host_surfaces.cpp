@@ -114,12 +114,6 @@ void HostSurfaces::take_steps(std::span<const StepSums> of_particles, Real h) {
   bodies_.add_sums(steps_);
 }
 
-// Merges the sums of all ranks; on rank 0.
-template <class Sums>
-std::vector<Sums> HostSurfaces::merged(std::vector<Sums> sums) const {
-  return merged_by_key(ranks_.gather(std::move(sums)));
-}
-
 void HostSurfaces::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const {
   std::fill(step.wrench.begin(), step.wrench.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
@@ -164,11 +158,11 @@ void HostSurfaces::reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t
 template <class Where>
 std::vector<ContactSum> HostSurfaces::contacts_of(std::size_t count, const Where& where) const {
   std::vector<ContactSum> contacts(count);
-  for (const InstantSums& sums : merged(loads_)) {
+  for_each_merged(ranks_, loads_, [&](const InstantSums& sums) {
     ContactSum& sum = contacts[static_cast<std::size_t>(where(sums.surface))];
     const BodyWrench wrench = sums.wrench();
     sum.force += wrench.force, sum.torque += wrench.torque, sum.contacts += sums.contacts;
-  }
+  });
   return contacts;
 }
 
@@ -184,11 +178,11 @@ std::vector<TriangleLoad> HostSurfaces::triangle_loads(std::vector<TriangleSums>
   std::vector<TriangleLoad> loads;
   const std::vector<TriangleSums> of_shapes = bodies_.triangle_sums();  // of rank 0
   contacts.insert(contacts.end(), of_shapes.begin(), of_shapes.end());
-  for (const TriangleSums& sums : merged(std::move(contacts))) {
+  for_each_merged(ranks_, contacts, [&](const TriangleSums& sums) {
     const ExactSum* const t = sums.tangential;
     loads.push_back(
         {sums.surface, sums.triangle, sums.normal.value(), {t[0].value(), t[1].value(), t[2].value()}});
-  }
+  });
   return loads;
 }
 
@@ -247,12 +241,12 @@ ShapePack HostSurfaces::pack() const {
     pack.velocity.push_back(point.velocity);
   }
   pack.force.resize(pack.body.size()), pack.contacts.resize(pack.body.size());
-  for (const InstantSums& sums : merged(loads_)) {
+  for_each_merged(ranks_, loads_, [&](const InstantSums& sums) {
     const std::size_t at = row[sums.surface];
-    if (at == placed_.size()) continue;
+    if (at == placed_.size()) return;
     pack.force[at] = sums.wrench().force;
     pack.contacts[at] = static_cast<int>(sums.contacts);
-  }
+  });
   return pack;
 }
 

@@ -147,8 +147,6 @@ class HostSurfaces {
   bool tracks_displacement() const { return model_.rotates() || !frames_.empty(); }
   template <class Where>
   std::vector<ContactSum> contacts_of(std::size_t count, const Where& where) const;
-  template <class Sums>
-  std::vector<Sums> merged(std::vector<Sums> sums) const;
 
   const Model& model_;
   const Subdomain& subdomain_;
