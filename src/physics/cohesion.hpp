@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <type_traits>
 
 #include "base/hd.hpp"
@@ -223,10 +222,5 @@ inline Real contact_search_range(const NormalLawParameters& law, Real largest_ra
   constexpr Real kPastPullOff = 1.25;
   return (law.range > 0 ? 1 : kPastPullOff) * largest_interaction_range(law, largest_radius);
 }
-
-// A run uses the first type that accepts the parameters of all its pairs; each type has its own kernels
-// (cuda/contact_kernels_*.cu).
-using NormalLaws = std::tuple<LinearLaw, LinearRestitutionLaw, PowerLaw, HertzLaw,
-                              CohesiveLaw<LinearRestitutionLaw>, CohesiveLaw<HertzLaw>, JkrLaw>;
 
 }  // namespace scree

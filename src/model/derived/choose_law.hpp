@@ -8,35 +8,9 @@
 #include <vector>
 
 #include "model/data/model.hpp"
-#include "physics/cohesion.hpp"
-#include "physics/contact_law.hpp"
-#include "physics/normal_laws.hpp"
-#include "physics/rolling_laws.hpp"
-#include "physics/tangential_laws.hpp"
+#include "physics/contact_laws.hpp"
 
 namespace scree {
-
-// Tangential and rolling laws that are combined with a normal law.
-template <class Normal>
-struct Beside {
-  using Slider = LinearSlider;
-  static constexpr bool is_cohesive = false;
-};
-template <>
-struct Beside<HertzLaw> {
-  using Slider = MindlinSlider;
-  static constexpr bool is_cohesive = false;
-};
-template <>
-struct Beside<JkrLaw> {
-  using Slider = MindlinSlider;
-  static constexpr bool is_cohesive = true;
-};
-template <class Repulsion>
-struct Beside<CohesiveLaw<Repulsion>> {
-  using Slider = typename Beside<Repulsion>::Slider;
-  static constexpr bool is_cohesive = true;
-};
 
 // The laws of all pairs of materials, in the order of Contact::laws. `Law` accepts them all.
 template <class Law>
@@ -52,37 +26,27 @@ std::vector<Law> laws_of(const Contact& contact) {
   return laws;
 }
 
-// Whether the normal law has a form with rolling resistance. LinearLaw has none: the law of all linear
-// springs, with or without a damping ratio, takes its place.
-template <class Normal>
-inline constexpr bool kRolls = !std::is_same_v<Normal, LinearLaw>;
-
 // Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>. The normal law
-// is the first of NormalLaws that accepts all pairs; friction is included where contacts have it, and all
-// kinds of rolling resistance where some contact has one. Adhesive laws with friction always include rolling
-// resistance, and so do all JKR laws. Returns the result of use, which has one type for all laws.
+// is the first of the list that accepts all pairs and has the form that they need: with friction where
+// contacts have it, with all kinds of rolling resistance where some contact has one. Returns the result of
+// use, which has one type for all laws.
 template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
-  using Normal = std::tuple_element_t<kFirst, NormalLaws>;
-  using Slider = typename Beside<Normal>::Slider;
-  constexpr bool is_cohesive = Beside<Normal>::is_cohesive;
+  using Family = std::tuple_element_t<kFirst, LawFamilies>;
   const bool rolls = !contact.rolling.empty(), has_friction = !contact.friction.empty();
-  const bool accepts = std::all_of(contact.laws.begin(), contact.laws.end(), Normal::accepts) &&
-                       (kRolls<Normal> || !rolls) && (!kIsHysteretic<Normal> || has_friction);
-  if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>)
-    if (!accepts) return with_contact_laws<kFirst + 1>(contact, use);
-  if (!accepts) throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
-  if constexpr (kIsHysteretic<Normal>) {
-    return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
-  } else {
-    if (!has_friction) return use(laws_of<ContactLaw<Normal>>(contact));
-    if constexpr (kRolls<Normal>)
-      if (rolls || is_cohesive) return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
-    if constexpr (!is_cohesive)
-      return use(laws_of<ContactLaw<Normal, Slider>>(contact));
-    else
-      throw std::logic_error("with_contact_laws: a law that attracts has no form without rolling");
+  const bool fits = std::all_of(contact.laws.begin(), contact.laws.end(), Family::Normal::accepts) &&
+                    Family::serves(has_friction, rolls);
+  if constexpr (kFirst + 1 < std::tuple_size_v<LawFamilies>)
+    if (!fits) return with_contact_laws<kFirst + 1>(contact, use);
+  if (fits) {
+    if constexpr (Family::has(LawForm::plain))
+      if (!has_friction) return use(laws_of<typename Family::template Law<LawForm::plain>>(contact));
+    if constexpr (Family::has(LawForm::friction))
+      if (!rolls) return use(laws_of<typename Family::template Law<LawForm::friction>>(contact));
+    if constexpr (Family::has(LawForm::rolling))
+      return use(laws_of<typename Family::template Law<LawForm::rolling>>(contact));
   }
+  throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
 }
 
 // The laws of the pairs of materials one by one, with the types that with_contact_laws() selects for all of
@@ -104,10 +68,10 @@ class PairLaws {
   template <std::size_t kFirst = 0>
   void find_deciding() {
     const auto refused =
-        std::ranges::find_if_not(contact_.laws, std::tuple_element_t<kFirst, NormalLaws>::accepts);
+        std::ranges::find_if_not(contact_.laws, std::tuple_element_t<kFirst, LawFamilies>::Normal::accepts);
     if (refused != contact_.laws.end())
       deciding_.push_back(static_cast<std::size_t>(refused - contact_.laws.begin()));
-    if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>) find_deciding<kFirst + 1>();
+    if constexpr (kFirst + 1 < std::tuple_size_v<LawFamilies>) find_deciding<kFirst + 1>();
   }
   void take(std::size_t pair, Contact& few) const {
     few.laws.push_back(contact_.laws[pair]);

@@ -1,9 +1,0 @@
-#include "dem/laws/contact_kernels_impl.hpp"
-#include "physics/cohesion.hpp"
-
-namespace scree {
-
-template std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<ContactLaw<CohesiveLaw<HertzLaw>>>&,
-                                                     int);
-
-}  // namespace scree

@@ -1,8 +1,0 @@
-#include "dem/laws/contact_kernels_impl.hpp"
-#include "physics/normal_laws.hpp"
-
-namespace scree {
-
-template std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<ContactLaw<HertzLaw>>&, int);
-
-}  // namespace scree
