@@ -80,7 +80,9 @@ TEST_CASE("mixed precision: springs and moments of many contacts are near those 
   CHECK(a.contacts.content == HistoryContent::of_law(6));
   const Contacts ours = by_key(a.contacts), exactly = by_key(b.contacts);
   Real largest[2] = {}, scale[2] = {};  // of springs and moments
-  std::size_t missing = 0;              // contacts that open or close at another step
+  // Contacts of one run alone, which open or close at another step.
+  std::size_t missing = 0;
+  for (const auto& [key, values] : ours) missing += exactly.contains(key) ? 0 : 1;
   for (const auto& [key, values] : exactly) {
     const auto found = ours.find(key);
     if (found == ours.end()) ++missing;
@@ -113,8 +115,15 @@ TEST_CASE("mixed precision: with rolling resistance a run continues from its sta
     velocity = std::max(velocity, norm(a.particles[i].velocity - b.particles[i].velocity));
     spin = std::max(spin, norm(a.particles[i].angular_velocity - b.particles[i].angular_velocity));
   }
-  CHECK(velocity < 1e-3);
-  CHECK(spin < 1e-2);
+  const auto moved_on = [&](auto Particle::*member) {
+    Real largest = 0;
+    for (std::size_t i = 0; i < a.particles.size(); ++i)
+      largest = std::max(largest, norm(a.particles[i].*member - state.particles[i].*member));
+    return largest;
+  };
+  // Beside these changes over the same steps the differences are small.
+  CHECK(velocity < 1e-2 * moved_on(&Particle::velocity));
+  CHECK(spin < 1e-2 * moved_on(&Particle::angular_velocity));
 }
 
 // Without the moment at their contact the upper sphere would roll off.
