@@ -41,7 +41,7 @@ class Picture:
 
 # For a million particles as in the deck's head.
 MILLION = ("particles.bed.count=1000000", "particles.bed.radius.min=0.00205", "particles.bed.radius.max=0.00273",
-           "time.step=1.3e-5", "output.snapshot_interval=0.075", "time.end=2.25")
+           "time.step=1.3e-5", "output.snapshot_interval=0.075", "time.end=2.6")
 EXCAVATOR = ("examples/excavator", ("output.surface_fields=['pressure']",))
 PICTURES = {
     "tutorial_heap.png": Picture("tutorial/2_heap", "picture"),
@@ -52,7 +52,7 @@ PICTURES = {
     "excavator.webp": Picture(EXCAVATOR[0], "animate", (*FILM, "--quality", "70", "--fastest", "1"), EXCAVATOR[1]),
     "excavator_million.webp": Picture(
         EXCAVATOR[0], "animate",
-        (*FILM, "--from", "0.97", "--to", "2.26", "--frames", "18", "--quality", "40", "--fastest", "1"), MILLION,
+        (*FILM, "--from", "0.97", "--to", "2.61", "--frames", "22", "--quality", "40", "--fastest", "1"), MILLION,
         "excavator_million", on_gpu=True),
     "screw_lift.webp": Picture("examples/screw_lift", "animate", (*FILM, "--fastest", "1")),
     "wheel_rig.webp": Picture("examples/wheel_rig", "animate", (*FILM, "--fastest", "0.2")),
