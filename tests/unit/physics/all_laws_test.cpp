@@ -1,5 +1,5 @@
-// Properties of all contact laws that a deck can choose. A law added to NormalLaws is covered as soon as
-// kPairs has parameters that choose it; without them the first test fails.
+// Properties of all contact laws that a deck can choose. A law added to the list of laws is covered as soon
+// as kPairs has parameters that choose it; without them the first test fails.
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -64,7 +64,7 @@ void for_each_law(const Use& use) {
 
 template <std::size_t kFirst = 0, class Normal>
 std::size_t number_of(const Normal& normal) {
-  if constexpr (std::is_same_v<std::tuple_element_t<kFirst, NormalLaws>, Normal>)
+  if constexpr (std::is_same_v<typename std::tuple_element_t<kFirst, LawFamilies>::Normal, Normal>)
     return kFirst;
   else
     return number_of<kFirst + 1>(normal);
@@ -81,7 +81,7 @@ ContactOutcome outcome_of(const Law& law, const RandomContact& c) {
 }  // namespace
 
 TEST_CASE("the pairs of this test choose every normal law") {
-  std::vector<int> chosen(std::tuple_size_v<NormalLaws>, 0);
+  std::vector<int> chosen(std::tuple_size_v<LawFamilies>, 0);
   for_each_law([&](const auto& law) { ++chosen[number_of(law.normal)]; });
   for (const int times : chosen) CHECK(times > 0);
 }
