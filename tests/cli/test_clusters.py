@@ -135,8 +135,15 @@ class WithoutMpi(CommandLineTest):
                                 capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual((result.returncode, result.stderr), (DONE, ""))
 
+    def test_a_run_alone_needs_no_session_directory(self):
+        environment = {"PATH": str(self.folder), "TMPDIR": "/proc"}
+        result = subprocess.run([SCREE, "run", self.deck, "--output", "out", *SHORT], cwd=self.folder, env=environment,
+                                capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual((result.returncode, result.stderr), (DONE, ""))
+
     def test_where_mpi_cannot_start_a_line_says_what_helps(self):
-        for more, words in (({"TMPDIR": "/proc"}, "cannot write into /proc, which TMPDIR names: "),
+        session = {"OMPI_MCA_orte_create_session_dirs": "1"}
+        for more, words in (({"TMPDIR": "/proc", **session}, "cannot write into /proc, which TMPDIR names: "),
                             ({"OMPI_MCA_ess_singleton_isolated": "0"}, "set OMPI_MCA_plm_rsh_agent= (empty)")):
             with self.subTest(more=more):
                 environment = {"PATH": str(self.folder), **more}
