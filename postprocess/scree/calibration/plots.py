@@ -19,7 +19,8 @@ def surfaces(axes: list[Axes], measured: Measured) -> None:
     find = ledge_surface if "gate" in {wall.get("name") for wall in measured.runs[0][0].deck["walls"]} else drum_surface
     for seed, (run,) in enumerate(measured.runs):
         found, color = find(run), COLORS[seed % len(COLORS)]
-        axes[0].plot(1e3 * found.x, 1e3 * found.height, "o", color=color, label=f"seed {seed + 1}: {found.angle:.1f} degrees")
+        axes[0].plot(1e3 * found.x, 1e3 * found.height, "o", color=color,
+                     label=f"seed {seed + 1}: {found.angle:.1f} degrees")
         axes[0].plot(1e3 * found.x, 1e3 * (found.start + found.slope * found.x), color=color)
     axes[0].set(xlabel="x [mm]", ylabel="height of the surface [mm]")
     axes[0].set_aspect("equal", "datalim")

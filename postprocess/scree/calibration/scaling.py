@@ -1,4 +1,4 @@
-"""A deck with other units of length, time and mass: every value is multiplied by the factor of its unit in the schema."""
+"""A deck with other units of length, time and mass: every value is multiplied by the factor of its unit."""
 
 from __future__ import annotations
 

@@ -54,7 +54,8 @@ def solid_area(states: Iterable[tuple[np.ndarray, np.ndarray]], edges: tuple[np.
 
 
 def crossing(column: np.ndarray, centers: np.ndarray, level: float) -> float:
-    """Height at which a column of solid fractions falls below the level for the last time; NaN if it never exceeds it."""
+    """Height at which a column of solid fractions falls below the level for the last time; NaN if it never
+    exceeds it."""
     above = np.flatnonzero(column >= level)
     if not len(above) or above[-1] + 1 == len(column):
         return float("nan")

@@ -33,8 +33,8 @@ Values = dict[str, float]
 
 @dataclass(frozen=True)
 class Test:
-    """deck: its name. stress: the normal stress of a deck, for tests that run at several stresses. measure: values of one
-    run. combine: quantities from the values of one seed at all stresses. units: of the quantities."""
+    """deck: its name. stress: the normal stress of a deck, for tests that run at several stresses. measure: values of
+    one     run. combine: quantities from the values of one seed at all stresses. units: of the quantities."""
 
     deck: str
     measure: Callable[[Run], Values]
@@ -103,7 +103,8 @@ def averaged(values: np.ndarray, rows: int) -> np.ndarray:
 
 
 def shear_curve(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Displacement of the lower plate [m], shear and normal stress on the upper one [Pa], from the start of the shear."""
+    """Displacement of the lower plate [m], shear and normal stress on the upper one [Pa], from the start of the
+    shear."""
     area = shear_area(run.deck)
     moved = np.array(run.history["coordinates/rail/displacement"])
     sheared = np.flatnonzero(moved > 0)
@@ -146,7 +147,8 @@ def column_curve(run: Run) -> tuple[float, np.ndarray, np.ndarray]:
     """Consolidation stress [Pa]; compression, and stress on the platen [Pa], of the free column."""
     times = named(run.deck, "applied_forces", "press")["fz"]["times"]
     time, stress = run.history.time, np.abs(np.array(run.history["contacts/platen/fz"])) / column_area(run.deck)
-    height = named(run.deck, "bodies", "platen")["position"][2] + np.array(run.history["coordinates/guide/displacement"])
+    height = named(run.deck, "bodies", "platen")["position"][2] \
+        + np.array(run.history["coordinates/guide/displacement"])
     consolidated, free = (time > 0.8 * times[1]) & (time <= times[1]), time >= times[3]
     if free.sum() < HELD:
         raise ScreeError(f"{run.folder}: the column is not free yet")

@@ -39,11 +39,12 @@ def describe(parser: argparse.ArgumentParser) -> None:
     add_common(search)
     add_stresses(search)
     search.add_argument("--vary", nargs="+", action="extend", required=True, metavar="KEY=LOW:HIGH",
-                        help="a key of the contact of the grains with themselves, as friction=0.2:0.8, or the path of a "
-                             "key of MATERIALS; two of them")
+                        help="a key of the contact of the grains with themselves, as friction=0.2:0.8, or the path of "
+                             "a key of MATERIALS; two of them")
     search.add_argument("--target", nargs="+", action="extend", required=True, metavar="TEST=VALUE",
                         help="wished value, as repose=30, drum=35, shear=28 or shear.peak_angle=35; one or two of them")
-    search.add_argument("--rounds", type=count, default=4, help="largest number of sets after the first nine (default 4)")
+    search.add_argument("--rounds", type=count, default=4,
+                        help="largest number of sets after the first nine (default 4)")
 
 
 def add_common(parser: argparse.ArgumentParser) -> None:
@@ -64,8 +65,8 @@ def add_common(parser: argparse.ArgumentParser) -> None:
 
 def add_stresses(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stresses", type=positive, nargs="+", default=[], metavar="STRESS",
-                        help="normal or consolidation stresses [Pa]; default: 50, 100 and 200 (uniaxial: 25, 50 and 100) "
-                             "times density of a grain x g x diameter")
+                        help="normal or consolidation stresses [Pa]; default: 50, 100 and 200 (uniaxial: 25, 50 and "
+                             "100) times density of a grain x g x diameter")
 
 
 def split(word: str, form: str) -> tuple[str, str]:
@@ -164,7 +165,8 @@ def print_measured(name: str, measured: Measured) -> None:
                 print("  ".join([f"{seed:4}", *(f"{shown(each[one]):>14}" for one in names)]))
     for quantity, unit in MEASURED[name].units.items():
         mean = with_spread(measured.mean(quantity), measured.spread(quantity), seeds)
-        print(f"{quantity.replace('_', ' ')}: {mean}{'' if unit == '1' else f' {unit}'} ({seeds} seed{'s' * (seeds > 1)})")
+        measure = "" if unit == "1" else f" {unit}"
+        print(f"{quantity.replace('_', ' ')}: {mean}{measure} ({seeds} seed{'s' * (seeds > 1)})")
     if any(abs(each.get("change", 0.0)) > STEADY for of_seed in measured.values for each in of_seed):
         print("the slope still changes at the end of some runs; make them longer by --set time.end")
     if any(each.get("failed") == 0.0 for of_seed in measured.values for each in of_seed):
