@@ -93,7 +93,7 @@ class ContactKernels {
 };
 
 // Contact stages of one type of law on the CPU, for the laws of all pairs of `materials`. Each type is
-// compiled in a source file of its own, laws/*.cpp.
+// compiled in a source file of its own, which is generated from law.cpp.in.
 template <class Law>
 std::unique_ptr<ContactKernels> cpu_kernels(const std::vector<Law>& laws, int materials);
 
