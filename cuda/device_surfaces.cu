@@ -269,7 +269,10 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           records_of(kernels.history()),
           query.spin,
           query.h,
-          interaction_range_};
+          interaction_range_,
+          nullptr,
+          nullptr,
+          poses_.free_bodies()};
 }
 
 void DeviceSurfaces::find_loads(Device device, Follows follows, const DeviceContactKernels& kernels,

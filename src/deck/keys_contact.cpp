@@ -63,8 +63,8 @@ std::vector<Key> law_keys() {
           .about("In place of damping: ratio of the speeds after and before a head-on impact, equal at all "
                  "speeds and masses, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact with limit_damping "
                  "and without; needs n >= 1. For surfaces with adhesion or attraction it holds for the law "
-                 "without these and with limit_damping = false. In m* a body counts as infinitely heavy in "
-                 "contacts with particles."),
+                 "without these and with limit_damping = false. m* includes the mass and the rotation of "
+                 "bodies at the contact, as if they had no joints."),
       boolean("limit_damping")
           .formerly("tension", FormerSense::negated)
           .otherwise("true")

@@ -14,6 +14,7 @@ namespace scree {
 // Every law below has
 //   Law(parameters)           its parameters from those of the deck; accepts() says whether it applies
 //   tension                   as in NormalLawParameters
+//   kUsesMass = false         if no number depends on the partners' masses; default: some may
 //   as<T>()                   the law with numbers of type T
 //   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:
 //   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
@@ -28,6 +29,7 @@ namespace scree {
 template <class T>
 struct LinearLawOf {
   using Scalar = T;
+  static constexpr bool kUsesMass = false;
   T normal_stiffness = 0;  // K [N/m]
   T normal_damping = 0;    // C [N s/m]
   bool tension = false;

@@ -47,7 +47,8 @@ constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * size
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts have adhesion
 // Bytes per placed surface, and per entry of the surfaces' rows where there are any: DeviceSurfaces.
-constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+constexpr double kSurfaceArrays =
+    2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + sizeof(FreeBody) + 2 * sizeof(Vec3);
 // The same for walls with prescribed motion and conveyors, in explicit steps: the rows of DrivenSurfaces.
 constexpr double kDrivenArrays = 128 * (sizeof(SurfacePose) + sizeof(SurfaceFrame));
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/countable.hpp"
+#include "base/index.hpp"
 #include "dem/surface_contact/wall_items.hpp"
 #include "model/derived/point_bins.hpp"
 #include "partition/halo_plan.hpp"
@@ -30,7 +31,7 @@ SortedBins bins_of(std::span<const SurfacePose> placed, Real skin) {
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
 
-// Mass of the body of each placed surface, for the damping of Hertz's law; infinite for walls [kg].
+// Mass of the body of each placed surface; infinite for walls [kg].
 std::vector<Real> masses_of_parents(const Model& model, const SurfaceSet& surfaces) {
   std::vector<Real> masses;
   for (Index s = 0; s < surfaces.placed(); ++s)
@@ -233,6 +234,7 @@ void BodyContacts::reopen() { std::swap(accepted_, trial_); }
 void BodyContacts::set_items(const SurfacePoses& poses, Instant when, Real h) {
   const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
   store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
+  std::vector<FreeShape> free_shapes;
   for (const Item& item : items_) {
     const SurfacePose& s = (at_start ? poses.start : poses.placed)[corners_.surface_of(item.surface)];
     const Body& body = model_.bodies[static_cast<std::size_t>(parent_of(item.surface))];
@@ -244,7 +246,10 @@ void BodyContacts::set_items(const SurfacePoses& poses, Instant when, Real h) {
     store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.displacement : at.velocity, body.mass));
     store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
     arm_.push_back(at.arm);
+    if (!poses.free_bodies.empty())
+      free_shapes.push_back({at.arm, poses.free_bodies[as_size(corners_.surface_of(item.surface))]});
   }
+  entries_.set_free_shapes(std::move(free_shapes));
 }
 
 // Sets the start arrays; the items are left at the start of the step.

@@ -71,7 +71,9 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePoses& poses, const ParticleS
           query.h,
           interaction_range_,
           masses_.empty() ? nullptr : masses_.data(),
-          law_radii()};
+          law_radii(),
+          poses.free_bodies.empty() ? nullptr : poses.free_bodies.data(),
+          free_shapes()};
 }
 
 void CpuSurfaces::find_loads(const SurfacePoses& poses, const ParticleStore& store, SurfaceRows& rows,
@@ -199,7 +201,7 @@ ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const st
   ContactViews<PackedRows> views{position.data(), velocity.data(),     store.material.data(),
                                  neighbors,       rows.offsets.data(), rows.surfaces.data(),
                                  numbers(),       loads_.data(),       steps_.data()};
-  views.law_radius = law_radii();
+  views.law_radius = law_radii(), views.free_shapes = free_shapes();
   return views;
 }
 

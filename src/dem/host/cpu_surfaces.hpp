@@ -20,6 +20,8 @@ class CpuSurfaces {
               Real interaction_range, std::vector<Real> masses = {});
   // Radii of the items that laws use instead of the items' own [m]; empty: their own.
   void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
+  // The items as shapes of bodies, see `SurfaceViews`; empty: particles.
+  void set_free_shapes(std::vector<FreeShape> shapes) { free_shapes_ = std::move(shapes); }
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
@@ -80,6 +82,7 @@ class CpuSurfaces {
 
  private:
   const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
+  const FreeShape* free_shapes() const { return free_shapes_.empty() ? nullptr : free_shapes_.data(); }
   SurfaceViews entry_views(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceQuery& query) const;
   template <class Works>
@@ -92,6 +95,7 @@ class CpuSurfaces {
 
   const ContactKernels& kernels_;
   std::vector<Real> masses_, law_radii_;
+  std::vector<FreeShape> free_shapes_;
   std::vector<WallPlane> planes_;
   Real interaction_range_;  // [m]
   bool open_surfaces_;

@@ -126,7 +126,7 @@ struct SurfaceFrictionItem {
     out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(contact_point);
     static_cast<ContactPath&>(out) =
         OverImplicitStep{start.step}.path(end, out.velocity1, begin, out.velocity0, kinematics.displacement,
-                                          surface_size(in, entry, p, in.velocity[i]));
+                                          surface_size<Law>(in, entry, kinematics.now, p, in.velocity[i]));
     out.step.change = kinematics.change;
     if (is_sphere)
       out.motion = sphere_motion(end, kinematics.displacement, one, other, h);

@@ -27,11 +27,7 @@ struct Partner {
 struct Partners {
   Partner i, j;
 
-  // Sizes for the law: bodies in contact with particles have infinite mass.
-  PairSize size() const {
-    const bool beside_particle = i.is_particle && !j.is_particle;
-    return {i.radius, j.radius, i.mass, beside_particle ? kInfinity : j.mass};
-  }
+  PairSize size() const { return {i.radius, j.radius, i.mass, j.mass}; }
   Real mass() const {
     if (i.mass == kInfinity || j.mass == kInfinity) return std::min(i.mass, j.mass);
     return reduced_mass(i.mass, j.mass);
