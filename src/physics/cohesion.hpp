@@ -119,7 +119,8 @@ struct JkrLaw {
       : JkrLaw(4 * p.effective_modulus / 3, std::sqrt(Real(5)) * p.damping_ratio, p.adhesion_work,
                p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr);
+    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr) &&
+           !p.is_plastic();
   }
 
   SCREE_HD JkrPair of_pair(const PairSize& size) const {
@@ -190,7 +191,7 @@ struct CohesiveLaw {
                     static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
                     static_cast<Scalar>(p.range)) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0);
+    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0) && !p.is_plastic();
   }
 
   SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {

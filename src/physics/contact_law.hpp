@@ -44,15 +44,19 @@ struct ContactLoadOf {
   SCREE_HD ContactLoadOf exchanged() const { return {opposite(force), loss, torque_j, torque_i}; }
 };
 
-// History of a contact from step to step; members that the law does not use stay zero.
-struct ContactHistory {
+// History of a contact from step to step; members that the law does not use stay zero. State: of the normal
+// law.
+template <class State>
+struct ContactHistoryOf {
   Vec3 spring;           // force of the tangential spring [N]; odd under exchange of i and j
   Vec3 moment;           // moment of the rolling and twisting springs [N m]; odd
   bool touched = false;  // the surfaces have touched: JKR contacts stay closed beyond touch
+  [[no_unique_address]] State normal{};
 
   // The history with i and j exchanged.
-  SCREE_HD ContactHistory mirrored() const { return {opposite(spring), opposite(moment), touched}; }
+  SCREE_HD ContactHistoryOf mirrored() const { return {opposite(spring), opposite(moment), touched, normal}; }
 };
+using ContactHistory = ContactHistoryOf<NoState>;
 
 // Elastic energy of the springs in the contact history [J].
 struct SpringEnergies {
@@ -73,19 +77,21 @@ struct ContactEnergy {
 };
 
 // Result of a contact law over the step that ends at the instant of its `PairState`.
-struct ContactOutcome {
+template <class History>
+struct ContactOutcomeOf {
   ContactLoadOf<Real, Vec3> load;  // at the end of the step; loss: the normal law's there, and the mean of
                                    // the others over the step
-  ContactHistory history;
+  History history;
   SpringLosses friction, rolling, twisting;  // over the step [J]
 
   SCREE_HD TangentialLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
 };
+using ContactOutcome = ContactOutcomeOf<ContactHistory>;
 
-// The law of a contact. Without friction, rolling resistance and JKR adhesion (`kNeedsMotion` is false) it is
-// a function of the instant: `load(pair)`. Otherwise it needs the motion of the partners over the step and
-// the contact history: `load(moving pair, history)`. Both are pure: the new history is returned, and only the
-// item that accepts the step stores it.
+// The law of a contact. Without friction, rolling resistance, JKR adhesion and a state of the normal law
+// (`kNeedsMotion` is false) it is a function of the instant: `load(pair)`. Otherwise it needs the motion of
+// the partners over the step and the contact history: `load(moving pair, history)`. Both are pure: the new
+// history is returned, and only the item that accepts the step stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
@@ -97,9 +103,15 @@ struct ContactLaw {
 
   static constexpr bool kHysteretic = kIsHysteretic<NormalLaw>;
   static constexpr bool kHasRange = kActsBeyondTouch<NormalLaw>;  // contacts may exist beyond touch
-  static constexpr bool kNeedsMotion = TangentialLaw::acts || RollingLaw::acts || kHysteretic;
-  // Numbers in the contact history: spring, moment, whether the surfaces have touched, in this order.
-  static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kHysteretic ? 1 : 0);
+  static constexpr bool kStateful = kHasState<NormalLaw>;
+  static constexpr bool kNeedsMotion = TangentialLaw::acts || RollingLaw::acts || kHysteretic || kStateful;
+  using State = typename NormalStateOf<NormalLaw>::State;
+  using History = ContactHistoryOf<State>;
+  using Outcome = ContactOutcomeOf<History>;
+  // Numbers in the contact history: spring, moment, whether the surfaces have touched, state of the normal
+  // law, in this order.
+  static constexpr int kHistory =
+      TangentialLaw::kHistory + RollingLaw::kHistory + (kHysteretic ? 1 : 0) + State::kNumbers;
 
   // Load of a closed contact. Pure; both partners get the same but for the sign of odd quantities.
   template <class T, class Vector>
@@ -116,27 +128,28 @@ struct ContactLaw {
   }
 
   // Whether the contact is closed; the partners may be apart.
-  SCREE_HD bool closed(const PairState& pair, const ContactHistory& old) const {
+  SCREE_HD bool closed(const PairState& pair, const History& old) const {
     return closed(normal.of_pair(pair.size), pair.geometry.overlap, old);
   }
 
   // Whether a step that opens the contact breaks a JKR contact, whose springs hold energy.
-  SCREE_HD static bool breaks(const ContactHistory& old) { return kHysteretic && old.touched; }
+  SCREE_HD static bool breaks(const History& old) { return kHysteretic && old.touched; }
 
   // Outcome of a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
   // `MovingPair`, or `InstantPair`.
   template <class Pair = MovingPair>
-  SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
-    ContactOutcome out{};
-    const auto law = normal.of_pair(pair.size);
+  SCREE_HD Outcome load(const Pair& pair, const History& old) const {
+    Outcome out{};
+    const auto partners = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
     const ContactMotion& step = pair.motion;
-    if (!closed(law, g.overlap, old)) {
+    if (!closed(partners, g.overlap, old)) {
       if constexpr (std::is_same_v<Pair, MovingPair>)
         if (breaks(old))
           release_springs(springs_at(step.overlap0, step.normal0, pair.size, old), step.h, out);
       return out;
     }
+    const auto& law = after_step(partners, old.normal, g.overlap);
     const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
@@ -144,6 +157,7 @@ struct ContactLaw {
     out.load = {g.along(f.force), f.loss, {}, {}};
     if constexpr (kHysteretic)
       if (!old.touched) out.load.loss += law.formation_loss() / step.h;
+    if constexpr (kStateful) out.load.loss += law.dissipated / step.h, out.history.normal = law.state;
     out.history.touched = old.touched || g.overlap > 0;
     SpringSlider slider{};
     if constexpr (TangentialLaw::acts) {
@@ -164,20 +178,23 @@ struct ContactLaw {
   }
 
   // Elastic energy of a closed contact [J], including what the formation of a JKR contact will dissipate in
-  // the next step.
-  SCREE_HD ContactEnergy energy_of(const PairState& pair, const ContactHistory& history) const {
-    const auto law = normal.of_pair(pair.size);
+  // the next step, and what a contact of a law with a state will that exists without history at the start of
+  // a run.
+  SCREE_HD ContactEnergy energy_of(const PairState& pair, const History& history) const {
+    const auto partners = normal.of_pair(pair.size);
+    const auto& law = after_step(partners, history.normal, pair.geometry.overlap);
     Real out = law.energy(pair.geometry.overlap), cohesion = cohesion_of(law, pair.geometry.overlap);
     if constexpr (kHysteretic)
       if (!history.touched) out += law.formation_loss(), cohesion += law.formation_loss();
+    if constexpr (kStateful) out += law.dissipated;
     const SpringEnergies springs = springs_of(pair, history);
     return {out + springs.sum(), springs, cohesion};
   }
-  SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
+  SCREE_HD SpringEnergies springs_of(const PairState& pair, const History& history) const {
     return springs_at(pair.geometry.overlap, pair.geometry.normal(), pair.size, history);
   }
   // Elongation of the tangential spring [m].
-  SCREE_HD Real slip_of(const PairState& pair, const ContactHistory& history) const {
+  SCREE_HD Real slip_of(const PairState& pair, const History& history) const {
     static_assert(TangentialLaw::acts);
     const Real d = pair.geometry.overlap,
                stiffness = tangential.stiffness_at(
@@ -185,7 +202,7 @@ struct ContactLaw {
     return stiffness > 0 ? norm(history.spring) / stiffness : 0;
   }
   SCREE_HD SpringEnergies springs_at(Real d, Vec3 normal_to_i, const PairSize& size,
-                                     const ContactHistory& history) const {
+                                     const History& history) const {
     const NormalContact contact = normal_contact(normal.of_pair(size), size, 0, d, d);
     SpringEnergies out;
     Real stiffness = 0;
@@ -201,51 +218,54 @@ struct ContactLaw {
   // Whether the mirrored history of one partner equals the other's, including the signs of zeros. A Coulomb
   // limit of zero leaves zeros in the spring that keep the signs of its former components; out-of-plane
   // components in 2D are zero without a sign on both sides.
-  SCREE_HD static bool is_mirrored(const ContactHistory& history) {
+  SCREE_HD static bool is_mirrored(const History& history) {
     const auto some = [](Vec3 a) { return a.x != 0 || a.y != 0 || a.z != 0; };
     return (!TangentialLaw::acts || some(history.spring)) && (!RollingLaw::acts || some(history.moment));
   }
 
   // The kHistory numbers of a contact: `number(k)` reads the k-th, `store(k, value)` writes it.
   template <class Number>
-  SCREE_HD static ContactHistory read_history(const Number& number) {
-    ContactHistory out;
+  SCREE_HD static History read_history(const Number& number) {
+    History out;
     if constexpr (TangentialLaw::kHistory > 0) out.spring = {number(0), number(1), number(2)};
     constexpr int first = TangentialLaw::kHistory;
     if constexpr (RollingLaw::kHistory > 0)
       out.moment = {number(first), number(first + 1), number(first + 2)};
-    if constexpr (kHysteretic) out.touched = number(kHistory - 1) != 0;
+    if constexpr (kHysteretic) out.touched = number(kTouched) != 0;
+    out.normal = State::read([&](int k) { return number(kHistory - State::kNumbers + k); });
     return out;
   }
   template <class Store>
-  SCREE_HD static void write_history(const ContactHistory& history, const Store& store) {
+  SCREE_HD static void write_history(const History& history, const Store& store) {
     const auto put = [&](int first, Vec3 a) {
       store(first, a.x), store(first + 1, a.y), store(first + 2, a.z);
     };
     if constexpr (TangentialLaw::kHistory > 0) put(0, history.spring);
     if constexpr (RollingLaw::kHistory > 0) put(TangentialLaw::kHistory, history.moment);
-    if constexpr (kHysteretic) store(kHistory - 1, history.touched ? 1 : 0);
+    if constexpr (kHysteretic) store(kTouched, history.touched ? 1 : 0);
+    history.normal.write([&](int k, Real value) { store(kHistory - State::kNumbers + k, value); });
   }
 
  private:
+  static constexpr int kTouched = TangentialLaw::kHistory + RollingLaw::kHistory;
+
   // of: the normal law of these partners.
   template <class Pair>
-  SCREE_HD static bool closed(const Pair& of, Real overlap, const ContactHistory& old) {
+  SCREE_HD static bool closed(const Pair& of, Real overlap, const History& old) {
     return overlap > 0 || ((!kHysteretic || old.touched) && overlap > -interaction_range_of(of));
   }
-  SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion,
-                                    ContactOutcome& out) {
+  SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion, Outcome& out) {
     out.load.force = fused(-motion.lever_arm_ratio, step.acting, out.load.force);
     const Vec3 moment = fused_cross(motion.normal1, step.acting);
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
     if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
   }
-  SCREE_HD static void release_springs(const SpringEnergies& springs, Real h, ContactOutcome& out) {
+  SCREE_HD static void release_springs(const SpringEnergies& springs, Real h, Outcome& out) {
     out.friction.unloading = springs.friction, out.rolling.unloading = springs.rolling;
     out.load.loss = springs.sum() * reciprocal(h);
   }
-  SCREE_HD static void add_rolling(const RollingStep& step, Real h, ContactOutcome& out) {
+  SCREE_HD static void add_rolling(const RollingStep& step, Real h, Outcome& out) {
     out.load.torque_i -= step.acting, out.load.torque_j += step.acting;
     SpringLosses both = step.losses;
     both += step.twisting;
@@ -254,13 +274,13 @@ struct ContactLaw {
   }
 };
 
-// Laws with friction, but neither adhesion nor rolling resistance. Of the laws with `kNeedsMotion`, only
-// these have implicit steps.
+// Laws with friction, but neither adhesion nor rolling resistance nor a state of the normal law. Of the laws
+// with `kNeedsMotion`, only these have implicit steps.
 template <class Law>
 inline constexpr bool kFrictionOnly = false;
 template <class Law>
 requires Law::kNeedsMotion inline constexpr bool kFrictionOnly<Law> =
-    Law::Tangential::acts && !Law::Rolling::acts && !Law::kHasRange;
+    Law::Tangential::acts && !Law::Rolling::acts && !Law::kHasRange && !Law::kStateful;
 
 // How many kinds of losses (`LossKind`) the contacts of a law distinguish.
 template <class Law>

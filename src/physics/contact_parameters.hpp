@@ -22,10 +22,15 @@ struct NormalLawParameters {
   bool jkr = false;        // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
   Real attraction = 0;     // constant cohesive force [N]
   Real range = 0;          // distance beyond touch over which it decreases to zero [m]
+  // Elastic-plastic adhesion (physics/eepa.hpp), with `adhesion_work` as its g and `attraction` as its -f0.
+  Real plasticity_ratio = 0;   // l = 1 - k1/k2 [-]; 0: the pair is elastic
+  Real adhesion_exponent = 0;  // chi [-]; 0: n
 
   // Whether particles of these materials interact.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
-  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0; }
+  bool is_plastic() const { return plasticity_ratio > 0; }
+  // Plastic pairs count as cohesive without adhesion, too: they are laws of the same kind.
+  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0 || is_plastic(); }
   NormalLawParameters without_cohesion() const {
     return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
   }

@@ -27,6 +27,46 @@ struct NormalContact {
 //   radius                 R*, where the law uses it itself
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
 //   cohesion(d)            adhesive part of energy(d) [J]; default: 0
+// A law whose force depends on more than the overlap has a type `State` with the numbers that a contact keeps
+// from step to step, all even under exchange of the partners, and zero for new contacts: `NoState` below has
+// its members. Its pair type has
+//   after(old, d)          the pair at the end of a step along a straight path from the state `old` to the
+//                          overlap d, with the new `state`; the functions above hold for that state
+//   dissipated             by this step, beside the damper; never negative [J]
+
+struct NoState {
+  static constexpr int kNumbers = 0;
+
+  // As `ContactLaw::read_history()` and `write_history()`.
+  template <class Number>
+  SCREE_HD static NoState read(const Number&) {
+    return {};
+  }
+  template <class Store>
+  SCREE_HD void write(const Store&) const {}
+  friend bool operator==(const NoState&, const NoState&) = default;
+};
+
+template <class NormalLaw>
+struct NormalStateOf {
+  using State = NoState;
+};
+template <class NormalLaw>
+requires requires { typename NormalLaw::State; }
+struct NormalStateOf<NormalLaw> {
+  using State = typename NormalLaw::State;
+};
+template <class NormalLaw>
+inline constexpr bool kHasState = NormalStateOf<NormalLaw>::State::kNumbers > 0;
+
+// The law of a pair after a step; `pair` itself without a state.
+template <class Pair, class State>
+SCREE_HD decltype(auto) after_step(const Pair& pair, const State& old, Real d) {
+  if constexpr (State::kNumbers > 0)
+    return pair.after(old, d);
+  else
+    return (pair);
+}
 
 template <class NormalLaw>
 inline constexpr bool kIsHysteretic = false;

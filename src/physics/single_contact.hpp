@@ -12,12 +12,12 @@
 
 namespace scree {
 
-// Laws with friction and without adhesion. Those without friction have `ContactLaw::load`.
+// Laws with friction, without adhesion and without a state of the normal law. Those without friction have `ContactLaw::load`.
 template <class Law>
 inline constexpr bool kHasSingleForm = false;
 template <class Law>
 requires Law::kNeedsMotion inline constexpr bool kHasSingleForm<Law> =
-    Law::Tangential::acts && !Law::kHasRange;
+    Law::Tangential::acts && !Law::kHasRange && !Law::kStateful;
 
 template <int kKinds>
 struct SingleLoad {

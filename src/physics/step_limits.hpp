@@ -30,14 +30,19 @@ inline constexpr Real kMostBodyPhase = 0.7, kMostAmongBodies = 2;
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
-// radius.
-inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+// radius; for plastic pairs that of the first loading.
+inline Real loading_stiffness(const NormalLawParameters& of, const PairSize& size) {
   const NormalLawParameters law = law_of_size(of, size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
   if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
   if (of.jkr && of.is_cohesive()) return JkrLaw(of).of_pair(size).slope(overlap);
   return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
+}
+// The largest stiffness at this overlap: that of unloading, k2 = k1 / (1 - l), for plastic pairs.
+inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+  const Real loading = loading_stiffness(of, size);
+  return of.is_plastic() ? loading / (1 - of.plasticity_ratio) : loading;
 }
 
 // Circular frequency of a single undamped contact [1/s].

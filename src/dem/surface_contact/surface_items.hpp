@@ -194,7 +194,8 @@ struct SurfaceLoadItem {
   }
 
   // Whether a pair within the interaction range is in contact.
-  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
+  template <class History>
+  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const History& before) {
     if constexpr (kHasRange<Law>)
       return law.closed(state, before);
     else
@@ -202,7 +203,7 @@ struct SurfaceLoadItem {
   }
   SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
                             const SurfacePose& surface, Index entry) const {
-    const ContactHistory before = old(surface, entry);
+    const auto before = old(surface, entry);
     const bool closed = is_closed(law, state, before);
     if (!closed) {
       in.template store_no_history<Law>(entry);
@@ -214,7 +215,7 @@ struct SurfaceLoadItem {
     if (in.h > 0) {
       if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
         add_surface_velocity(pair.motion, in.frames[surface.frame].middle_surface_velocity());
-      const ContactOutcome outcome = law.load(pair, before);
+      const auto outcome = law.load(pair, before);
       take(outcome, entry);
       loads[entry].energy = closed ? EvaluateEnergy{}(law, pair, outcome.history) : ContactEnergy{};
       if (closed) in.template store_history<Law>(surface, entry, outcome.history);
@@ -267,7 +268,8 @@ struct SurfaceLoadItem {
     if (touch.is_sphere || !in.frames[surface.frame].is_conveyor()) return 0;
     return -dot(force, conveyor_velocity(touch, surface));
   }
-  SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
+  template <class Outcome>
+  SCREE_HD void take(const Outcome& outcome, Index entry) const {
     loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
   }
 };

@@ -148,8 +148,9 @@ using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
   const std::size_t pair = pair_of(field, limit);
-  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range] = contact.laws[pair];
-  TrialKey key{k, c, n, Real(tension), e, zeta, work, Real(jkr), attraction, range, field.speeds.of(limit)};
+  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range, plasticity, chi] = contact.laws[pair];
+  TrialKey key{k,     c,          n,   Real(tension),         e, zeta, work, Real(jkr), attraction,
+               range, plasticity, chi, field.speeds.of(limit)};
   if (!contact.friction.empty()) {
     const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
     key.insert(key.end(), {mu, k_t, g, zeta_t});
@@ -187,7 +188,7 @@ void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTr
       const auto make = [&](Real gap) { return FrictionTrial<Law>(law, method, impact, gap); };
       return judge(trial, Trials(law, impact, setup.touch, make));
     }
-  if constexpr (!Law::kHysteretic) {
+  if constexpr (!Law::kHysteretic && !Law::kStateful) {
     const auto pair = law.normal.of_pair(impact.size);
     const auto make = [&](Real gap) { return ImplicitTrial(pair, method, impact, gap); };
     judge(trial, Trials(ContactLaw<typename Law::Normal>{law.normal}, impact, setup.touch, make));

@@ -210,7 +210,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                                 rolling,
                                 stiffness,
                                 typical_slip_stiffness(friction, size),
-                                typical_rolling_stiffness(rolling, size, stiffness),
+                                typical_rolling_stiffness(rolling, size, loading_stiffness(law, size)),
                                 std::min(size.radius_i, size.radius_j)};
       const Real step_a = explicit_step(model, first, dense, springs);
       const Real step_b = explicit_step(model, second, dense, springs);
