@@ -37,6 +37,28 @@ std::vector<Key> attraction_keys() {
           .about("Distance between the surfaces over which the attraction falls linearly to zero.")};
 }
 
+// Plasticity of a pair.
+std::vector<Key> plasticity_keys() {
+  return {
+      real("plasticity_ratio", "")
+          .within(0, 0.999)
+          .left_out("the contact is elastic, as with 0")
+          .about(
+              "l = 1 - k1/k2: elasto-plastic adhesion (Edinburgh elasto-plastic adhesion model, EEPA) with "
+              "the stiffness k1 of loading, K or Hertz's, and k2 of unloading; d_p: plastic overlap. "
+              "Without adhesion and damping the restitution is sqrt(1 - l) with a linear stiffness. Beside "
+              "it work_of_adhesion is the g of the pull-off force 3/2 pi g a, a = sqrt(2 R* d_p - d_p^2) "
+              "(what other programs call surface energy), but at most half of k2 d_p^n; attraction is a "
+              "constant force, -f0; restitution is that of the damper alone. Explicit steps in double "
+              "precision only. A pair without it, or with 0, may have an attraction, but no other "
+              "adhesion."),
+      real("adhesion_exponent", "")
+          .within(1, 5)
+          .left_out("the exponent of the stiffness: 1, or 1.5 with Hertz's law")
+          .about("chi, with plasticity_ratio: the adhesive force falls with d^chi when the contact is drawn "
+                 "off. A multiple of 0.5, and at least the exponent of the stiffness.")};
+}
+
 // Normal force, friction, rolling resistance and wear of a pair.
 std::vector<Key> law_keys() {
   return {
@@ -126,8 +148,8 @@ const TableKeys& pair_keys() {
         "both materials have a Young's modulus: Hertz's law of spheres, or in 2D a linear law of discs of "
         "thickness L with K = pi/4 E* L.",
         law_keys(), ""};
-    const std::vector<Key> attraction = attraction_keys();
-    pairs.keys.insert(pairs.keys.end(), attraction.begin(), attraction.end());
+    for (const std::vector<Key>& more : {attraction_keys(), plasticity_keys()})
+      pairs.keys.insert(pairs.keys.end(), more.begin(), more.end());
     return pairs;
   }();
   return keys;
@@ -159,7 +181,8 @@ const TableKeys& contact_keys() {
                   "material with itself. none: it must be given. Otherwise stiffnesses act in series (K = 2 "
                   "K_a K_b / (K_a + K_b) for two linear laws; Hertz's law uses the materials' moduli: 1/E* = "
                   "sum (1 - nu^2)/E), and damping, damping ratios, restitution, coefficients of friction, "
-                  "adhesion and attraction are the geometric, arithmetic or harmonic mean, or the smaller or "
+                  "adhesion, plasticity ratios and attraction are the geometric, arithmetic or harmonic "
+                  "mean, or the smaller or "
                   "larger value. `scree check` prints the resulting pairs."),
        tables("pairs", pair_keys())},
       ""};

@@ -155,7 +155,7 @@ void check_integrator(const DeckTable& deck, const Model& model) {
     for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
       if (pair.has(key) && pair.real(key) > 0)
         pair.fail(key, fmt::format("{}: implicit steps support only friction", needs));
-    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
+    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion", "plasticity_ratio"})
       if (pair.has(key) && pair.real(key) > 0) pair.fail(key, needs);
   }
 }

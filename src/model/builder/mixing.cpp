@@ -223,6 +223,7 @@ DeckTable combined_pair(const DeckTable& contact, const LikePairs& like, const s
   pair.take_mean("rolling_damping_ratio"), pair.take_mean("rolling_damping"), pair.take_twisting();
   pair.take_mean("wear_coefficient");
   pair.take_adhesion(), pair.take_mean("attraction"), pair.take_mean("attraction_range");
+  pair.take_mean("plasticity_ratio"), pair.take_same("adhesion_exponent");
   return pair.result();
 }
 

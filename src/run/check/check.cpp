@@ -112,8 +112,12 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
 std::string attraction_line(const Model& model, const PairLimit& limit) {
   const NormalLawParameters& law = model.contact.law(limit.material[0], limit.material[1]);
   std::string parts;
-  if (law.adhesion_work > 0)
-    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.jkr ? "JKR" : "DMT", law.adhesion_work);
+  if (law.is_plastic())
+    parts = fmt::format("EEPA, plasticity ratio {:g}, adhesion exponent {:g}{}", law.plasticity_ratio,
+                        law.adhesion_exponent, law.adhesion_work > 0 ? ", " : "");
+  else if (law.adhesion_work > 0)
+    parts = law.jkr ? "JKR, " : "DMT, ";
+  if (law.adhesion_work > 0) parts += fmt::format("work of adhesion {:.6g} J/m^2", law.adhesion_work);
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
   const Real reach = largest_interaction_range(law, model.particles.totals.largest_radius);
