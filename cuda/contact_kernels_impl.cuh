@@ -89,7 +89,7 @@ __global__ void __launch_bounds__(kSystemThreads)
     friction_losses_kernel(Index n, const __grid_constant__ DeviceViews in,
                            const __grid_constant__ FrictionStart start, const FrictionLossOutputs to,
                            const Laws laws) {
-  constexpr int kWords = sizeof(FrictionLossSums) / sizeof(double);
+  constexpr int kWords = sizeof(FrictionLossSumsOf<LawOf<Laws>>) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = thread_index();
   if (i - static_cast<Index>(threadIdx.x) % warpSize >= n) return;
@@ -97,7 +97,7 @@ __global__ void __launch_bounds__(kSystemThreads)
   const auto views = warp_views(in, &contacts[threadIdx.x / kSlice], idle);
   const FrictionLossesItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
   auto self = item.walk.self(idle ? n - 1 : i);
-  FrictionLossSums sum;
+  FrictionLossSumsOf<LawOf<Laws>> sum;
   self.i = i;
   item.add_neighbors(self, sum);
   if (!idle) item.finish(self, sum);
@@ -126,6 +126,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
+  bool rolls() const override { return LawOf<Laws>::Rolling::acts; }
   const char* mixed_trouble() const override {
     return kHasRange<LawOf<Laws>> ? "particles attract each other" : "";
   }
@@ -185,7 +186,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void surface_friction_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                               const SurfaceFrictionRequest& r, StepSums* sums) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>)
       launch_surfaces(device, chunks,
                       SurfaceFrictionItem<Laws>{in, r.particles, r.placed, laws_, r.friction_steps},
                       r.friction_steps, sums);
@@ -193,7 +194,7 @@ class ContactKernelsOf : public DeviceContactKernels {
       refuse_friction();
   }
   void friction_system(Device device, const DeviceFrictionRequest& r) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>) {
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>) {
       if (r.end == r.first) return;
       friction_system_kernel<Laws>
           <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
@@ -204,7 +205,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void friction_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
                        const FrictionLossOutputs& to) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>) {
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>) {
       if (n == 0) return;
       friction_losses_kernel<Laws>
           <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
@@ -215,7 +216,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
                            const LaggedLimits& to) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>)
       for_each(device, n, LaggedLimitItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
     else
       refuse_friction();

@@ -35,8 +35,9 @@ struct FirstTwistItem {
 
 // One step of the solve: adds the direction to the solution, updates the residual, and computes the next
 // direction.
+template <bool kRolls>
 struct FrictionSolverItem {
-  SubtractFrictionItem<SlicedRows> subtract;
+  SubtractFrictionItem<SlicedRows, kRolls> subtract;
   TwistDirectionItem direction;  // weights of the next direction
   Twistf *next, *solution;
 
@@ -54,8 +55,9 @@ struct FrictionSolverItem {
 constexpr int kResidualThreads = 128;
 
 // Residual, diagonal block and norms of a particle from its entries of the Newton matrix.
+template <bool kRolls>
 __global__ void __launch_bounds__(kResidualThreads)
-    residual_kernel(Index n, const __grid_constant__ FrictionResidualItem residual,
+    residual_kernel(Index n, const __grid_constant__ FrictionResidualItem<kRolls> residual,
                     const FrictionMatrix matrix, const SlicedRows rows, const Index* surface_offsets,
                     const __grid_constant__ FrictionNormsItem of, FrictionNorms* largest) {
   const Index i = thread_index();
@@ -78,8 +80,10 @@ void CudaFrictionArrays::resize(const CudaItems& items) {
              all = static_cast<std::size_t>(items.layout.items);
   mean_spin.resize(all);
   for (DeviceArray<Twistf>& of : direction) of.resize(all);
-  entries.resize(static_cast<std::size_t>(items.list.slots()));
+  const bool rolls = items.kernels->rolls();
+  entries.resize(static_cast<std::size_t>(items.list.slots()), rolls);
   surface_entries.resize(static_cast<std::size_t>(items.surfaces.entries()));
+  if (rolls) surface_rolling.resize(static_cast<std::size_t>(items.surfaces.entries()));
   start_torque.resize(owned), step_torque.resize(owned), end_torque.resize(owned);
   phase_squared.resize(owned), surface_count.resize(owned);
   mass.resize(owned), inverse_block.resize(BlockSlices::size(owned)), residual.resize(owned),
@@ -112,7 +116,7 @@ FrictionStart CudaFrictionStep::friction_start() {
 
 FrictionMatrix CudaFrictionStep::matrix() {
   return {arrays_.matrix_count.data(), friction_.surface_count.data(), friction_.entries.views(),
-          friction_.surface_entries.data()};
+          friction_.surface_entries.data(), friction_.surface_rolling.data()};
 }
 
 // Predicts positions and orientations from the accelerations.
@@ -172,7 +176,12 @@ void CudaFrictionStep::queue_system() {
   }
   friction_.norms.zero(items_.stream);
   if (items_.owned == 0) return;
-  const FrictionResidualItem residual{step_views(),
+  with_rolling(items_.kernels->rolls(), [&](auto rolls) { queue_residual<decltype(rolls)::value>(); });
+}
+
+template <bool kRolls>
+void CudaFrictionStep::queue_residual() {
+  const FrictionResidualItem<kRolls> residual{step_views(),
                                       rotation_views(),
                                       step_forces(),
                                       step_torques(),
@@ -186,7 +195,7 @@ void CudaFrictionStep::queue_system() {
                                 arrays_.force_magnitude.data(),
                                 arrays_.stiffness_ratio.data(),
                                 friction_.phase_squared.data()};
-  residual_kernel<<<blocks_for(items_.owned, kResidualThreads), kResidualThreads, 0, items_.stream>>>(
+  residual_kernel<kRolls><<<blocks_for(items_.owned, kResidualThreads), kResidualThreads, 0, items_.stream>>>(
       items_.owned, residual, matrix(), items_.list.rows(), items_.surfaces.list().offsets, norms,
       friction_.norms.data());
   require_cuda(cudaGetLastError(), "residual with friction");
@@ -264,6 +273,12 @@ Real CudaFrictionStep::right_hand_side() {
 }
 
 int CudaFrictionStep::solve(Real tolerance) {
+  return with_rolling(items_.kernels->rolls(),
+                      [&](auto rolls) { return solve<decltype(rolls)::value>(tolerance); });
+}
+
+template <bool kRolls>
+int CudaFrictionStep::solve(Real tolerance) {
   DeviceHalo& halo = items_.halo_stream.halo;
   Twist* residual = friction_.residual.data();
   Twistf* correction = friction_.correction.data();
@@ -281,7 +296,7 @@ int CudaFrictionStep::solve(Real tolerance) {
     halo.exchange(on, item.twist);
   };
   const auto item = [&](int product, const ChebyshevWeights& weights) {
-    return FrictionSolverItem{{matrix(), items_.list.rows(), items_.surfaces.list().offsets,
+    return FrictionSolverItem<kRolls>{{matrix(), items_.list.rows(), items_.surfaces.list().offsets,
                                friction_.mass.data(), is_consistent(), twist(product), unit_, residual},
                               direction(weights),
                               twist(product + 1),
@@ -337,7 +352,8 @@ void CudaFrictionStep::accept() {
   bodies_.find_friction_steps(friction_start());
   items_.kernels->friction_losses(
       items_.device(), items_.views(), items_.owned, friction_start(),
-      {now.contact_loss.data(), now.integrator_loss.data(), now.friction_loss.data()});
+      {now.contact_loss.data(), now.integrator_loss.data(), now.friction_loss.data(), now.rolling_loss.data(),
+       now.twisting_loss.data()});
   items_.surfaces.accumulate_friction_works(items_.device(), *items_.kernels);
   items_.history.accepted();
   for_each(items_.device(), items_.owned,

@@ -32,6 +32,10 @@ class CudaFrictionStep : public CudaImplicitStep {
   bool is_consistent() const;
   Real right_hand_side();
   void report_not_finite();  // throws where a residual is not finite, as the item of the same name does
+  template <bool kRolls>
+  void queue_residual();
+  int solve(Real tolerance);
+  template <bool kRolls>
   int solve(Real tolerance);
 
   CudaFrictionArrays& friction_;

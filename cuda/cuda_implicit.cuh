@@ -19,6 +19,7 @@ struct CudaFrictionArrays {
   DeviceArray<Index> surface_count;
   FrictionEntryArrays<DeviceArray> entries;
   DeviceArray<FrictionEntry> surface_entries;
+  DeviceArray<RollingEntry> surface_rolling;  // for laws with rolling resistance
   DeviceArray<ScaledMass> mass;
   DeviceArray<float> inverse_block;  // laid out as `BlockSlices`
   DeviceArray<Twist> residual;

@@ -274,13 +274,13 @@ struct ContactLaw {
   }
 };
 
-// Laws with friction, but neither adhesion nor rolling resistance nor a state of the normal law. Of the laws
-// with `kNeedsMotion`, only these have implicit steps.
+// Whether a law with `kNeedsMotion` has implicit steps: all laws with friction but those of JKR contacts,
+// which form and break at different distances, and those whose normal force depends on the path.
 template <class Law>
-inline constexpr bool kFrictionOnly = false;
+inline constexpr bool kHasFrictionSteps = false;
 template <class Law>
-requires Law::kNeedsMotion inline constexpr bool kFrictionOnly<Law> =
-    Law::Tangential::acts && !Law::Rolling::acts && !Law::kHasRange && !Law::kStateful;
+requires Law::kNeedsMotion inline constexpr bool kHasFrictionSteps<Law> =
+    Law::Tangential::acts && !Law::kHysteretic && !Law::kStateful;
 
 // How many kinds of losses (`LossKind`) the contacts of a law distinguish.
 template <class Law>

@@ -15,6 +15,7 @@ FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_l
 FRICTION = [HERE / "friction.toml", "parallel.imbalance=0.05"]
 FRICTION_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
 FIXED = ["time.control=fixed"]
+ROLLING = ["contact.pairs.0.rolling_friction=0.2", "contact.pairs.0.rolling_damping_ratio=0.2"]
 # Motors, gears, a screw, a spring, a stop, friction, a bushing and a loop of hinges, all of them at work.
 ELEMENTS = [HERE / "spatial_elements.toml", "parallel.imbalance=0.0"]
 # Grains on walls of triangles at rest; a run that ends half-way has a snapshot there that the other has, too.
@@ -61,6 +62,8 @@ MAIN_CASES = {
                                                   (4,)),
     "friction on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
                                      "parallel.imbalance=0.0", "time.end=0.08"], (4,)),
+    "rolling, implicit": ([HERE / "rolling.toml", *IMPLICIT, *FIXED, "parallel.imbalance=0.05", "time.step=8e-5",
+                           "time.end=0.08"], (2, 4)),
 }
 # On one rank and on these numbers.
 OTHER_CASES = {
@@ -78,6 +81,11 @@ OTHER_CASES = {
     "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (3,)),
     "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                               "contact.pairs.0.friction=0.4", "time.end=0.08"], (4,)),
+    "friction on bodies, rolling, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, *ROLLING,
+                                               "integrator.substeps=1", "parallel.imbalance=0.0", "time.end=0.08"],
+                                              (2, 4)),
+    "sticky, implicit": ([HERE / "sticky.toml", *IMPLICIT, *FIXED, "contact.pairs.0.adhesion=dmt",
+                          "parallel.imbalance=0.05", "time.end=1e-3"], (2, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (3,)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (2,)),
 }

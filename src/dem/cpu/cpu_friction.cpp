@@ -11,7 +11,10 @@ void CpuFrictionArrays::resize(const CpuItems& items) {
   const auto owned = static_cast<std::size_t>(items.layout.owned),
              all = static_cast<std::size_t>(items.layout.items);
   mean_spin.resize(all), direction.resize(all);
-  entries.resize(items.list.neighbors.size()), surface_entries.resize(items.list.surfaces.surfaces.size());
+  const bool rolls = items.kernels->rolls();
+  entries.resize(items.list.neighbors.size(), rolls);
+  surface_entries.resize(items.list.surfaces.surfaces.size());
+  if (rolls) surface_rolling.resize(surface_entries.size());
   start_torque.resize(owned), step_torque.resize(owned), end_torque.resize(owned);
   phase_squared.resize(owned), surface_count.resize(owned);
   mass.resize(owned), inverse_block.resize(BlockSlices::size(owned)), residual.resize(owned),
@@ -53,7 +56,7 @@ void CpuFrictionStep::find_friction_steps() {
 
 FrictionMatrix CpuFrictionStep::matrix() {
   return {arrays_.matrix_count.data(), friction_.surface_count.data(), friction_.entries.views(),
-          friction_.surface_entries.data()};
+          friction_.surface_entries.data(), friction_.surface_rolling.data()};
 }
 
 // Moves and rotates the particles according to their accelerations.
@@ -111,17 +114,19 @@ ParticleNorms CpuFrictionStep::contact_force() {
   items_.kernels->friction_system(items_.views(), n,
                                   {items_.model.gravity, newton_weights(), friction_start(), step_forces(),
                                    step_torques(), matrix(), friction_.phase_squared.data()});
-  const FrictionResidualItem residual{step_views(),
-                                      rotation_views(),
-                                      step_forces(),
-                                      step_torques(),
-                                      friction_.residual.data(),
-                                      friction_.mass.data(),
-                                      {friction_.inverse_block.data()},
-                                      arrays_.stiffness_ratio.data()};
   const PackedRows rows{items_.list.offsets.data(), items_.list.neighbors.data()};
-  for (Index i = 0; i < n; ++i)
-    residual(i, matrix(), rows, items_.list.surfaces.offsets[static_cast<std::size_t>(i)]);
+  with_rolling(items_.kernels->rolls(), [&](auto rolls) {
+    const FrictionResidualItem<decltype(rolls)::value> residual{step_views(),
+                                                                rotation_views(),
+                                                                step_forces(),
+                                                                step_torques(),
+                                                                friction_.residual.data(),
+                                                                friction_.mass.data(),
+                                                                {friction_.inverse_block.data()},
+                                                                arrays_.stiffness_ratio.data()};
+    for (Index i = 0; i < n; ++i)
+      residual(i, matrix(), rows, items_.list.surfaces.offsets[static_cast<std::size_t>(i)]);
+  });
   const FrictionNorms largest = largest_norms();
   force_scale_ = largest.force, largest_stiffness_ratio_ = largest.stiffness_ratio,
   phase_squared_ = largest.phase_squared;
@@ -178,18 +183,25 @@ Real CpuFrictionStep::right_hand_side() {
 }
 
 int CpuFrictionStep::solve(Real tolerance) {
+  return with_rolling(items_.kernels->rolls(),
+                      [&](auto rolls) { return solve<decltype(rolls)::value>(tolerance); });
+}
+
+template <bool kRolls>
+int CpuFrictionStep::solve(Real tolerance) {
   const Index n = items_.layout.owned;
   std::vector<Twistf>& d = friction_.direction;
   std::fill_n(d.begin(), n, Twistf{});
   std::fill(friction_.correction.begin(), friction_.correction.end(), Twistf{});
-  const SubtractFrictionItem<PackedRows> subtract{matrix(),
-                                                  {items_.list.offsets.data(), items_.list.neighbors.data()},
-                                                  items_.list.surfaces.offsets.data(),
-                                                  friction_.mass.data(),
-                                                  is_consistent(),
-                                                  d.data(),
-                                                  unit_,
-                                                  friction_.residual.data()};
+  const SubtractFrictionItem<PackedRows, kRolls> subtract{
+      matrix(),
+      {items_.list.offsets.data(), items_.list.neighbors.data()},
+      items_.list.surfaces.offsets.data(),
+      friction_.mass.data(),
+      is_consistent(),
+      d.data(),
+      unit_,
+      friction_.residual.data()};
   return iterate_chebyshev(largest_stiffness_ratio_, tolerance, [&](const ChebyshevWeights& weights) {
     const TwistDirectionItem direction{{friction_.inverse_block.data()},
                                        friction_.residual.data(),
@@ -241,7 +253,8 @@ void CpuFrictionStep::accept() {
   find_friction_steps();
   items_.kernels->friction_losses(
       items_.views(), n, friction_start(),
-      {store.contact_loss.data(), store.integrator_loss.data(), store.friction_loss.data()});
+      {store.contact_loss.data(), store.integrator_loss.data(), store.friction_loss.data(),
+       store.rolling_loss.data(), store.twisting_loss.data()});
   items_.history.accepted();
   items_.side.book_step();
   items_.surfaces.accumulate_friction_works(items_.side.poses(), store, items_.list.surfaces);

@@ -20,6 +20,7 @@ struct CpuFrictionArrays {
   std::vector<Index> surface_count;
   FrictionEntryArrays<std::vector> entries;
   std::vector<FrictionEntry> surface_entries;
+  std::vector<RollingEntry> surface_rolling;  // for laws with rolling resistance
   std::vector<ScaledMass> mass;
   std::vector<float> inverse_block;  // BlockSlices
   std::vector<Twist> residual;
@@ -57,6 +58,8 @@ class CpuFrictionStep : public CpuImplicitStep {
   bool is_consistent() const;
   Real right_hand_side();
   void report_not_finite();  // throws, like that of the items
+  int solve(Real tolerance);
+  template <bool kRolls>
   int solve(Real tolerance);
 
   CpuFrictionArrays& friction_;

@@ -358,7 +358,7 @@ BodyContactTotals BodyContacts::totals() const {
 
 BodyStep BodyContacts::step_totals() const {
   BodyStep sum;
-  for (const BodyStep& step : steps_) sum.losses.add(step.losses, 1), sum.friction += step.friction;
+  for (const BodyStep& step : steps_) sum.losses.add(step.losses, 1), sum.tangential.add(step.tangential);
   return sum;
 }
 

@@ -46,7 +46,7 @@ class CpuSurfaces {
       const auto show = [&](const auto& contact, Vec3 place) {
         if (contact.touches)
           visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place,
-                slopes_of(contact.contact));
+                slopes_of(contact));
       };
       if (moves_)
         show(friction_steps_[entry],

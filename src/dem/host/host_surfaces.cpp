@@ -213,7 +213,7 @@ void HostSurfaces::book_step() {
   if (!ranks_.is_root()) return;
   const BodyStep step = bodies_.step_totals();
   losses_.contact_loss += step.losses.dissipated, losses_.integrator_loss += step.losses.integrator;
-  losses_.tangential.of[kFrictionLoss] += step.friction;
+  losses_.tangential.add(step.tangential);
   bodies_.accumulate_step_works(poses());
   bodies_.accept();
 }

@@ -35,6 +35,7 @@ class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
   virtual int history() const = 0;  // numbers of history per contact
+  virtual bool rolls() const = 0;   // whether the law's type has rolling resistance
   virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
   // Closes an explicit step of all n owned particles; pairs: of the list, with their history, for laws with
@@ -74,7 +75,7 @@ class ContactKernels {
   // Energy accounting of the particles' contacts over an accepted implicit step.
   virtual void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                            Real* contact_loss, Real* integrator_loss) const = 0;
-  // Implicit steps with friction, for laws with `kFrictionOnly`: contacts of n entries with surfaces on
+  // Implicit steps with friction, for laws with `kHasFrictionSteps`: contacts of n entries with surfaces on
   // bodies, system, energy accounting, and the friction limits at an iterate. friction_steps: per entry.
   virtual void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
                                       const SurfacePose* start_surface_poses,

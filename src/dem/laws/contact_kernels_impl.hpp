@@ -19,6 +19,7 @@ class CpuContactKernels : public ContactKernels {
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
   int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
+  bool rolls() const override { return LawOf<Laws>::Rolling::acts; }
   void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
     for_each(
@@ -102,7 +103,7 @@ class CpuContactKernels : public ContactKernels {
   void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
                               const SurfacePose* start_surface_poses,
                               SurfaceFriction* friction_steps) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>)
       for_each(Serial{}, n, SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, friction_steps});
     else
       refuse_friction();
@@ -140,7 +141,7 @@ class CpuContactKernels : public ContactKernels {
   template <class Use>
   void over_friction_step(const ContactViews<PackedRows>& in, const FrictionStart& start,
                           const Use& use) const {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
+    if constexpr (kHasFrictionSteps<LawOf<Laws>>)
       use(FrictionWalk<Laws, PackedRows>{in, laws_, {start}});
     else
       refuse_friction();

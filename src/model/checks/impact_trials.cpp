@@ -183,7 +183,7 @@ template <class Law>
 void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTrial& trial) {
   const TrialImpact& impact = setup.impact;
   const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
-  if constexpr (kFrictionOnly<Law>)
+  if constexpr (kHasFrictionSteps<Law>)
     if (trial.is_frictional) {
       const auto make = [&](Real gap) { return FrictionTrial<Law>(law, method, impact, gap); };
       return judge(trial, Trials(law, impact, setup.touch, make));
