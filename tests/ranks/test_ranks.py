@@ -29,6 +29,11 @@ WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_wo
 LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
+# Plastic grains in their place, which do not stick to some bodies, and plastic grains with a linear stiffness.
+PLASTIC_MESHES = [*STICKY_MESHES, "contact.pairs.0.plasticity_ratio=0.6", "contact.pairs.0.work_of_adhesion=1.0",
+                  "contact.pairs.0.adhesion_exponent=2.5", "contact.pairs.1.attraction=1e-6"]
+PLASTIC = [HERE / "rolling.toml", "parallel.imbalance=0.05", "contact.pairs.0.plasticity_ratio=0.5",
+           "contact.pairs.0.work_of_adhesion=200.0", "contact.pairs.0.attraction=1e-3"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
 SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
 # On one rank, on these numbers, and with a restart in the middle: three ranks in the first half, two in the second.
@@ -46,6 +51,8 @@ MAIN_CASES = {
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
+    "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
+    "plastic meshes and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
     # Bodies among them that turn and go through a side, driven, and some in friction with them.
     "friction on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (4,)),

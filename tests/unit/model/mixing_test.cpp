@@ -153,6 +153,9 @@ TEST_CASE("of materials with moduli the exact effective ones, whatever the rule"
   check_becomes("minimum", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 "surface_energy = 0.04\nadhesion = \"dmt\"\n", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 kMetals);
+  check_becomes("arithmetic", "plasticity_ratio = 0.5\nwork_of_adhesion = 2.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.75\nwork_of_adhesion = 4.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.625\nwork_of_adhesion = 3.0\nadhesion_exponent = 2.0\n", kMetals);
 }
 
 TEST_CASE("derived pairs are listed in the model as keys, in the order of the materials") {
@@ -187,7 +190,9 @@ TEST_CASE("every key of a pair is mixed") {
                                           "surface_energy",
                                           "adhesion",
                                           "attraction",
-                                          "attraction_range"};
+                                          "attraction_range",
+                                          "plasticity_ratio",
+                                          "adhesion_exponent"};
   for (const Key& key : contact_keys().keys) {
     if (key.name != "pairs") continue;
     CHECK(key.table->keys.size() == known.size());
