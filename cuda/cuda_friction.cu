@@ -194,7 +194,8 @@ void CudaFrictionStep::queue_residual() {
                                 friction_.mass.data(),
                                 arrays_.force_magnitude.data(),
                                 arrays_.stiffness_ratio.data(),
-                                friction_.phase_squared.data()};
+                                friction_.phase_squared.data(),
+                                kRolls ? items_.other.angular_acceleration.data() : nullptr};
   residual_kernel<kRolls><<<blocks_for(items_.owned, kResidualThreads), kResidualThreads, 0, items_.stream>>>(
       items_.owned, residual, matrix(), items_.list.rows(), items_.surfaces.list().offsets, norms,
       friction_.norms.data());

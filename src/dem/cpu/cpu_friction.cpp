@@ -83,7 +83,8 @@ FrictionNorms CpuFrictionStep::largest_norms() {
                              friction_.mass.data(),
                              arrays_.force_magnitude.data(),
                              arrays_.stiffness_ratio.data(),
-                             friction_.phase_squared.data()};
+                             friction_.phase_squared.data(),
+                             items_.kernels->rolls() ? friction_.start_acceleration.data() : nullptr};
   for (Index i = 0; i < items_.layout.owned; ++i) {
     const FrictionNorms one = of(i);
     finite = finite && std::isfinite(one.residual);

@@ -81,6 +81,9 @@ struct FrictionNormsItem {
   const Twist* residual;
   const ScaledMass* mass;
   const Real *magnitude, *stiffness_ratio, *phase_squared;
+  // Null for laws without rolling resistance. With it a moment may act without a force, and the angular
+  // acceleration belongs to the scale of the residual.
+  const Vec3* start_angular_acceleration = nullptr;
 
   SCREE_HD FrictionNorms operator()(Index i) const {
     const Real move = norm(residual[i].move), turn = norm(residual[i].turn);
@@ -91,6 +94,8 @@ struct FrictionNormsItem {
     out.residual = move > turn ? move : turn;
     out.correction_bound = gain * (by_move > by_rotation ? by_move : by_rotation);
     out.force = magnitude[i] + at_start;
+    if (start_angular_acceleration != nullptr)
+      out.force += mass[i].turn * step.position[i].w * norm(start_angular_acceleration[i]);
     out.stiffness_ratio = stiffness_ratio[i], out.phase_squared = phase_squared[i];
     return out;
   }
