@@ -51,7 +51,8 @@ class Measured:
 def run_deck(deck: Deck, folder: pathlib.Path, plan: Plan) -> Run:
     """The results in the folder if they are those of this deck, else a run of it."""
     written, record = folder / "deck.toml", read_record(folder)
-    if record and record["run"]["status"] == "done" and written.exists() and written.read_text("utf-8") == str(deck):
+    done = record is not None and record["run"]["status"] == "done" and written.exists()
+    if done and written.read_text(encoding="utf-8") == str(deck):
         return open_run(folder)
     deck.name = str(written)
     return deck.run(folder, "--overwrite", backend=plan.backend, quiet=True, scree=plan.scree)

@@ -17,9 +17,11 @@ from scree.calibration.scaling import Factors, scaled_deck
 from scree.deck import Deck
 from scree.errors import ScreeError
 from scree.run import Run
+from scree.snapshots import Snapshot
 
 DECKS = pathlib.Path(__file__).resolve().parents[3] / "input/calibration"  # in the repository
 LEDGE = (0.1, 0.85)  # part of the ledge over which the slope is fitted: not at the wall, not at the edge
+EARLIER = 0.8  # part of the run after which the slope must not change
 CHORD = 0.5  # part of the drum's radius on either side of the axis over which the surface is fitted
 PEAK_OVER = 0.2  # displacement over which the shear stress is averaged for its peak, in diameters
 RESIDUAL = 0.4  # last part of the displacement: the residual state
@@ -50,15 +52,17 @@ def named(tables: Mapping[str, Any], path: str, name: str) -> Any:
     raise ScreeError(f"deck: {path}: none is named {name}")
 
 
-def states(run: Run, first: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    snapshots = [run.snapshots[k].particles for k in range(first, len(run.snapshots))]
-    return [(np.array(each["position"]), np.array(each["radius"])) for each in snapshots]
+def state(snapshot: Snapshot) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and radii of the grains [m]."""
+    return np.array(snapshot.particles["position"]), np.array(snapshot.particles["radius"])
 
 
-def ledge_surface(run: Run) -> surface.Surface:
+def ledge_surface(run: Run, time: float = float("inf")) -> surface.Surface:
+    """Of the snapshot nearest to this time [s], by default the last one."""
     low = run.deck["space"]["min"][0]
     length = named(run.deck, "walls", "gate")["point"][0] - low
-    found = surface.find(states(run, len(run.snapshots) - 1), *(low + part * length for part in LEDGE))
+    snapshot = run.snapshots[-1] if time == float("inf") else run.snapshots.at(time)
+    found = surface.find([state(snapshot)], *(low + part * length for part in LEDGE))
     if found is None:
         raise ScreeError(f"{run.folder}: no slope is left on the ledge")
     return found
@@ -66,10 +70,17 @@ def ledge_surface(run: Run) -> surface.Surface:
 
 def drum_surface(run: Run) -> surface.Surface:
     radius = named(run.deck, "meshes", "drum")["radius"]
-    found = surface.find(states(run, len(run.snapshots) // 2), -CHORD * radius, CHORD * radius)
+    late = range(len(run.snapshots) // 2, len(run.snapshots))
+    found = surface.find([state(run.snapshots[k]) for k in late], -CHORD * radius, CHORD * radius)
     if found is None:
         raise ScreeError(f"{run.folder}: the grains in the drum have no free surface")
     return found
+
+
+def measure_ledge(run: Run) -> Values:
+    """change: of the angle since the snapshot at EARLIER."""
+    now, earlier = ledge_surface(run), ledge_surface(run, EARLIER * run.snapshots[-1].time)
+    return {"angle": now.angle, "change": now.angle - earlier.angle}
 
 
 def single(values: Sequence[Values]) -> Values:
@@ -159,7 +170,7 @@ def combine_column(values: Sequence[Values]) -> Values:
 
 
 TESTS = {
-    "repose": Test("angle_of_repose", lambda run: {"angle": ledge_surface(run).angle}, single, {"angle": "degrees"}),
+    "repose": Test("angle_of_repose", measure_ledge, single, {"angle": "degrees"}),
     "drum": Test("rotating_drum", lambda run: {"angle": drum_surface(run).angle}, single, {"angle": "degrees"}),
     "shear": Test("direct_shear", measure_shear, combine_shear,
                   {"residual_angle": "degrees", "residual_cohesion": "Pa", "peak_angle": "degrees",

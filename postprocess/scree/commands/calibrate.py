@@ -20,6 +20,7 @@ TESTS = {"repose": "angle of a slope that remains on a ledge", "drum": "dynamic 
          "shear": "friction angles and cohesion in direct shear",
          "uniaxial": "unconfined yield strength of a cohesive material"}
 MET, NOT_MET = 0, 1  # exit codes
+STEADY = 1.0  # largest change of a slope over the last fifth of a run [degrees]
 FIRST = {"repose": "angle", "drum": "angle", "shear": "residual_angle", "uniaxial": "strength"}  # quantity of a target
 
 
@@ -50,7 +51,7 @@ def add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE",
                         help="keys of the test's deck, as for scree run")
     parser.add_argument("--soften", type=positive, default=1.0, metavar="FACTOR",
-                        help="factor on the moduli or stiffnesses, for longer steps; adhesion changes with its power 2/5")
+                        help="factor on the moduli or stiffnesses, for longer steps; pull-off forces stay the same")
     parser.add_argument("--at-once", type=count, default=1, help="runs at a time (default 1)")
     parser.add_argument("--backend", choices=("auto", "cpu", "cuda"), default="auto")
     parser.add_argument("--program", type=pathlib.Path, metavar="SCREE",
@@ -162,6 +163,8 @@ def print_measured(name: str, measured: Measured) -> None:
     for quantity, unit in MEASURED[name].units.items():
         mean = with_spread(measured.mean(quantity), measured.spread(quantity), seeds)
         print(f"{quantity.replace('_', ' ')}: {mean}{'' if unit == '1' else f' {unit}'} ({seeds} seed{'s' * (seeds > 1)})")
+    if any(abs(each.get("change", 0.0)) > STEADY for of_seed in measured.values for each in of_seed):
+        print("the slope still changes at the end of some runs; make them longer by --set time.end")
     if any(each.get("failed") == 0.0 for of_seed in measured.values for each in of_seed):
         print("some columns did not fail: their strength is above the printed value; apply more force by --set")
 
