@@ -13,7 +13,8 @@ from scree.errors import ScreeError
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Returns the exit code: 0 done, 1 if `compare` finds differences, 2 if the command cannot be carried out."""
+    """Returns the exit code: 0 done, 1 if `compare` finds differences or a search fails, 2 if the command cannot be
+    carried out."""
     parser = argparse.ArgumentParser(prog="scree-post", description="Evaluates the results of a run of Scree.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, (describe, run) in COMMANDS.items():

@@ -58,8 +58,8 @@ class SurfaceTest(unittest.TestCase):
 
     def test_single_grains_in_the_air_do_not_count(self):
         positions, radii = grains_below(0.3, np.random.default_rng(3))
-        flying = np.vstack([positions, [[10.0, 2.0, 25.0], [11.0, 2.0, 24.0]]])
-        with_them = surface.find([(flying, np.full(len(flying), 0.5))], 2.0, 18.0)
+        airborne = np.vstack([positions, [[10.0, 2.0, 25.0], [11.0, 2.0, 24.0]]])
+        with_them = surface.find([(airborne, np.full(len(airborne), 0.5))], 2.0, 18.0)
         self.assertAlmostEqual(with_them.angle, surface.find([(positions, radii)], 2.0, 18.0).angle, delta=0.3)
 
     def test_nothing_has_no_surface(self):
@@ -216,7 +216,7 @@ class MeasureTest(unittest.TestCase):
 class SearchTest(unittest.TestCase):
     def points_of(self, *functions, noise=0.0):
         rng = np.random.default_rng(7)
-        self.count = 0
+        self.count, self.told = 0, []
 
         def measure(shares):
             self.count += 1
@@ -234,7 +234,8 @@ class SearchTest(unittest.TestCase):
         wished = 0.37, 0.62
         targets = [search.Target("repose", "angle", self.angle(*wished)),
                    search.Target("drum", "angle", self.strength(*wished))]
-        found = search.search(targets, self.points_of(self.angle, self.strength), 4)
+        found = search.search(targets, self.points_of(self.angle, self.strength), self.told.append, 4)
+        self.assertEqual(self.told, found.points)
         self.assertTrue(found.met)
         self.assertLessEqual(self.count, 13)
         np.testing.assert_allclose(found.best.shares, wished, atol=0.06)
@@ -242,14 +243,14 @@ class SearchTest(unittest.TestCase):
 
     def test_one_target_leaves_a_curve(self):
         targets = [search.Target("repose", "angle", 32.0)]
-        found = search.search(targets, self.points_of(self.angle, noise=0.4), 4)
+        found = search.search(targets, self.points_of(self.angle, noise=0.4), self.told.append, 4)
         self.assertTrue(found.met)
         self.assertGreaterEqual(len(found.curve), 2)
         for shares in found.curve:
             self.assertAlmostEqual(self.angle(*shares), 32.0, delta=2.5)
 
     def test_a_target_out_of_reach(self):
-        found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), 3)
+        found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), self.told.append, 3)
         self.assertFalse(found.met)
         self.assertEqual(found.best.shares, (1.0, 1.0))
 

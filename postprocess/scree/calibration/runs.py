@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pathlib
+import threading
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,11 +21,12 @@ from scree.run import Run, open_run
 
 @dataclass(frozen=True)
 class Plan:
-    """What all runs of a command have in common. settings: keys of the decks, as for --set."""
+    """What all runs of a command have in common. slots: of the runs that may go on at a time; settings: keys of the
+    decks, as for --set."""
 
     scree: pathlib.Path
+    slots: threading.Semaphore
     seeds: int = 3
-    at_once: int = 1
     backend: str = "auto"
     stresses: tuple[float, ...] = ()
     settings: tuple[tuple[str, Any], ...] = ()
@@ -55,7 +57,8 @@ def run_deck(deck: Deck, folder: pathlib.Path, plan: Plan) -> Run:
     if done and written.read_text(encoding="utf-8") == str(deck):
         return open_run(folder)
     deck.name = str(written)
-    return deck.run(folder, "--overwrite", backend=plan.backend, quiet=True, scree=plan.scree)
+    with plan.slots:
+        return deck.run(folder, "--overwrite", backend=plan.backend, quiet=True, scree=plan.scree)
 
 
 def decks_of(name: str, grains: materials.Grains, plan: Plan) -> list[list[Deck]]:
@@ -84,7 +87,7 @@ def measure(name: str, grains: materials.Grains, plan: Plan, folder: pathlib.Pat
         own = folder / f"seed_{seed + 1}"
         return run_deck(decks[seed][k], own / f"stress_{k + 1}" if several else own, plan)
 
-    with ThreadPoolExecutor(plan.at_once) as pool:
+    with ThreadPoolExecutor(len(places)) as pool:
         done = dict(zip(places, pool.map(run, places)))
     runs = [[done[seed, k] for k in range(len(decks[0]))] for seed in range(len(decks))]
     values = [[test.measure(each) for each in of_seed] for of_seed in runs]

@@ -8,6 +8,7 @@ some rounds."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,12 +124,18 @@ def curve_through(points: Sequence[Point], targets: Sequence[Target], center: np
     return [found[k] for k in sorted({*np.linspace(0, len(found) - 1, 5).astype(int)})] if found else []
 
 
-def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], Point], rounds: int) -> Found:
-    """measure: runs the tests with the parameters at these shares of their ranges."""
+def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], Point], tell: Callable[[Point], None],
+           rounds: int) -> Found:
+    """measure: runs the tests with the parameters at these shares of their ranges; called for all points of the grid at
+    once, from several threads. tell: is called for each point, in order."""
     if not 1 <= len(targets) <= 2:
         raise ScreeError("a search for two parameters has one or two targets")
     line = np.linspace(0, 1, GRID)
-    points = [measure((float(x), float(y))) for x in line for y in line]
+    points: list[Point] = []
+    with ThreadPoolExecutor(GRID**2) as pool:
+        for point in pool.map(measure, [(float(x), float(y)) for x in line for y in line]):
+            tell(point)
+            points.append(point)
 
     def cost(point: Point) -> float:
         return float(misfit(np.array(point.means), targets, tolerances_of(points, targets)))
@@ -139,12 +146,13 @@ def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], P
 
     center: np.ndarray | None = None
     for _ in range(rounds):
-        if points and meets(min(points, key=cost)):
+        if meets(min(points, key=cost)):
             break
         shares = next_shares(points, targets, center)
         if any(np.allclose(shares, each.shares, atol=0.5 / FINE) for each in points):
             break  # the polynomials lead to a set that was run
         points.append(measure(shares))
+        tell(points[-1])
         center = np.array(shares)
     best = min(points, key=cost)
     around = np.array(best.shares)

@@ -4,6 +4,7 @@ import argparse
 import csv
 import os
 import pathlib
+import threading
 import tomllib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -119,8 +120,8 @@ def plan_of(arguments: argparse.Namespace) -> Plan:
     from scree import program
     from scree.calibration.runs import Plan
 
-    return Plan(program.required(arguments.program), arguments.seeds, arguments.at_once, arguments.backend,
-                tuple(getattr(arguments, "stresses", ())), tuple(map(setting, arguments.set)),
+    return Plan(program.required(arguments.program), threading.Semaphore(arguments.at_once), arguments.seeds,
+                arguments.backend, tuple(getattr(arguments, "stresses", ())), tuple(map(setting, arguments.set)),
                 getattr(arguments, "deck", None))
 
 
@@ -221,12 +222,13 @@ def run_search(arguments: argparse.Namespace) -> int:
         grains = materials.softened(materials.read(arguments.materials, values), arguments.soften)
         own = folder / ",".join(f"{key}={value}" for key, value in values.items())
         measured = {test: measure(test, grains, plan, own / test) for test in {each.test: None for each in targets}}
-        found = Point(shares, tuple(measured[each.test].mean(each.quantity) for each in targets),
-                      tuple(measured[each.test].spread(each.quantity) for each in targets))
-        print_point(parameters, targets, found, plan.seeds)
-        return found
+        return Point(shares, tuple(measured[each.test].mean(each.quantity) for each in targets),
+                     tuple(measured[each.test].spread(each.quantity) for each in targets))
 
-    found = search(targets, point, arguments.rounds)
+    def tell(found: Point) -> None:
+        print_point(parameters, targets, found, plan.seeds)
+
+    found = search(targets, point, tell, arguments.rounds)
     print_found(parameters, targets, found, plan.seeds)
     print(f"runs: {folder}")
     return MET if found.met else NOT_MET
