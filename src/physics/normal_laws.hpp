@@ -207,14 +207,21 @@ struct HertzLawOf {
 };
 using HertzLaw = HertzLawOf<Real>;
 
-// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
+// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius, and the plasticity
+// ratio; for estimates.
 inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
   if (!law.depends_on_size()) return law;
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
-  if (law.effective_modulus == 0)
-    return {law.normal_stiffness, PowerLaw(law).of_pair(size).damping(overlap), law.exponent, law.tension};
-  const auto pair = HertzLaw(law).of_pair(size);
-  return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), law.tension};
+  NormalLawParameters out{law.normal_stiffness, 0, law.exponent, law.tension};
+  if (law.effective_modulus == 0) {
+    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap);
+  } else {
+    const auto pair = HertzLaw(law).of_pair(size);
+    out.normal_stiffness = pair.modulus * std::sqrt(pair.radius), out.exponent = Real(1.5);
+    out.normal_damping = pair.damping(overlap);
+  }
+  out.plasticity_ratio = law.plasticity_ratio;
+  return out;
 }
 
 }  // namespace scree

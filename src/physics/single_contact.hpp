@@ -12,7 +12,8 @@
 
 namespace scree {
 
-// Laws with friction, without adhesion and without a state of the normal law. Those without friction have `ContactLaw::load`.
+// Laws with friction, without adhesion and without a state of the normal law. Those without friction have
+// `ContactLaw::load`.
 template <class Law>
 inline constexpr bool kHasSingleForm = false;
 template <class Law>

@@ -59,12 +59,12 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
   return {body(side), use(1 - side).shapes > (same ? 1 : 0) ? body(1 - side) : Partner{}};
 }
 
-// fastest: largest speed at which the two may meet. Where the force is linear any speed is equivalent; one
-// with small rotations is used.
+// fastest: largest speed at which the two may meet. Where the force is linear and elastic any speed is
+// equivalent; one with small rotations is used.
 Real trial_speed(Real fastest, const NormalLawParameters& law, const Partners& two) {
   constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlap over radius
   const auto speed = [&](Real share) { return overlapping_speed(law, two.mass(), share * two.radius()); };
-  if (law.exponent == 1) return speed(kLinear);
+  if (law.exponent == 1 && !law.is_plastic()) return speed(kLinear);
   return fastest > 0 ? std::min(fastest, speed(kMost)) : speed(kAtRest);
 }
 
