@@ -15,8 +15,9 @@ std::vector<Key> attraction_keys() {
           .about(
               "w, for Hertz's law: energy per area to separate the two surfaces. The normal force may then "
               "be tensile with either value of limit_damping, and the friction limit includes the adhesive "
-              "force. Explicit steps in double precision only. Adhesion acts between particles and on "
-              "particles that touch walls or bodies, not between bodies or between bodies and walls."),
+              "force. JKR and plastic contacts need explicit steps, and all adhesion double precision. "
+              "Adhesion acts on particles and on the discs and spheres on bodies, not on the corners of a "
+              "body's mesh on a plane."),
       real("surface_energy", "J/m^2")
           .at_least(0)
           .left_out("work_of_adhesion is given, or no adhesion")

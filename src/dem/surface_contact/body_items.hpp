@@ -19,6 +19,7 @@ struct BodyLoad {
   Real energy = 0;            // elastic [J]
   Real pairs = 0;             // number of contacts
   SpringEnergies springs;     // parts of the energy, with friction
+  Real cohesion = 0;          // part of the energy [J]
   TangentialLosses losses{};  // parts of the dissipation, over the step [J]
 };
 
@@ -82,7 +83,7 @@ struct EvaluateBodyLoad {
   operator()(const Law& law, const Pair& pair, const History& old) const {
     const auto outcome = law.load(pair, old);
     const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
-    return {{{true, outcome.load.exchanged(), EvaluateEnergy{}(law, pair, now), {}, {}, outcome.losses()},
+    return {{{true, outcome.load.exchanged(), energy_of(law, pair, old, now), {}, {}, outcome.losses()},
              pair.geometry.normal()},
             outcome.history};
   }
@@ -90,6 +91,16 @@ struct EvaluateBodyLoad {
   template <class Views>
   SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
     return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  }
+
+ private:
+  // A contact that has opened in the step has losses only.
+  template <class Law, class Pair, class History>
+  SCREE_HD static ContactEnergy energy_of(const Law& law, const Pair& pair, const History& old,
+                                          const History& now) {
+    if constexpr (kHasRange<Law>)
+      if (!law.closed(pair, old)) return {};
+    return EvaluateEnergy{}(law, pair, now);
   }
 };
 
@@ -132,6 +143,8 @@ struct BodyLoadItem {
     contact.arm = point;
     sum.sums.add_contact(contact);
     sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
+    if constexpr (kMayBeCohesive<typename LawOf<Laws>::Normal>)
+      sum.cohesion += share * contact.energy.cohesion;
     if constexpr (!LawOf<Laws>::kNeedsMotion) return;
     sum.springs.add(contact.energy.springs, share);
     contact.losses.scale(share), sum.losses.add(contact.losses);

@@ -22,6 +22,7 @@
 #include "model/data/body_layout.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/touching.hpp"
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"
 #include "run/record/joint_lines.hpp"
@@ -120,7 +121,7 @@ std::string attraction_line(const Model& model, const PairLimit& limit) {
   if (law.adhesion_work > 0) parts += fmt::format("work of adhesion {:.6g} J/m^2", law.adhesion_work);
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
-  const Real reach = largest_interaction_range(law, model.particles.totals.largest_radius);
+  const Real reach = largest_interaction_range(law, radius_range(model).largest);
   if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }

@@ -297,36 +297,4 @@ TEST_CASE("a JKR contact under tension continues after a restart, whatever its l
   }
 }
 
-TEST_CASE("contacts between bodies and with walls are those without cohesion") {
-  const auto ball = [](const std::string& name, const std::string& motion) {
-    return "[[bodies]]\nname = \"" + name + "\"\nkind = \"spatial\"\n" + motion +
-           "mass = 1e-3\ninertia_tensor = [1e-9, 1e-9, 1e-9, 0, 0, 0]\nshapes = [{ radius = 0.002, material "
-           "= "
-           "\"grain\" }]\n";
-  };
-  const auto end_of = [&](const std::string& law) {
-    const CohesiveDeck deck{
-        .target = ball("target", "position = [0, 0, -0.005]\nvelocity = [0, 0.01, -0.5]\n") +
-                  ball("other", "position = [0, 0.0005, -0.0095]\nvelocity = [0, 0, 0.2]\n") +
-                  "[[walls]]\nname = \"floor\"\npoint = [0, 0, -0.0117]\nnormal = [0, 0, 1]\nmaterial = "
-                  "\"stiff\"\n",
-        .step = 2e-6,
-        .end = 0.02,
-        .law = law + "restitution = 0.5\n",
-        .grain = "positions = [[0, 0, 0.01]]\nmass = 1.0\n"};
-    SimulationRun run(deck.model());
-    run.run();
-    const std::vector<BodyMotion> motion = run.multibody().motion(run.bodies());
-    CHECK(motion[0].velocity.z > -0.4);  // they have been in contact
-    CHECK(motion[1].velocity.z != 0.2);
-    return motion;
-  };
-  const std::vector<BodyMotion> sticky = end_of(fmt::format("work_of_adhesion = {}\n", kWork)),
-                                clean = end_of("limit_damping = false\nfriction = 0.0\n");
-  for (std::size_t b = 0; b < sticky.size(); ++b) {
-    CHECK(same_bits(sticky[b].position, clean[b].position));
-    CHECK(same_bits(sticky[b].velocity, clean[b].velocity));
-  }
-}
-
 }  // namespace scree

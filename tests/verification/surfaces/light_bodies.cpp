@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "physics/normal_laws.hpp"
-#include "physics/spatial_rotation.hpp"
 #include "physics/plausible.hpp"
+#include "physics/spatial_rotation.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -35,7 +35,7 @@ struct Struck {
   Vec3 position{};
 
   Mat3 axes() const {
-    return dimension == 3 ? rotation_matrix(normalized({0.4, 0.5, -0.2, 0.7}))
+    return dimension == 3 ? rotation_matrix(Quaternion{0.1, 0.7, -0.5, 0.5})
                           : rotation_matrix(exponential({0, 0, 0.7}));
   }
   // The body where its contact point is at p, and its velocity.
@@ -43,7 +43,7 @@ struct Struck {
     const std::string inertia =
         dimension == 3
             ? fmt::format(
-                  "kind = \"spatial\"\nquaternion = [0.4, 0.5, -0.2, 0.7]\ninertia_tensor = [{:.17g}, "
+                  "kind = \"spatial\"\nquaternion = [0.1, 0.7, -0.5, 0.5]\ninertia_tensor = [{:.17g}, "
                   "{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}]\n",
                   0.002 * mass, 0.004 * mass, 0.005 * mass, 0.0005 * mass, -0.0003 * mass, 0.0002 * mass)
             : fmt::format("angle = 0.7\ninertia = {:.17g}\n", 0.003 * mass);
@@ -172,7 +172,7 @@ TEST_CASE("a free body of any mass rebounds with the pair's restitution, whereve
       for (const Real ratio : {0.05, 0.2, 1.0, 5.0})
         for (const Impact& impact : impacts(dimension, method, 1 / ratio)) {
           CAPTURE(dimension, method, ratio, impact.name);
-          CHECK(keeps(error_of(impact, method == "hht" ? 200 : 1000), {.promise = 1e-3, .measured = 1e-5}));
+          CHECK(keeps(error_of(impact, method == "hht" ? 200 : 1000), {.promise = 1e-3, .measured = 2.7e-4}));
         }
 }
 
