@@ -141,6 +141,44 @@ std::vector<Key> law_keys() {
                  "coefficient of friction. Shapes do not change. Needs friction above 0.")};
 }
 
+// Liquid bridges between the two surfaces, likewise.
+std::vector<Key> bridge_keys() {
+  return {
+      real("bridge_volume", "")
+          .within(0, 0.1)
+          .left_out("no liquid bridges")
+          .about("Volume of each liquid bridge over the cube of the smaller radius, constant. A bridge forms "
+                 "when the surfaces touch, pulls with 2 pi R gamma cos(theta), R = 2 R*, and acts across a "
+                 "gap up to (1 + theta/2) V^(1/3), where it breaks. Beside a linear law or Hertz's, in "
+                 "explicit steps in "
+                 "double precision. 0: none."),
+      real("surface_tension", "N/m")
+          .at_least(0)
+          .left_out("no liquid bridges")
+          .about("gamma of the liquid; of water in air 0.0728 N/m at 20 C. Needs bridge_volume."),
+      real("contact_angle", "rad")
+          .within(0, 1.5)
+          .left_out("0")
+          .about("theta between liquid and surfaces, the same on both."),
+      choice<BridgeForce>("bridge_force")
+          .left_out("willett")
+          .about(
+              "Force of a bridge over its gap S. willett: 1 / (1 + 1.05 s + 2.5 s^2) of that at touch, s = "
+              "S sqrt(R / V) (Willett et al., 2000). soulie: exponential, fitted to spheres of unequal "
+              "radii (Soulie et al., 2006); against surfaces of walls and meshes as willett."),
+      real("bridge_viscosity", "Pa s")
+          .at_least(0)
+          .left_out("no viscous force")
+          .about("mu of the liquid, for the normal viscous force 6 pi mu R* v / max(s_min, S/R*) while "
+                 "there is a bridge; of water 1e-3 Pa s. It adds to the damping of the contact."),
+      real("bridge_least_gap", "")
+          .within(0, 1)
+          .above(0)
+          .left_out("0.01")
+          .about("s_min: the gap over R* below which the viscous force does not grow, for example the "
+                 "roughness of the surfaces.")};
+}
+
 const TableKeys& pair_keys() {
   static const TableKeys keys = [] {
     TableKeys pairs{
@@ -149,7 +187,7 @@ const TableKeys& pair_keys() {
         "both materials have a Young's modulus: Hertz's law of spheres, or in 2D a linear law of discs of "
         "thickness L with K = pi/4 E* L.",
         law_keys(), ""};
-    for (const std::vector<Key>& more : {attraction_keys(), plasticity_keys()})
+    for (const std::vector<Key>& more : {attraction_keys(), plasticity_keys(), bridge_keys()})
       pairs.keys.insert(pairs.keys.end(), more.begin(), more.end());
     return pairs;
   }();

@@ -19,13 +19,14 @@ struct NormalContact {
 
 // Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
 //   interaction_range()    beyond touch [m]; default: none
-//   kHysteretic = true     JKR: contacts form at touch, d = 0, and break at d = -interaction_range()
+//   kHysteretic = true     JKR, bridges: contacts form at touch, d = 0, and break at d = -interaction_range()
 //   formation_loss()       with kHysteretic: energy that the formation of a contact dissipates [J]
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
 //   slope_of(radius)       slope(d) from contact_radius(d), which is a root less; default: slope(d)
 //   radius                 R*, where the law uses it itself
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
+//   friction_load(F, d)    that load where it is not the normal force F plus adhesion(d) [N]
 //   cohesion(d)            adhesive part of energy(d) [J]; default: 0
 // A law whose force depends on more than the overlap has a type `State` with the numbers that a contact keeps
 // from step to step, all even under exchange of the partners, and zero for new contacts: `NoState` below has
@@ -139,7 +140,10 @@ template <class NormalLaw>
 SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size, Real force, Real d,
                                       Real d0) {
   Real load = force;
-  if constexpr (requires { law.adhesion(d); }) load += law.adhesion(d);
+  if constexpr (requires { law.friction_load(force, d); })
+    load = law.friction_load(force, d);
+  else if constexpr (requires { law.adhesion(d); })
+    load += law.adhesion(d);
   const Real r = effective_radius(law, size), radius = contact_radius(law, r, d),
              radius0 = contact_radius(law, r, d0);
   return {load > 0 ? load : 0,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "base/hd.hpp"
 #include "base/root.hpp"
@@ -212,13 +213,17 @@ using HertzLaw = HertzLawOf<Real>;
 inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
   if (!law.depends_on_size()) return law;
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
+  // That of the liquid between touching surfaces, as in liquid_bridge.hpp.
+  const Real liquid = law.bridge.viscosity > 0 ? 6 * std::numbers::pi_v<Real> * law.bridge.viscosity *
+                                                     size.effective_radius() / law.bridge.least_gap
+                                               : 0;
   NormalLawParameters out{law.normal_stiffness, 0, law.exponent, law.tension};
   if (law.effective_modulus == 0) {
-    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap);
+    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap) + liquid;
   } else {
     const auto pair = HertzLaw(law).of_pair(size);
     out.normal_stiffness = pair.modulus * std::sqrt(pair.radius), out.exponent = Real(1.5);
-    out.normal_damping = pair.damping(overlap);
+    out.normal_damping = pair.damping(overlap) + liquid;
   }
   out.plasticity_ratio = law.plasticity_ratio;
   return out;

@@ -50,6 +50,7 @@ MAIN_CASES = {
                                         (4,)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
+    "liquid bridges": ([HERE / "bridges.toml", "parallel.imbalance=0.0", *WORKS, *LINES, "time.end=2e-3"], (4,)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
     "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
     "plastic meshes and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
@@ -247,8 +248,8 @@ class FilesTest(RanksTest):
 
     def test_lists_built_often_and_seldom_give_the_bits_of_frictional_particles(self):
         cases = {deck: [] for deck in ("friction", "friction_hertz", "rolling", "frictional_bodies", "spatial_elements",
-                                    "meshes", "mesh_walls", "sticky_meshes")}
-        size = {"sticky_meshes": 0.02}  # of a deck's lengths
+                                    "meshes", "mesh_walls", "sticky_meshes", "bridges")}
+        size = {"sticky_meshes": 0.02, "bridges": 0.02}  # of a deck's lengths
         cases["meshes"] = [*WORKS, "contact.pairs.1.wear_coefficient=3e-12"]
         cases["spatial_bodies"] = [*IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.04"]  # steps begin anew
         for deck, overrides in cases.items():

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/builder/build_normal_law.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"
@@ -141,9 +142,12 @@ namespace {
 // Throws InputError where a contact attracts beyond touch or is plastic. needs: the words for explicit steps.
 void check_attraction(const DeckTable& deck, const std::string& needs) {
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    if (pair.has("plasticity_ratio") && pair.real("plasticity_ratio") > 0)
+    if (is_positive(pair, "plasticity_ratio"))
       pair.fail("plasticity_ratio",
                 fmt::format("{}: the force of a plastic contact depends on its path within the step", needs));
+    if (is_positive(pair, "bridge_volume") && is_positive(pair, "surface_tension"))
+      pair.fail("bridge_volume",
+                fmt::format("{}: liquid bridges form and break at different distances", needs));
     for (const char* key : {"surface_energy", "work_of_adhesion"})
       if (pair.has(key) && pair.real(key) > 0 &&
           (!pair.has("adhesion") || pair.choice<Adhesion>("adhesion") == Adhesion::jkr))

@@ -129,7 +129,11 @@ auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
       if (two.i.is_particle) setup.incidence = incidence(one.tangential.friction);
     setup.impact = {two.size(),        two.mass(),  inertia_of(two.i),
                     inertia_of(two.j), setup.speed, std::tan(setup.incidence) * setup.speed};
-    return use(one, setup);
+    // Liquid bridges have a bound of their own on the step: they may hold partners for many contact times.
+    if constexpr (requires { one.normal.dry(); })
+      return use(Law{one.normal.dry(), one.tangential, one.rolling}, setup);
+    else
+      return use(one, setup);
   });
 }
 
@@ -148,9 +152,11 @@ using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
   const std::size_t pair = pair_of(field, limit);
-  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range, plasticity, chi] = contact.laws[pair];
+  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range, plasticity, chi, bridge] =
+      contact.laws[pair];
   TrialKey key{k,     c,          n,   Real(tension),         e, zeta, work, Real(jkr), attraction,
                range, plasticity, chi, field.speeds.of(limit)};
+  key.push_back(bridge.acts() ? 1 : 0);  // of which trials see no more than that
   if (!contact.friction.empty()) {
     const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
     key.insert(key.end(), {mu, k_t, g, zeta_t});

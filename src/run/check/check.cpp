@@ -121,6 +121,11 @@ std::string attraction_line(const Model& model, const PairLimit& limit) {
   if (law.adhesion_work > 0) parts += fmt::format("work of adhesion {:.6g} J/m^2", law.adhesion_work);
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
+  if (law.bridge.acts())
+    parts = fmt::format(
+        "liquid bridges after {}, undamped impacts of the smallest partners stick below "
+        "{:.4g} m/s",
+        law.bridge.soulie ? "Soulie" : "Willett", limit.sticking_speed);
   const Real reach = largest_interaction_range(law, radius_range(model).largest);
   if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);

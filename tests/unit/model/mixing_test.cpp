@@ -49,6 +49,7 @@ void check_alike(const Model& made, const Model& given) {
   CHECK((x.exponent == y.exponent && x.tension == y.tension && x.damping_ratio == y.damping_ratio));
   CHECK((x.effective_modulus == y.effective_modulus && x.adhesion_work == y.adhesion_work));
   CHECK((x.jkr == y.jkr && x.attraction == y.attraction && x.range == y.range));
+  CHECK((x.bridge.volume == y.bridge.volume && x.bridge.contact_angle == y.bridge.contact_angle));
   REQUIRE(made.contact.friction.size() == given.contact.friction.size());
   if (made.rotates()) {
     const Friction f = made.contact.friction_of(0, 1), g = given.contact.friction_of(0, 1);

@@ -21,11 +21,6 @@ JkrPair jkr_pair(const ReferenceTable::Row& row) {
 
 }  // namespace
 
-TEST_CASE("the cube root is exact to the last places") {
-  for (const Real x : {1e-30, 3e-7, 0.5, 1.0, 8.0, 27.0, 1e12})
-    CHECK(near(cube_root(x), std::cbrt(x), {.relative = 4 * kUlp}));
-}
-
 TEST_CASE("JKR: characteristic points") {
   const ReferenceTable table("contact/jkr_points.csv");
   for (const auto& row : table.rows()) {
