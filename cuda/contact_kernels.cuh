@@ -285,7 +285,7 @@ class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
   virtual int history() const = 0;  // number of history values of a contact of this law
-  virtual bool rolls() const = 0;  // as in `ContactKernels`
+  virtual bool rolls() const = 0;   // as in `ContactKernels`
   // Why explicit steps cannot be in mixed precision with this law; empty if they can.
   virtual const char* mixed_trouble() const = 0;
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,

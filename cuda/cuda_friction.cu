@@ -182,13 +182,13 @@ void CudaFrictionStep::queue_system() {
 template <bool kRolls>
 void CudaFrictionStep::queue_residual() {
   const FrictionResidualItem<kRolls> residual{step_views(),
-                                      rotation_views(),
-                                      step_forces(),
-                                      step_torques(),
-                                      friction_.residual.data(),
-                                      friction_.mass.data(),
-                                      {friction_.inverse_block.data()},
-                                      arrays_.stiffness_ratio.data()};
+                                              rotation_views(),
+                                              step_forces(),
+                                              step_torques(),
+                                              friction_.residual.data(),
+                                              friction_.mass.data(),
+                                              {friction_.inverse_block.data()},
+                                              arrays_.stiffness_ratio.data()};
   const FrictionNormsItem norms{step_views(),
                                 friction_.residual.data(),
                                 friction_.mass.data(),
@@ -297,11 +297,12 @@ int CudaFrictionStep::solve(Real tolerance) {
     halo.exchange(on, item.twist);
   };
   const auto item = [&](int product, const ChebyshevWeights& weights) {
-    return FrictionSolverItem<kRolls>{{matrix(), items_.list.rows(), items_.surfaces.list().offsets,
-                               friction_.mass.data(), is_consistent(), twist(product), unit_, residual},
-                              direction(weights),
-                              twist(product + 1),
-                              correction};
+    return FrictionSolverItem<kRolls>{
+        {matrix(), items_.list.rows(), items_.surfaces.list().offsets, friction_.mass.data(), is_consistent(),
+         twist(product), unit_, residual},
+        direction(weights),
+        twist(product + 1),
+        correction};
   };
   return solve_on_device(items_, arrays_.solver, largest_stiffness_ratio_, tolerance, begin, ghosts, item);
 }

@@ -31,8 +31,8 @@ struct StepFriction {
   // Force at the start, force that the step is solved with, force at the end [N]; tangential at normal0,
   // normal1, normal1.
   Vec3 start, step, end;
-  // Limit of the mean force over the step [N]. For laws with rolling resistance: the load of that limit, which
-  // determines the limits of rolling and twisting too [N].
+  // Limit of the mean force over the step [N]. For laws with rolling resistance: the load of that limit,
+  // which determines the limits of rolling and twisting too [N].
   Real limit;
   // Derivatives of `step`: `stiffness` with respect to the slip perpendicular to `direction` [N/m], and
   // `normal_force_slope` along `direction` with respect to step_force. `direction` is the unit vector of

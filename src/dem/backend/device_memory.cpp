@@ -41,7 +41,7 @@ constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kFrictionArraysPerSlot =
     sizeof(FrictionEntry::Normal) + sizeof(FrictionEntry::SlipDirection) + sizeof(FrictionEntry::Shear) +
-    sizeof(Real);  // the last: lagged limits
+    sizeof(Real);                                               // the last: lagged limits
 constexpr double kRollingArraysPerSlot = sizeof(RollingEntry);  // of laws with rolling resistance
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers

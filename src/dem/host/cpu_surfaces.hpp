@@ -45,8 +45,7 @@ class CpuSurfaces {
     for (const Index entry : rows.by_surface) {
       const auto show = [&](const auto& contact, Vec3 place) {
         if (contact.touches)
-          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place,
-                slopes_of(contact));
+          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place, slopes_of(contact));
       };
       if (moves_)
         show(friction_steps_[entry],

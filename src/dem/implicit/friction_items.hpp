@@ -222,8 +222,8 @@ struct FrictionLossesItem {
     }
   }
   SCREE_HD void finish(const Self& self, Sums& sum) const {
-    walk.template surfaces<true>(
-        self, evaluator(), [&](const Losses& one, Index) { sum += Sums::of(one, 1); });
+    walk.template surfaces<true>(self, evaluator(),
+                                 [&](const Losses& one, Index) { sum += Sums::of(one, 1); });
     to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
     to.friction[self.i] += sum.friction;
     if constexpr (LawOf<Laws>::Rolling::acts) {

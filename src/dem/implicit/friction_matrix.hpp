@@ -89,9 +89,9 @@ struct alignas(16) RollingEntry {
   float x, y, z;  // unit vector of rolling at the limit, or zero
   float across;   // derivative of the moment over R_i with respect to R_i times the rotation of i relative to
                   // j, across normal and direction [kg]
-  float along_normal;                      // the same for twisting [kg]
-  float rolling_growth, twisting_growth;   // derivatives of the moment over R_i with respect to the overlap,
-                                           // along the direction and along the normal [kg]
+  float along_normal;                     // the same for twisting [kg]
+  float rolling_growth, twisting_growth;  // derivatives of the moment over R_i with respect to the overlap,
+                                          // along the direction and along the normal [kg]
   float partner_scale;  // R_i over the unit of j's rotation: R_i / R_j for particles, else R_i [m]
 
   SCREE_HD static RollingEntry of(const RollingFrictionalContact& c, const NewtonWeights& weights,

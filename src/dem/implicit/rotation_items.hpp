@@ -150,10 +150,9 @@ struct SubtractFrictionItem {
       const FrictionEntry& entry = matrix.surface_entries[surface_offsets[i] + k];
       products += entry.apply(own.move, own.turn, consistent);
       if constexpr (kRolls)
-        products.turn =
-            products.turn + matrix.surface_rolling[surface_offsets[i] + k].apply(
-                                Vec3f{entry.normal.x, entry.normal.y, entry.normal.z}, own.move, own.turn,
-                                consistent);
+        products.turn = products.turn + matrix.surface_rolling[surface_offsets[i] + k].apply(
+                                            Vec3f{entry.normal.x, entry.normal.y, entry.normal.z}, own.move,
+                                            own.turn, consistent);
     }
     const Twist of_mass{mass[i].move * in_double(own.move), mass[i].turn * in_double(own.turn)};
     residual[i] -= unit * (of_mass + in_double(products));

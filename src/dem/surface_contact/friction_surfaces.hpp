@@ -23,7 +23,9 @@ SCREE_HD Real turning_stiffness(const StepRolling& m, Vec3 normal, Vec3 a, Vec3 
 }
 
 // Unit vector of the k-th coordinate axis.
-SCREE_HD Vec3 unit_axis(int k) { return {k == 0 ? Real(1) : Real(0), k == 1 ? Real(1) : Real(0), k == 2 ? Real(1) : Real(0)}; }
+SCREE_HD Vec3 unit_axis(int k) {
+  return {k == 0 ? Real(1) : Real(0), k == 1 ? Real(1) : Real(0), k == 2 ? Real(1) : Real(0)};
+}
 
 // Terms of the wrench and its blocks. The friction force acts at the centre of a sphere with a couple, as
 // between two spheres, and at the contact point of other surfaces. Its part of the blocks equals that in the
@@ -86,8 +88,7 @@ struct SurfaceFrictionItem {
     const Spins spins{path.motion, xyz(start.spin[i]), xyz(in.spin[i]), before.spin, surface.spin};
     static_cast<FrictionalContactOf<Law>&>(out.contact) =
         frictional_contact(law, path, old, resolve_events, spins);
-    static_cast<FrictionLossesOf<Law>&>(out.losses) =
-        friction_losses(law, path, out.contact, resolve_events);
+    static_cast<FrictionLossesOf<Law>&>(out.losses) = friction_losses(law, path, out.contact, resolve_events);
     if (out.contact.acts && surface.turns())
       out.losses.integrator +=
           parent_work(law, path, out.contact, parent_excess(kinematics, surface, before)) +

@@ -132,8 +132,8 @@ TEST_CASE("a contact's matrix is the derivative of its force") {
   }
 }
 
-// The moment is of the size of the torque of friction. Where the contact opens or closes, the share of the step
-// in contact is not differentiated.
+// The moment is of the size of the torque of friction. Where the contact opens or closes, the share of the
+// step in contact is not differentiated.
 TEST_CASE("the matrix of a contact with rolling resistance is the derivative of its force and moment") {
   constexpr Real kSize = 1e-5, kFriction = 2, kError = 1e-3;
   ContactLaw<LinearRestitutionLaw, LinearSlider, AnyRolling> law;
@@ -159,8 +159,8 @@ TEST_CASE("the matrix of a contact with rolling resistance is the derivative of 
     const Twist change = (1 / (2 * little)) * (pair.load(forth) - pair.load(back));
     Twist found = pull(FrictionEntry::of(at, {1, 0}, 1), way.move, way.turn, true);
     const Vec3 n = at.normal.normal;
-    found.turn += in_double(RollingEntry::of(at, {1, 0}, 1)
-                                .apply(in_single(n), in_single(way.move), in_single(way.turn), true));
+    found.turn += in_double(
+        RollingEntry::of(at, {1, 0}, 1).apply(in_single(n), in_single(way.move), in_single(way.turn), true));
     CAPTURE(k);
     REQUIRE(near(found.move, -change.move, {.absolute = kError}));
     REQUIRE(near(found.turn, -change.turn, {.absolute = kError}));

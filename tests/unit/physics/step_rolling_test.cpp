@@ -101,8 +101,7 @@ TEST_CASE("the derivatives of the moment over a step are those of differences") 
           (plus.twisting_load_slope != 0) != (minus.twisting_load_slope != 0))
         continue;  // a kink between the two
       const Vec3 by_difference = (1 / (2 * difference)) * (plus.step - minus.step);
-      const Vec3 expected =
-          at.rolling * (along - dot(at.direction, along) * at.direction) + at.twisting * n;
+      const Vec3 expected = at.rolling * (along - dot(at.direction, along) * at.direction) + at.twisting * n;
       REQUIRE(near(by_difference, expected, {.absolute = 1e-3 * (at.rolling + at.twisting) + 1e-6}));
     }
   }
@@ -121,7 +120,8 @@ TEST_CASE("the limits of rolling and twisting follow the normal force of the ste
       other.step.step_force += by;
       return step_rolling(law, other.step, other.spins, other.moment).step;
     };
-    const Vec3 n = c.step.motion.normal1, slope = (0.5 / kDifference) * (more(kDifference) - more(-kDifference)),
+    const Vec3 n = c.step.motion.normal1,
+               slope = (0.5 / kDifference) * (more(kDifference) - more(-kDifference)),
                expected = at.rolling_load_slope * at.direction + at.twisting_load_slope * n;
     // The scaling of the moment at the start to the limit there has no derivative.
     if (norm(c.moment) < 0.002 * c.step.size.radius_i * load)

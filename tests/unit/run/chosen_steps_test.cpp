@@ -245,10 +245,9 @@ mass = 0.1
     CHECK((model.of("step") != nullptr) == (named == std::string("velocity-verlet")));
   }
   // The refusal of an integrator names both keys that require it.
-  CHECK(
-      contains(model_error(deck, {"contact.pairs.0.attraction=0.1", "contact.pairs.0.attraction_range=0.1",
-                                  "time.control=adaptive"}),
-               "needs integrator.particles = \"velocity-verlet\""));
+  CHECK(contains(model_error(deck, {"contact.pairs.0.attraction=0.1", "contact.pairs.0.attraction_range=0.1",
+                                    "time.control=adaptive"}),
+                 "needs integrator.particles = \"velocity-verlet\""));
   CHECK(contains(model_error(deck, {"integrator.particles=hht", "time.control=fixed"}),
                  "time.step: missing; with control = \"fixed\" and implicit steps"));
 }

@@ -252,24 +252,25 @@ TEST_CASE("DMT and an attraction in implicit steps: rebound without loss, energy
         CAPTURE(more, parts);
         GrainDeck deck = impact_deck_of(row, "adhesion = \"dmt\"\n" + more, parts, true);
         deck.settings = implicit_steps(0);
-        SimulationRun run(
-            model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""), deck.settings));
+        SimulationRun run(model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""),
+                                   deck.settings));
         run.run();
         const std::vector<Particle> after = run.particles();
         const Real rate = (after[1].velocity.z - after[0].velocity.z) / row["v"];
         CHECK(run.particle_ledger().contacts == 0);
         CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-9, .measured = 1e-12}));
-        CHECK(keeps(rate * rate - 1, {.promise = parts > 10 ? 2e-3 : 0.3, .measured = parts > 10 ? 1e-3 : 0.1}));
+        CHECK(keeps(rate * rate - 1,
+                    {.promise = parts > 10 ? 2e-3 : 0.3, .measured = parts > 10 ? 1e-3 : 0.1}));
       }
   // A sphere that hangs from a wall by an attraction of twice its weight.
   constexpr Real R = 0.01, mass = 0.01, g = 9.81, stiffness = 1e4;
   for (const std::string more : {"", "friction = 0.5\n"}) {
-    GrainDeck deck{.law = fmt::format("stiffness = {}\nattraction = {}\nrestitution = 0.5\n", stiffness,
-                                      2 * mass * g) +
-                          more,
-                   .grains = {{.position = {0, 0, R - 1e-9}, .radius = R, .mass = mass}},
-                   .step = 2e-4,
-                   .end = 0.5};
+    GrainDeck deck{
+        .law = fmt::format("stiffness = {}\nattraction = {}\nrestitution = 0.5\n", stiffness, 2 * mass * g) +
+               more,
+        .grains = {{.position = {0, 0, R - 1e-9}, .radius = R, .mass = mass}},
+        .step = 2e-4,
+        .end = 0.5};
     deck.gravity = {0, 0, g}, deck.settings = implicit_steps(-0.05);
     SimulationRun run(
         model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""), deck.settings));

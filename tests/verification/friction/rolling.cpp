@@ -97,7 +97,8 @@ TEST_CASE("in implicit steps rolling on a wall stops, then rocks about its sprin
 // Rolling without slip, with a constant moment: a = 5/7 mu_r g, the distance v^2 / (2 a), up to the spring's
 // elongation M / k_r, of which the ball rolls back.
 TEST_CASE("in implicit steps a ball with rolling resistance stops after the distance v^2 / (2 a)") {
-  const Real a = 5 * kRollingFriction * kGravity / 7, distance = kSpeed * kSpeed / (2 * a), stops = kSpeed / a;
+  const Real a = 5 * kRollingFriction * kGravity / 7, distance = kSpeed * kSpeed / (2 * a),
+             stops = kSpeed / a;
   const auto error_at = [&](Real step) {
     SimulationRun run(rolling_model(
         {kSpeed, 0, 0},

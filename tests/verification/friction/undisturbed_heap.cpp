@@ -85,8 +85,7 @@ TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1
   }
   constexpr Real kSettled = 6;
   const Real alone = 1e5 * step;
-  SimulationRun run(model_of(
-      heap_deck(2, 60, kSettled + alone, keys), settings));
+  SimulationRun run(model_of(heap_deck(2, 60, kSettled + alone, keys), settings));
   run.run_until(kSettled);
   const std::vector<Particle> before = run.particles();
   const ParticleLedger settled = run.particle_ledger();
