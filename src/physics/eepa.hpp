@@ -123,9 +123,9 @@ struct EepaPair {
   SCREE_HD Real elastic(Real d) const { return d > 0 ? elastic_plastic(d) - attraction : 0; }
   SCREE_HD Real slope(Real d) const {
     if (!(d > 0)) return 0;
-    const Real power = Curve::power(d), n = Curve::kExponent;
-    if (plasticity_ratio * power >= plastic_power) return n * stiffness * power / d;
-    if (d > state.pull_overlap) return n * unloading_stiffness * power / d;
+    const Real power = Curve::power(d);
+    if (plasticity_ratio * power >= plastic_power) return repulsion.slope(d);
+    if (d > state.pull_overlap) return repulsion.slope(d) / (1 - plasticity_ratio);
     return -twice_chi * state.adhesion * half_power(d, twice_chi) / (2 * d);
   }
   SCREE_HD Real energy(Real d) const { return d > 0 ? recoverable(d) - attraction * d : 0; }
@@ -139,9 +139,7 @@ struct EepaPair {
   SCREE_HD Real mean_damping(Real d0, Real d1) const { return repulsion.mean_damping(d0, d1); }
   SCREE_HD Real cut(Real d0, Real damper_force) const { return repulsion.cut(d0, damper_force); }
   // Of the first loading: a function of the overlap alone.
-  SCREE_HD Real contact_stiffness(Real d) const {
-    return d > 0 ? Curve::kExponent * stiffness * Curve::power(d) / d : 0;
-  }
+  SCREE_HD Real contact_stiffness(Real d) const { return d > 0 ? repulsion.slope(d) : 0; }
   // The limits of friction and rolling are mu (F - f0 + k_a d^chi): zero on the adhesive branch.
   SCREE_HD Real adhesion(Real d) const {
     return d > 0 ? attraction + state.adhesion * half_power(d, twice_chi) : attraction;

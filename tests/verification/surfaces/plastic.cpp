@@ -109,7 +109,7 @@ TEST_CASE("plastic grains settle in a box: no energy is created") {
     const std::string moduli = keys.empty() ? "young_modulus = 1e6\npoisson_ratio = 0.3\n" : "";
     SimulationRun run(model_of(
         "gravity = [1.0, 0.0, -9.81]\n[space]\ndimension = 3\nmin = [0.0, 0.0, 0.0]\nmax = [0.02, 0.02, "
-        "0.03]\n"
+        "0.06]\n"
         "x_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\nz_min = \"wall\"\n"
         "wall_material = \"soil\"\n[time]\nend = 0.15\nstep = 5e-6\n[integrator]\nparticles = "
         "\"velocity-verlet\"\n[[materials]]\nname = \"soil\"\ndensity = 2000.0\n" +
