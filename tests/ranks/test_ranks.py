@@ -53,7 +53,7 @@ MAIN_CASES = {
     "liquid bridges": ([HERE / "bridges.toml", "parallel.imbalance=0.0", *WORKS, *LINES, "time.end=2e-3"], (4,)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
     "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
-    "plastic meshes and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
+    "meshes with plastic grains and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
     # Bodies among them that turn and go through a side, driven, and some in friction with them.
     "friction on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (4,)),
