@@ -93,7 +93,7 @@ struct BridgePair {
     const Real solid = repulsion.damping(d), share = solid / (solid + liquid_damping(d));
     return repulsion.elastic(d) + share * (force - elastic(d));
   }
-  // These two are of steps that liquid bridges do not have, and for pairs without liquid.
+  // These two belong to implicit steps, which runs with liquid bridges do not have.
   SCREE_HD Real mean_damping(Real d0, Real d1) const { return repulsion.mean_damping(d0, d1); }
   SCREE_HD Real cut(Real d0, Real damper_force) const { return repulsion.cut(d0, damper_force); }
   SCREE_HD Real contact_radius(Real d) const { return d > 0 ? root(radius * d) : 0; }

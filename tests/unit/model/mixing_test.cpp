@@ -193,7 +193,13 @@ TEST_CASE("every key of a pair is mixed") {
                                           "attraction",
                                           "attraction_range",
                                           "plasticity_ratio",
-                                          "adhesion_exponent"};
+                                          "adhesion_exponent",
+                                          "bridge_volume",
+                                          "surface_tension",
+                                          "contact_angle",
+                                          "bridge_force",
+                                          "bridge_viscosity",
+                                          "bridge_least_gap"};
   for (const Key& key : contact_keys().keys) {
     if (key.name != "pairs") continue;
     CHECK(key.table->keys.size() == known.size());
