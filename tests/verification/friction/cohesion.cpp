@@ -243,7 +243,7 @@ TEST_CASE("DMT: spheres rebound without loss, and rest where the spring carries 
     }
 }
 
-// At steps of some twentieth and of the whole duration of an impact.
+// At steps of a sixtieth and of a third of the impact's duration without adhesion, approximately.
 TEST_CASE("DMT and an attraction in implicit steps: rebound without loss, energy balance, rest") {
   const ReferenceTable table("contact/dmt.csv");
   for (const auto& row : table.rows())
@@ -258,9 +258,9 @@ TEST_CASE("DMT and an attraction in implicit steps: rebound without loss, energy
         const std::vector<Particle> after = run.particles();
         const Real rate = (after[1].velocity.z - after[0].velocity.z) / row["v"];
         CHECK(run.particle_ledger().contacts == 0);
-        CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-9, .measured = 1e-12}));
+        CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-9, .measured = 1e-13}));
         CHECK(keeps(rate * rate - 1,
-                    {.promise = parts > 10 ? 2e-3 : 0.3, .measured = parts > 10 ? 1e-3 : 0.1}));
+                    {.promise = parts > 10 ? 2e-3 : 0.3, .measured = parts > 10 ? 6.6e-5 : 0.065}));
       }
   // A sphere that hangs from a wall by an attraction of twice its weight.
   constexpr Real R = 0.01, mass = 0.01, g = 9.81, stiffness = 1e4;
