@@ -33,6 +33,28 @@ SCREE_HD ContactForceOf<T> contact_force(const NormalLaw& law, T d, T d_dot) {
   return {force, law.slope(d), damping, damping * d_dot * d_dot};
 }
 
+// `loss` of `contact_force()` alone [W]. radius: of the contact at this overlap [m].
+template <class NormalLaw, class T>
+SCREE_HD T damper_power(const NormalLaw& law, T d, [[maybe_unused]] T radius, T d_dot) {
+  if constexpr (requires { law.damping_of(radius); }) {
+    const T elastic = law.elastic_of(radius, d), damping_force = law.damping_of(radius) * d_dot;
+    return (elastic + damping_force < 0 && !law.tension ? -elastic : damping_force) * d_dot;
+  } else {
+    return contact_force(law, d, d_dot).loss;
+  }
+}
+
+// Mean power of a damper over an explicit step, from its power at the overlaps of both ends, each with the
+// overlap rate of mid-step [W]. The force D of an instant acts over half a step before it and half a step
+// after it: the work is that of (D_{n-1} + D_n) / 2. Summed by parts over the steps of a contact, it is to
+// second order the work of (D(d_{n-1}) + 3 D(d_n)) / 4 at the rate of this step, so that nothing of the step
+// before is needed. opens: whether the contact will be open at the end of the next step, in which it is not
+// found; this step then counts its half as well.
+template <class T>
+SCREE_HD T mean_damper_power(T at_start, T at_end, bool opens) {
+  return T(0.25) * at_start + (opens ? 1 : T(0.75)) * at_end;
+}
+
 // Force and torques of one contact on its partners.
 template <class T, class Vector>
 struct ContactLoadOf {
@@ -79,8 +101,7 @@ struct ContactEnergy {
 // Result of a contact law over the step that ends at the instant of its `PairState`.
 template <class History>
 struct ContactOutcomeOf {
-  ContactLoadOf<Real, Vec3> load;  // at the end of the step; loss: the normal law's there, and the mean of
-                                   // the others over the step
+  ContactLoadOf<Real, Vec3> load;  // at the end of the step; loss: the mean over the step
   History history;
   SpringLosses friction, rolling, twisting;  // over the step [J]
 
@@ -150,11 +171,16 @@ struct ContactLaw {
       return out;
     }
     const auto& law = after_step(partners, old.normal, g.overlap);
-    const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
+    const Real rate = g.rate(pair.velocity);
+    const ContactForce f = contact_force(law, g.overlap, rate);
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
     out.load = {g.along(f.force), f.loss, {}, {}};
+    if constexpr (std::is_same_v<Pair, MovingPair>)
+      out.load.loss = mean_damper_power(
+          closed(law, step.overlap0, old) ? damper_power(law, step.overlap0, contact.radius0, rate) : 0,
+          f.loss, g.overlap + step.h * rate <= -interaction_range_of(law));
     if constexpr (kHysteretic)
       if (!old.touched) out.load.loss += law.formation_loss() / step.h;
     if constexpr (kStateful) out.load.loss += law.dissipated / step.h, out.history.normal = law.state;

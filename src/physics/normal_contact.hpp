@@ -24,6 +24,7 @@ struct NormalContact {
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
 //   slope_of(radius)       slope(d) from contact_radius(d), which is a root less; default: slope(d)
+//   elastic_of(radius, d), damping_of(radius)   likewise
 //   radius                 R*, where the law uses it itself
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
 //   friction_load(F, d)    that load where it is not the normal force F plus adhesion(d) [N]

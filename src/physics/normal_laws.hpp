@@ -158,11 +158,15 @@ struct HertzPairOf {
 
   // Radius of the contact area [m].
   SCREE_HD T contact_radius(T d) const { return root(radius * d); }
-  SCREE_HD T elastic(T d) const { return modulus * contact_radius(d) * d; }
+  SCREE_HD T elastic(T d) const { return elastic_of(contact_radius(d), d); }
+  SCREE_HD T elastic_of(T contact_radius, T d) const { return modulus * contact_radius * d; }
   SCREE_HD T slope(T d) const { return slope_of(contact_radius(d)); }
   SCREE_HD T slope_of(T contact_radius) const { return T(1.5) * modulus * contact_radius; }
   SCREE_HD T energy(T d) const { return T(0.4) * modulus * contact_radius(d) * d * d; }
-  SCREE_HD T damping(T d) const { return damping_factor * root(mass * modulus * contact_radius(d)); }
+  SCREE_HD T damping(T d) const { return damping_of(contact_radius(d)); }
+  SCREE_HD T damping_of(T contact_radius) const {
+    return damping_factor * root(mass * modulus * contact_radius);
+  }
   // 4/5 c (q^5 - p^5) / (q^4 - p^4) with p, q = d^(1/4), expanded to avoid the cancellation.
   SCREE_HD T mean_damping(T d0, T d1) const {
     const T p2 = std::sqrt(d0), q2 = std::sqrt(d1), p = std::sqrt(p2), q = std::sqrt(q2);

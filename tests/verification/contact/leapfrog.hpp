@@ -91,6 +91,9 @@ struct PairRun {
   Law law;
   Grain i, j;
   Real h = 0;  // [s]
+  // Whether the law uses velocities predicted for the end of the step; else those of mid-step, as the
+  // program.
+  bool predicts = true;
 
   typename Law::Outcome outcome{};
   GrainRates rates_i{}, rates_j{};
@@ -98,8 +101,9 @@ struct PairRun {
   bool closed = false;
 
   PairState pair() const {
+    const Real ahead = predicts ? h / 2 : 0;
     return {sphere_pair(i.position - j.position, i.radius + j.radius),
-            (i.velocity + (h / 2) * rates_i.acceleration) - (j.velocity + (h / 2) * rates_j.acceleration),
+            (i.velocity + ahead * rates_i.acceleration) - (j.velocity + ahead * rates_j.acceleration),
             {i.radius, j.radius, i.mass, j.mass}};
   }
   void step() {
