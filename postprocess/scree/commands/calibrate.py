@@ -4,6 +4,7 @@ import argparse
 import csv
 import os
 import pathlib
+import sys
 import threading
 import tomllib
 from collections.abc import Sequence
@@ -170,12 +171,20 @@ def print_measured(name: str, measured: Measured) -> None:
         print("some columns did not fail: their strength is above the printed value; apply more force by --set")
 
 
+def print_warnings(measured: Measured) -> None:
+    """Warnings of the runs, each once."""
+    records = [run.record or {} for of_seed in measured.runs for run in of_seed]
+    for each in dict.fromkeys(text for record in records for text in record.get("warnings", ())):
+        print(f"warning: {each}", file=sys.stderr)
+
+
 def run_test(arguments: argparse.Namespace, grains: Grains) -> int:
     from scree.calibration.plots import draw
     from scree.calibration.runs import measure
 
     folder = folder_of(arguments)
     measured = measure(arguments.kind, grains, plan_of(arguments), folder)
+    print_warnings(measured)
     print_measured(arguments.kind, measured)
     write_values(folder / "measured.csv", measured)
     draw(arguments.kind, f"{arguments.materials.stem}: {TESTS[arguments.kind]}", measured, folder / "measured.png")
