@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "base/elementary.hpp"
 #include "base/hd.hpp"
@@ -16,7 +17,7 @@ namespace scree {
 
 // Force of a bridge over its force at touch, as a function of s, the gap over a length L, in one of two
 // forms:
-//   Willett, Adams, Johnson, Seville, Langmuir 16 (2000), Eq. 12:  1 / (1 + 1.05 s + 2.5 s^2)
+//   Willett, Adams, Johnson, Seville, Langmuir 16 (2000):  1 / (1 + 1.05 s + 2.5 s^2)
 //   Soulie, Cherblanc, El Youssoufi, Saix, Int. J. Numer. Anal. Meth. Geomech. 30 (2006):  q + (1 - q) e^-s
 struct BridgeShape {
   bool decays;    // true: Soulie
@@ -107,10 +108,9 @@ SCREE_HD Real rupture_ratio(const LiquidBridge& of) {
 
 // The volume of each bridge is `volume` r^3, r: the smaller radius.
 //   Willett: F0 = 2 pi R gamma cos(theta), L = sqrt(V / R), R = 2 R*; R = 2 r against planes
-//   Soulie: F0 = pi gamma sqrt(R1 R2) (c + e^b), L = -R2 / a, q = c / (c + e^b), with the larger radius R2
-//   and
-//     v = V / R2^3: a = -1.1 v^-0.53, b = (-0.148 ln v - 0.96) theta^2 - 0.0082 ln v + 0.48,
-//     c = 0.0018 ln v + 0.078; not defined against planes, where Willett's form is used
+//   Soulie: F0 = pi gamma sqrt(R1 R2) (c + e^b), L = -R2 / a, q = c / (c + e^b), R2: the larger radius,
+//     a = -1.1 v^-0.53, b = (-0.148 ln v - 0.96) theta^2 - 0.0082 ln v + 0.48, c = 0.0018 ln v + 0.078,
+//     v = V / R2^3; not defined against planes, where Willett's form is used
 template <class NormalLaw>
 struct BridgeLaw {
   using Scalar = Real;

@@ -64,6 +64,12 @@ std::string RandomDecks::law(bool spheres, Real radius, Real mass, Real speed) {
   if (maybe(0.3))
     return restitution + fmt::format("work_of_adhesion = {}\nadhesion = \"dmt\"\n", work) +
            (has_friction ? resistance() : "");
+  if (maybe(0.3))
+    return restitution +
+           fmt::format(
+               "bridge_volume = {}\nsurface_tension = {}\ncontact_angle = {}\nbridge_force = \"{}\"\n",
+               of_size(1e-5, 0.05), 1e-4 * stiffness, between(0, 0.9), maybe(0.5) ? "soulie" : "willett") +
+           resistance();
   return restitution + (has_friction ? resistance() : "");
 }
 
