@@ -34,7 +34,7 @@ constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and offset
 constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
-// CudaFrictionArrays, in place of matrix and solver arrays, for implicit steps with friction.
+// SixFreedomArrays, in place of matrix and solver arrays, for implicit steps with friction.
 constexpr double kFrictionArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
                                    sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
 constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);

@@ -288,18 +288,11 @@ void BodyContacts::find_steps(const SurfacePoses& poses, Real h) {
   steps_.resize(static_cast<std::size_t>(store_.owned));
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
-  const StepStart start = step_start(h);
+  FrictionStart start{step_start(h), start_spin_.data(), mean_spin_.data(), {}, nullptr};
   if (accepted_.exists()) trial_ = accepted_, has_step_ = true;
-  if (model_.rotates()) {
-    FrictionStart friction{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
-    entries_.find_friction_steps(poses, store_, list_.surfaces, friction, trial_.views());
-    friction.on_bodies = entries_.friction_steps();
-    kernels_->body_friction_steps(views(trial_.views()), store_.owned, friction, arm_.data(), steps_.data(),
-                                  to);
-  } else {
-    entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
-    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
-  }
+  entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
+  start.on_bodies = entries_.friction_steps();
+  kernels_->body_steps(views(trial_.views()), store_.owned, start, arm_.data(), steps_.data(), to);
   if (accepted_.exists()) trial_.accepted();
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
   find_pairs();
@@ -336,8 +329,7 @@ void BodyContacts::add_sums(std::vector<InstantSums>& to) const {
 void BodyContacts::add_sums(std::vector<StepSums>& to) const {
   for (const BodyStep& step : steps_)
     if (step.sums.contacts > 0) to.push_back(step.sums);
-  const std::vector<StepSums> of_surfaces =
-      model_.rotates() ? entries_.friction_step_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
+  const std::vector<StepSums> of_surfaces = entries_.step_sums(list_.surfaces);
   to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
 }
 
@@ -361,10 +353,7 @@ void BodyContacts::accumulate_load_works(const SurfacePoses& poses, Real h) {
 }
 
 void BodyContacts::accumulate_step_works(const SurfacePoses& poses) {
-  if (model_.rotates())
-    entries_.accumulate_friction_works(poses, store_, list_.surfaces);
-  else
-    entries_.accumulate_step_works(poses, store_, list_.surfaces);
+  entries_.accumulate_step_works(poses, store_, list_.surfaces);
 }
 
 std::vector<TriangleSums> BodyContacts::triangle_sums() const {

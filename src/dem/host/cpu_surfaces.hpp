@@ -30,14 +30,10 @@ class CpuSurfaces {
                   const SurfaceQuery& query);
   // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
   void find_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
-                  const StepStart& start, const HistoryViews& history);
-  // Contacts over an implicit step with friction.
-  void find_friction_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
-                           const FrictionStart& start, const HistoryViews& history);
+                  const FrictionStart& start, const HistoryViews& history);
   // Sums of the last evaluation, per surface in contact.
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
-  std::vector<StepSums> friction_step_sums(const SurfaceRows& rows) const;
   // Calls visit(particle, placed surface, contact point relative to the parent's centre, slopes) for the
   // contacts over the step that was evaluated last.
   template <class Visit>
@@ -65,13 +61,11 @@ class CpuSurfaces {
   void accumulate_load_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                              Real h);
   void accumulate_step_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows);
-  void accumulate_friction_works(const SurfacePoses& poses, const ParticleStore& store,
-                                 const SurfaceRows& rows);
   std::vector<std::int64_t> works() const {
     return works_.exist() ? works_.limbs(work_sums_) : std::vector<std::int64_t>{};
   }
   void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
-  // Per entry, of the last find_friction_steps().
+  // Per entry, of the last find_steps() where particles rotate.
   const SurfaceFriction* friction_steps() const { return friction_steps_.data(); }
 
   // Views of particles at these positions, with the contacts that were evaluated last.
