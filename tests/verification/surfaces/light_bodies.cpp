@@ -88,7 +88,7 @@ struct Impact {
   Struck body;
   Partner partner;
   std::string method;
-  std::string law = "stiffness = 1e8";
+  std::string law = "stiffness = 1e8", materials = "";
   Real mass = 1;  // of the particle or the other body [kg]
 
   int dimension() const { return body.dimension; }
@@ -112,7 +112,7 @@ std::string deck_of(const Impact& of, Real gap, Real step, Real end) {
     deck += d == 3 ? "[[meshes]]\nname = \"block\"\nkind = \"box\"\nsize = [0.3, 0.2, 0.1]\n"
                    : "[[meshes]]\nname = \"block\"\nkind = \"line\"\nclosed = true\npoints = [[-0.15, -0.1], "
                      "[0.15, -0.1], [0.15, 0.1], [-0.15, 0.1]]\n";
-  deck += of.body.table({}, of.partner == Partner::wall ? kSpeed * normal : Vec3{});
+  deck += of.materials + of.body.table({}, of.partner == Partner::wall ? kSpeed * normal : Vec3{});
   switch (of.partner) {
     case Partner::particle:
       return deck + fmt::format(
@@ -174,6 +174,18 @@ TEST_CASE("a free body of any mass rebounds with the pair's restitution, whereve
           CAPTURE(dimension, method, ratio, impact.name);
           CHECK(keeps(error_of(impact, method == "hht" ? 200 : 1000), {.promise = 1e-3, .measured = 2.7e-4}));
         }
+}
+
+TEST_CASE("so it does by a power law, and by Hertz's law") {
+  for (const std::string method : {"velocity-verlet", "hht"})
+    for (const bool hertz : {false, true})
+      for (Impact impact : impacts(3, method, 5)) {
+        impact.law = hertz ? "" : "stiffness = 1e9\nexponent = 1.5";
+        if (hertz)
+          impact.materials = "[[materials]]\nname = \"default\"\nyoung_modulus = 1e10\npoisson_ratio = 0.2\n";
+        CAPTURE(method, hertz, impact.name);
+        CHECK(keeps(error_of(impact, method == "hht" ? 800 : 1000), {.promise = 1e-3, .measured = 3e-4}));
+      }
 }
 
 }  // namespace scree
