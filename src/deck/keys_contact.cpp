@@ -35,7 +35,8 @@ std::vector<Key> attraction_keys() {
       real("attraction_range", "m")
           .above(0)
           .left_out("the attraction ends where the contact opens")
-          .about("Distance between the surfaces over which the attraction falls linearly to zero.")};
+          .about("Distance between the surfaces over which the attraction falls linearly to zero. Explicit "
+                 "steps only.")};
 }
 
 // Plasticity of a pair.
