@@ -46,6 +46,7 @@ EXCAVATOR = ("examples/excavator", ("output.surface_fields=['pressure']",))
 PICTURES = {
     "tutorial_heap.png": Picture("tutorial/2_heap", "picture"),
     "tutorial_digging.png": Picture("tutorial/4_digging", "picture"),
+    "calibration_repose.png": Picture("calibration/angle_of_repose", "picture"),
     "net_400.png": Picture("paper/net_400", "picture", settings=("time.end=0.62",)),
     "paraview.png": Picture(EXCAVATOR[0], "paraview", ("--time", "2.2", "--size", "1400", "1050"), EXCAVATOR[1]),
     "drum_lifters.webp": Picture("examples/drum_lifters", "animate", (*FILM, "--quality", "50")),
