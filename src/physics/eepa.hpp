@@ -136,6 +136,7 @@ struct EepaPair {
     return energy(d) - (d > p ? unloading_work(d, p) : 0);
   }
   SCREE_HD Real damping(Real d) const { return d > 0 ? repulsion.damping(d) : 0; }
+  // These two are of implicit steps, which plastic contacts do not have.
   SCREE_HD Real mean_damping(Real d0, Real d1) const { return repulsion.mean_damping(d0, d1); }
   SCREE_HD Real cut(Real d0, Real damper_force) const { return repulsion.cut(d0, damper_force); }
   // Of the first loading: a function of the overlap alone.
