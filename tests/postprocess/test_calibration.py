@@ -297,8 +297,8 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(record.stat().st_mtime_ns, stamp)
 
     def test_shear_at_two_stresses(self):
-        said = self.command(DONE, "shear", SAND, "--seeds", "1", *self.QUICK, "-o", self.folder, "--stresses", "500",
-                            "1000", "--set", "particles.grains.count=150", "time.end=0.3")
+        said = self.command(DONE, "shear", SAND, "--seeds", "1", *self.QUICK, "-o", self.folder, "--stresses", "2000",
+                            "4000", "--set", "particles.grains.count=150", "time.end=0.3")
         self.assertRegex(said, r"(?m)^residual angle: -?\d+(\.\d+)? degrees \(1 seed\)$")
         self.assertRegex(said, r"(?m)^ +1 +\d+ +\d+ +\d+$")
         self.assertTrue((self.folder / "seed_1/stress_2/run_record.json").exists())
