@@ -211,7 +211,7 @@ struct EepaLaw {
         twice_chi(static_cast<int>(
             std::lround(2 * (p.adhesion_exponent > 0 ? p.adhesion_exponent : Pair::Curve::kExponent)))) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && p.range == 0 &&
+    return NormalLaw::accepts(p.without_cohesion()) && p.range == 0 && !p.bridge.acts() &&
            (p.plasticity_ratio > 0 || p.adhesion_work == 0);
   }
 

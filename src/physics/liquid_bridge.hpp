@@ -129,7 +129,8 @@ struct BridgeLaw {
   }
   explicit BridgeLaw(const NormalLawParameters& p) : BridgeLaw(NormalLaw(p), p.bridge) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && p.adhesion_work == 0 && p.attraction == 0;
+    return NormalLaw::accepts(p.without_cohesion()) && p.adhesion_work == 0 && p.attraction == 0 &&
+           !p.is_plastic();
   }
 
   SCREE_HD auto of_pair(const PairSize& size) const {
