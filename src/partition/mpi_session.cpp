@@ -87,8 +87,12 @@ bool launched_with_others() {
 void start_mpi() {
   if (runs()) return;
   // To a process started without a launcher Open MPI adds a daemon, which could start other processes, and
-  // which requires ssh.
-  if (!launched_with_others()) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  // which requires ssh. Without the daemon all such processes of a user share one session directory, which
+  // each of them creates and removes: when several start at a time, some fail. A single process needs none.
+  if (!launched_with_others()) {
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+  }
   static const int registered = std::atexit(print_remedy);
   starting = registered == 0;
   MPI_Init(nullptr, nullptr);

@@ -63,11 +63,12 @@ def line_of(program, name, deck, overrides, motion):
         settings = [word for override in [*overrides, "output.history_csv=true"] for word in ("--set", override)]
         backend = os.environ.get("SCREE_TEST_BACKEND", "cpu")
         command = [program, "run", str(deck), "--backend", backend, "--output", folder, "--overwrite", *settings]
-        code = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+        process = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        code = process.returncode
         if code == BAD_INPUT:
             return f"{name:40} {UNKNOWN}"
         if code != DONE:
-            raise SystemExit(f"{program}: {name}: exit code {code}")
+            raise SystemExit(f"{program}: {name}: exit code {code}: {process.stderr.strip()[-800:]}")
         record = json.loads((pathlib.Path(folder) / "run_record.json").read_text())
         bodies = " (bodies)" if "net" in str(deck) else ""
         if motion:
