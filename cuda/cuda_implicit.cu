@@ -56,8 +56,21 @@ void CudaImplicitOperations::refresh_ghosts(Device on) {
   if (now().rotates) items_.halo_stream.halo.update(on, arrays().six.mean_spin.data(), items_.owned);
 }
 
+void CudaImplicitOperations::copy_queued() {
+  if (max_is_queued_) items_.results.copy(&Results::largest);
+  if (sum_is_queued_) items_.results.copy(&Results::slope);
+  max_is_queued_ = sum_is_queued_ = false;
+}
+
+void CudaImplicitOperations::wait_for_queued() {
+  if (!max_is_queued_ && !sum_is_queued_) return;
+  copy_queued();
+  wait_for(items_.stream);
+}
+
 // Waits.
 FrictionNorms CudaImplicitOperations::norms() {
+  copy_queued();
   const FrictionNorms own = items_.results.fetch(&Results::norms);
   items_.halo_stream.clock.read(items_.balance.halo);
   Real maxima[5] = {own.residual, own.correction_bound, own.force, own.stiffness_ratio, own.phase_squared};

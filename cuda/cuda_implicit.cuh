@@ -83,19 +83,19 @@ class CudaImplicitOperations {
   template <class Item>
   void queue_max(const Item& item) {
     max_over(items_.device(), items_.owned, item, items_.results.at(&Results::largest));
-    items_.results.copy(&Results::largest);
+    max_is_queued_ = true;
   }
   Real queued_max() {
-    wait_for(items_.stream);
+    wait_for_queued();
     return items_.ranks.max(items_.results.host().largest);
   }
   template <class Item>
   void queue_sum(const Item& item) {
     items_.queue_sums(item, &Results::slope);
-    items_.results.copy(&Results::slope);
+    sum_is_queued_ = true;
   }
   Real queued_sum() {
-    wait_for(items_.stream);
+    wait_for_queued();
     return items_.results.totals(items_.results.host().slope)[0];
   }
   Real largest_displacement();
@@ -126,12 +126,17 @@ class CudaImplicitOperations {
   template <class QueueRows>
   void queue_with_ghosts(const QueueRows& queue_rows, HaloClock* clock);
   void refresh_ghosts(Device on);
+  // Queues the copy of a queued maximum and sum to the host, which a wait must follow: between kernels a copy
+  // would delay the second one.
+  void copy_queued();
+  void wait_for_queued();
 
   CudaItems& items_;
   CudaBodies& bodies_;
   CudaImplicitArrays& arrays_;
   const Real h_;
   bool ghosts_stale_ = false;
+  bool max_is_queued_ = false, sum_is_queued_ = false;
 };
 
 template <class QueueRows>
