@@ -31,8 +31,7 @@ std::string CudaBackend::description() const {
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
-  if (items_.model.rotates()) return std::make_unique<CudaFrictionStep>(items_, bodies_, implicit_arrays_, h);
-  return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
+  return open_cuda_step(items_, bodies_, implicit_arrays_, h);
 }
 
 std::unique_ptr<ExplicitRun> CudaBackend::start_run(Real h) {

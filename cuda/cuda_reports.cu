@@ -68,7 +68,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   if (now.rotates)
     out.rotation =
         make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data(), bodies_.side());
-  if (items_.model.is_cohesive()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
+  if (items_.model.is_cohesive()) out.cohesion += results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
 }

@@ -15,8 +15,9 @@ std::vector<Key> attraction_keys() {
           .about(
               "w, for Hertz's law: energy per area to separate the two surfaces. The normal force may then "
               "be tensile with either value of limit_damping, and the friction limit includes the adhesive "
-              "force. Explicit steps in double precision only. Adhesion acts between particles and on "
-              "particles that touch walls or bodies, not between bodies or between bodies and walls."),
+              "force. JKR and plastic contacts need explicit steps, and all adhesion double precision. "
+              "Adhesion acts on particles and on the discs and spheres on bodies, not on the corners of a "
+              "body's mesh on a plane."),
       real("surface_energy", "J/m^2")
           .at_least(0)
           .left_out("work_of_adhesion is given, or no adhesion")
@@ -34,7 +35,30 @@ std::vector<Key> attraction_keys() {
       real("attraction_range", "m")
           .above(0)
           .left_out("the attraction ends where the contact opens")
-          .about("Distance between the surfaces over which the attraction falls linearly to zero.")};
+          .about("Distance between the surfaces over which the attraction falls linearly to zero. Explicit "
+                 "steps only.")};
+}
+
+// Plasticity of a pair.
+std::vector<Key> plasticity_keys() {
+  return {
+      real("plasticity_ratio", "")
+          .within(0, 0.999)
+          .left_out("the contact is elastic, as with 0")
+          .about(
+              "l = 1 - k1/k2: elasto-plastic adhesion (Edinburgh elasto-plastic adhesion model, EEPA) with "
+              "the stiffness k1 of loading, K or Hertz's, and k2 of unloading; d_p: plastic overlap. "
+              "Without adhesion and damping the restitution is sqrt(1 - l) with a linear stiffness. Beside "
+              "it work_of_adhesion is the g of the pull-off force 3/2 pi g a, a = sqrt(2 R* d_p - d_p^2) "
+              "(what other programs call surface energy), but at most half of k2 d_p^n; attraction is a "
+              "constant force, -f0; restitution is that of the damper alone. Explicit steps in double "
+              "precision only. A pair without it, or with 0, may have an attraction, but no other "
+              "adhesion."),
+      real("adhesion_exponent", "")
+          .within(1, 5)
+          .left_out("the exponent of the stiffness: 1, or 1.5 with Hertz's law")
+          .about("chi, with plasticity_ratio: the adhesive force falls with d^chi when the contact is drawn "
+                 "off. A multiple of 0.5, and at least the exponent of the stiffness.")};
 }
 
 // Normal force, friction, rolling resistance and wear of a pair.
@@ -63,8 +87,8 @@ std::vector<Key> law_keys() {
           .about("In place of damping: ratio of the speeds after and before a head-on impact, equal at all "
                  "speeds and masses, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact with limit_damping "
                  "and without; needs n >= 1. For surfaces with adhesion or attraction it holds for the law "
-                 "without these and with limit_damping = false. In m* a body counts as infinitely heavy in "
-                 "contacts with particles."),
+                 "without these and with limit_damping = false. m* includes the mass and the rotation of "
+                 "bodies at the contact, as if they had no joints."),
       boolean("limit_damping")
           .formerly("tension", FormerSense::negated)
           .otherwise("true")
@@ -118,6 +142,44 @@ std::vector<Key> law_keys() {
                  "coefficient of friction. Shapes do not change. Needs friction above 0.")};
 }
 
+// Liquid bridges between the two surfaces, likewise.
+std::vector<Key> bridge_keys() {
+  return {
+      real("bridge_volume", "")
+          .within(0, 0.1)
+          .left_out("no liquid bridges")
+          .about("Volume of each liquid bridge over the cube of the smaller radius, constant. A bridge forms "
+                 "when the surfaces touch, pulls with 2 pi R gamma cos(theta), R = 2 R*, and acts across a "
+                 "gap up to (1 + theta/2) V^(1/3), where it breaks. Beside a linear law or Hertz's, in "
+                 "explicit steps in "
+                 "double precision. 0: none."),
+      real("surface_tension", "N/m")
+          .at_least(0)
+          .left_out("no liquid bridges")
+          .about("gamma of the liquid; of water in air 0.0728 N/m at 20 C. Needs bridge_volume."),
+      real("contact_angle", "rad")
+          .within(0, 1.5)
+          .left_out("0")
+          .about("theta between liquid and surfaces, the same on both."),
+      choice<BridgeForce>("bridge_force")
+          .left_out("willett")
+          .about(
+              "Force of a bridge over its gap S. willett: 1 / (1 + 1.05 s + 2.5 s^2) of that at touch, s = "
+              "S sqrt(R / V) (Willett et al., 2000). soulie: exponential, fitted to spheres of unequal "
+              "radii (Soulie et al., 2006); against surfaces of walls and meshes as willett."),
+      real("bridge_viscosity", "Pa s")
+          .at_least(0)
+          .left_out("no viscous force")
+          .about("mu of the liquid, for the normal viscous force 6 pi mu R* v / max(s_min, S/R*) while "
+                 "there is a bridge; of water 1e-3 Pa s. It adds to the damping of the contact."),
+      real("bridge_least_gap", "")
+          .within(0, 1)
+          .above(0)
+          .left_out("0.01")
+          .about("s_min: the gap over R* below which the viscous force does not grow, for example the "
+                 "roughness of the surfaces.")};
+}
+
 const TableKeys& pair_keys() {
   static const TableKeys keys = [] {
     TableKeys pairs{
@@ -126,8 +188,8 @@ const TableKeys& pair_keys() {
         "both materials have a Young's modulus: Hertz's law of spheres, or in 2D a linear law of discs of "
         "thickness L with K = pi/4 E* L.",
         law_keys(), ""};
-    const std::vector<Key> attraction = attraction_keys();
-    pairs.keys.insert(pairs.keys.end(), attraction.begin(), attraction.end());
+    for (const std::vector<Key>& more : {attraction_keys(), plasticity_keys(), bridge_keys()})
+      pairs.keys.insert(pairs.keys.end(), more.begin(), more.end());
     return pairs;
   }();
   return keys;
@@ -159,7 +221,8 @@ const TableKeys& contact_keys() {
                   "material with itself. none: it must be given. Otherwise stiffnesses act in series (K = 2 "
                   "K_a K_b / (K_a + K_b) for two linear laws; Hertz's law uses the materials' moduli: 1/E* = "
                   "sum (1 - nu^2)/E), and damping, damping ratios, restitution, coefficients of friction, "
-                  "adhesion and attraction are the geometric, arithmetic or harmonic mean, or the smaller or "
+                  "adhesion, plasticity ratios and attraction are the geometric, arithmetic or harmonic "
+                  "mean, or the smaller or "
                   "larger value. `scree check` prints the resulting pairs."),
        tables("pairs", pair_keys())},
       ""};

@@ -21,8 +21,8 @@ Particles are discs (2D) or spheres (3D); there are no polygons. All particles e
 inserted, bonded or broken.
 
 Friction acts between particles, bodies and walls. Rolling and twisting resistance and adhesion are available
-in explicit steps (velocity-verlet) only. Adhesion acts on particles only: bodies are attracted neither by
-each other nor by walls.
+in explicit steps (velocity-verlet) only. Adhesion acts on particles and on the discs and spheres on bodies; a
+body's mesh does not adhere to planes.
 
 Particles, and the discs and spheres on bodies, touch each other, planes and meshes. A mesh of a body touches
 planes with the corners of its convex hull. Meshes do not touch each other.

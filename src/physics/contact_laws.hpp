@@ -6,6 +6,8 @@
 
 #include "physics/cohesion.hpp"
 #include "physics/contact_law.hpp"
+#include "physics/eepa.hpp"
+#include "physics/liquid_bridge.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"

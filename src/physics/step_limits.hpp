@@ -19,6 +19,8 @@ namespace scree {
 inline constexpr Real kStableStepFraction = Real(1) / 3;  // of the stability limit in dense contact
 // Of the shortest contact duration, where a JKR contact must break within one step.
 inline constexpr Real kPullOffShare = 0.01;
+// Of the time in which the force of a liquid bridge decreases at the speed below which impacts stick.
+inline constexpr Real kBridgeShare = 0.05;
 // Recommended phase of a body on its contacts in one step [rad]: its contacts are integrated staggered with
 // the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
@@ -30,14 +32,21 @@ inline constexpr Real kMostBodyPhase = 0.7, kMostAmongBodies = 2;
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
-// radius.
-inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+// radius; for plastic pairs that of the first loading.
+inline Real loading_stiffness(const NormalLawParameters& of, const PairSize& size) {
   const NormalLawParameters law = law_of_size(of, size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
-  if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
+  const Real of_bridge = of.bridge.acts() ? largest_bridge_slope(of.bridge, size) : 0;
+  if (law.exponent == 1)
+    return std::max({law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0, of_bridge});
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
   if (of.jkr && of.is_cohesive()) return JkrLaw(of).of_pair(size).slope(overlap);
-  return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
+  return std::max(law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1), of_bridge);
+}
+// The largest stiffness at this overlap: that of unloading, k2 = k1 / (1 - l), for plastic pairs.
+inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+  const Real loading = loading_stiffness(of, size);
+  return of.is_plastic() ? loading / (1 - of.plasticity_ratio) : loading;
 }
 
 // Circular frequency of a single undamped contact [1/s].

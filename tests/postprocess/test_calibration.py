@@ -36,7 +36,7 @@ DEGREE, ONE_PERCENT = 1.0, 0.01
 
 def grains_below(slope, rng, depth=5.0, length=20.0):
     """A jittered lattice of spheres of diameter 1 between x = 0 and `length` and below a plane of this slope through
-    the     middle at z = 12."""
+    the middle at z = 12."""
     x, y, z = np.meshgrid(np.arange(-2, length + 2, 0.95), np.arange(0, depth, 0.95), np.arange(0, 26, 0.95),
                           indexing="ij")
     positions = np.column_stack([x.ravel(), y.ravel(), z.ravel()]) + rng.uniform(-0.3, 0.3, (x.size, 3))
@@ -144,6 +144,9 @@ class MaterialsTest(unittest.TestCase):
         soft = materials.softened(grains, 0.01)
         self.assertAlmostEqual(soft.material["young_modulus"], 0.01 * grains.material["young_modulus"])
         self.assertEqual(soft.pair["work_of_adhesion"], grains.pair["work_of_adhesion"])  # the same pull-off force
+        plastic = materials.Grains("soil", grains.material, grains.pair | {"plasticity_ratio": 0.5}, 0.001, 1.0)
+        self.assertAlmostEqual(materials.softened(plastic, 0.001).pair["work_of_adhesion"],
+                               0.1 * grains.pair["work_of_adhesion"])
         self.assertEqual(soft.pair["friction"], grains.pair["friction"])
 
     def test_values_of_a_search(self):

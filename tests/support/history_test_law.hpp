@@ -15,7 +15,7 @@ SCREE_HD void add_force(Vec3f& force, Vec3 more) {
            force.z + static_cast<float>(more.z)};
 }
 
-// kNumbers: 3 to 7.
+// kNumbers: 3 to 8.
 template <int kNumbers>
 struct HistoryTestLaw : ContactLaw<LinearLaw> {
   static constexpr int kHistory = kNumbers;

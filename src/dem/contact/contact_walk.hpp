@@ -44,7 +44,7 @@ struct ContactWalk {
   template <class Of>
   SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
     const Self owner = self(i);
-    auto pair = kinematics.pair(in, owner, j);
+    auto pair = pair_of(owner, j);
     if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
     return of(laws.get(owner.material, in.material[j]), pair,
               in.history.template read<Law>(in.history.neighbors, slot));
@@ -71,6 +71,7 @@ struct ContactWalk {
       }
       const WallPlane& plane = in.numbers.planes[surface];
       auto pair = kinematics.wall(in, self, plane);
+      count_bodies(pair, self.i);
       if constexpr (requires { kinematics.at_entry(pair, entry); }) kinematics.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
@@ -101,7 +102,7 @@ struct ContactWalk {
       const Self owner = walk.kinematics.self(in, i);
       const Law& law = walk.laws.get(owner.material, in.material[j]);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-      const auto pair = walk.kinematics.pair(in, owner, j);
+      const auto pair = walk.pair_of(owner, j);
       [[maybe_unused]] const bool closed = found_closed(law, pair, history);
       if constexpr (kHasRange<Law>)
         if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
@@ -116,6 +117,22 @@ struct ContactWalk {
     }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
+
+  SCREE_HD auto pair_of(const Self& self, Index j) const {
+    auto pair = kinematics.pair(in, self, j);
+    count_bodies(pair, self.i, j);
+    return pair;
+  }
+  // Where the items are shapes, adds the rotation of their bodies to the effective mass of the contact; their
+  // masses are those of the items.
+  SCREE_HD static Vec3 normal_of(const PairState& pair) { return pair.geometry.normal(); }
+  SCREE_HD static Vec3 normal_of(const ContactPath& path) { return path.normal1; }
+  template <class Pair, class... Item>
+  SCREE_HD void count_bodies([[maybe_unused]] Pair& pair, [[maybe_unused]] Item... item) const {
+    if constexpr (std::is_same_v<Rows, PackedRows> && kUsesMass<Law>)
+      if (in.free_shapes != nullptr)
+        pair.size.of_bodies = (in.free_shapes[item].rotation(normal_of(pair)) + ...);
+  }
 
   // The test, extended by the interaction range of the law.
   template <class Test>
@@ -191,7 +208,7 @@ struct ContactWalk {
     in.rows.for_each_contact(
         self.i, test,
         [&](Index j) {
-          return Found{of(laws.get(self.material, in.material[j]), kinematics.pair(in, self, j)), j};
+          return Found{of(laws.get(self.material, in.material[j]), pair_of(self, j)), j};
         },
         [&](const Found& found) { visit(found.contact, found.j); });
   }
@@ -209,7 +226,7 @@ struct ContactWalk {
         self.i, test,
         [&](Index j, std::int64_t slot) {
           const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-          auto pair = kinematics.pair(in, self, j);
+          auto pair = pair_of(self, j);
           if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
           return Found{of(laws.get(self.material, in.material[j]), pair, history), j, slot};
         },
@@ -232,7 +249,7 @@ struct ContactWalk {
     };
     const auto add = [&](const EntryIndex& at) {
       const Law& law = laws.get(self.material, in.material[at.j]);
-      const auto pair = kinematics.pair(in, self, at.j);
+      const auto pair = pair_of(self, at.j);
       if constexpr (kTakesHistory) {
         const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
         const bool closed = found_closed(law, pair, history);

@@ -39,7 +39,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   if (is_cohesive) {
     Real sum[1];
     reproducible_sums(n, CohesionItem{cohesion.data()}, sum, items_.ranks);
-    out.cohesion = sum[0];
+    out.cohesion += sum[0];
   }
   for (Index i = 0; i < n; ++i) out.drifting += store.drifting[i];
   out.drifting = items_.ranks.sum(out.drifting);

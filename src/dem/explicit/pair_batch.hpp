@@ -140,7 +140,7 @@ class PairBatch {
       // Not by a function that returns the pair, which gcc would copy as a whole.
       const MovingPair pair{state, OverExplicitStep{h}.motion(state, OverExplicitStep::partner(p, v),
                                                               OverExplicitStep::partner(q, s))};
-      const ContactHistory old = history_of(k);
+      const auto old = history_of(k);
       if constexpr (kHasRange<Law>) {
         closed_[k] = law.closed(pair, old);
         acts_[k] = closed_[k] || Law::breaks(old);
@@ -157,16 +157,22 @@ class PairBatch {
 
   // As `HistoryViews::read` and `write`, in the form that gcc vectorizes: without branches around reads, and
   // with all four numbers of a record read.
-  ContactHistory history_of(Index k) const {
+  auto history_of(Index k) const {
     const Vec4* const records = old_records(k);
     return Law::read_history([&](int n) { return number_of(records, n); });
   }
-  void put_history(Index k, const ContactHistory& history) {
+  template <class History>
+  void put_history(Index k, const History& history) {
     for (Index r = 0; r < kRecords; ++r) new_records_[r][3][k] = old_records(k)[r].w;
     Law::write_history(history, [&](int n, Real value) { new_number(n)[k] = value; });
   }
-  // As `number_of()` for one record.
-  Real* new_number(int n) { return n < 3 ? new_records_[0][n] : new_records_[kRecords - 1][n - 3]; }
+  // As `number_of()`; laws of one record have the first three numbers only.
+  Real* new_number(int n) {
+    if constexpr (kRecords > 2)
+      if (n >= 7) return new_records_[2][n - 7];
+    constexpr Index kSecond = kRecords > 1 ? 1 : 0;
+    return n < 3 ? new_records_[0][n] : new_records_[kSecond][n - 3];
+  }
 
   struct Items {
     alignas(64) Vec4 position[kSize]{}, velocity[kSize]{}, spin[kSize]{};

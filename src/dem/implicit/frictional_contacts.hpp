@@ -3,16 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "dem/contact/contact_walk.hpp"
 #include "dem/contact/system_items.hpp"
 #include "dem/implicit/step_items.hpp"
 #include "physics/step_friction.hpp"
+#include "physics/step_rolling.hpp"
 
 namespace scree {
 
-// Lagged limits of the mean friction force, constant while the step is solved, at the list's slots and at the
-// entries of the surfaces [N]; negative: no contact. Null: the limits follow the normal forces.
+// Lagged limits, constant while the step is solved, at the list's slots and at the entries of the surfaces
+// (`StepFriction::limit`) [N]; negative: no contact. Null: the limits follow the normal forces.
 struct LaggedLimits {
   Real *neighbors = nullptr, *surfaces = nullptr;
 };
@@ -36,6 +38,7 @@ struct FrictionalPath : ContactPath {
   Real curvature = 0;         // rotation of the normal per tangential displacement of i's centre [1/m]
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
   Vec3 arm_rotation;          // R_i times i's rotation over the step, plus the same of j; even [m]
+  Vec3 relative_rotation;     // of i relative to j over the step; odd [rad]
   Vec3 surface_velocity;      // conveyor velocity of j's surface at the end of the step [m/s]
   Index i, j;                 // items; j: kWall
   std::int64_t slot;          // of the list, or entry of the surfaces
@@ -100,6 +103,7 @@ struct OverFrictionStep {
   SCREE_HD FrictionalPath finish(const ContactViews<Rows>& in, FrictionalPath out, const RotatingPartner& one,
                                  const RotatingPartner& other, Index i, Index j) const {
     out.arm_rotation = start.step.h * (one.arm * one.spin + other.arm * other.spin);
+    out.relative_rotation = start.step.h * (one.spin - other.spin);
     out.i = i, out.j = j;
     out.velocity0 = xyz(start.step.velocity[i]), out.velocity1 = xyz(in.velocity[i]);
     if (j == FrictionalPath::kWall) return out;
@@ -121,13 +125,23 @@ struct FrictionalContact {
   ContactHistory history;
 };
 
-// Evaluates a contact over the step. arm_spin(at_end): sum of both partners' spins times their arms at one
-// end of the step; even [m/s]; called for laws with a dashpot.
-template <class Law, class ArmSpin>
-SCREE_HD FrictionalContact frictional_contact(const Law& law, const FrictionalPath& c,
-                                              const ContactHistory& old, bool resolve_events,
-                                              const ArmSpin& arm_spin) {
-  FrictionalContact out{};
+// The same for laws with rolling resistance.
+struct RollingFrictionalContact : FrictionalContact {
+  StepRolling rolling;
+  Real radius_i, radius_j;  // radius_j: 0 for surfaces without a radius [m]
+};
+template <class Law>
+using FrictionalContactOf =
+    std::conditional_t<Law::Rolling::acts, RollingFrictionalContact, FrictionalContact>;
+
+// Evaluates a contact over the step. spins: of both partners at the ends of the step, as functions of at_end:
+// arm_sum(), the sum of the spins times their arms, even [m/s], for laws with a tangential dashpot; and
+// relative(), the spin of i relative to j, odd [rad/s], for laws with rolling resistance.
+template <class Law, class Spins>
+SCREE_HD FrictionalContactOf<Law> frictional_contact(const Law& law, const FrictionalPath& c,
+                                                     const ContactHistory& old, bool resolve_events,
+                                                     const Spins& spins) {
+  FrictionalContactOf<Law> out{};
   out.slot = c.slot;
   out.acts = OverFrictionStep::closed(c), out.lasts = c.step.acts_at_end();
   if (!out.acts) return out;
@@ -150,11 +164,16 @@ SCREE_HD FrictionalContact frictional_contact(const Law& law, const FrictionalPa
     const auto rate = [](Real lever_arm_ratio, Vec3 velocity, Vec3 both, Vec3 across_normal) {
       return tangential_part(lever_arm_ratio * velocity - cross(both, across_normal), across_normal);
     };
-    step.slip_rate0 = rate(c.lever_arm_ratio0, c.velocity0, arm_spin(false), c.normal0);
-    step.slip_rate1 = rate(c.motion.lever_arm_ratio, c.velocity1, arm_spin(true), c.normal1);
+    step.slip_rate0 = rate(c.lever_arm_ratio0, c.velocity0, spins.arm_sum(false), c.normal0);
+    step.slip_rate1 = rate(c.motion.lever_arm_ratio, c.velocity1, spins.arm_sum(true), c.normal1);
   }
   out.friction = step_friction(law, step, old.spring);
   out.history.spring = out.friction.spring;
+  if constexpr (Law::Rolling::acts) {
+    out.rolling = step_rolling(law, step, {spins.relative(false), spins.relative(true)}, old.moment);
+    out.history.moment = out.rolling.spring;
+    out.radius_i = c.motion.arm_i, out.radius_j = c.motion.arm_j;
+  }
   return out;
 }
 
@@ -162,18 +181,31 @@ struct EvaluateFrictionalContact {
   FrictionStart start;
   const Vec4* spin;  // at the end of the step
 
-  template <class Law>
-  SCREE_HD FrictionalContact operator()(const Law& law, const FrictionalPath& c,
-                                        const ContactHistory& old) const {
-    return frictional_contact(law, c, old, start.step.resolve_events, [&](bool at_end) {
-      const Vec4* spins = at_end ? spin : start.spin;
+  // Spins of a pair of items; see `frictional_contact()`.
+  struct ItemSpins {
+    const EvaluateFrictionalContact& of;
+    const FrictionalPath& c;
+
+    SCREE_HD Vec3 arm_sum(bool at_end) const {
+      const Vec4* spins = at_end ? of.spin : of.start.spin;
       Vec3 sum = c.motion.arm_i * xyz(spins[c.i]);
       if (c.j != FrictionalPath::kWall) sum = sum + c.motion.arm_j * xyz(spins[c.j]);
       return sum;
-    });
+    }
+    SCREE_HD Vec3 relative(bool at_end) const {
+      const Vec4* spins = at_end ? of.spin : of.start.spin;
+      const Vec3 own = xyz(spins[c.i]);
+      return c.j != FrictionalPath::kWall ? own - xyz(spins[c.j]) : own;
+    }
+  };
+
+  template <class Law>
+  SCREE_HD FrictionalContactOf<Law> operator()(const Law& law, const FrictionalPath& c,
+                                               const ContactHistory& old) const {
+    return frictional_contact(law, c, old, start.step.resolve_events, ItemSpins{*this, c});
   }
   template <class Views>
-  SCREE_HD const FrictionalContact* stored(const Views&, Index entry) const;
+  SCREE_HD const RollingFrictionalContact* stored(const Views&, Index entry) const;
 };
 
 // Energy accounting of a contact over the step, and its new history.
@@ -182,11 +214,27 @@ struct FrictionLosses : ContactLosses {
   bool acts, lasts;
   ContactHistory history;
 };
+// The same for laws with rolling resistance.
+struct RollingFrictionLosses : FrictionLosses {
+  Real rolling, twisting;  // parts of the dissipation [J]
+};
 template <class Law>
-SCREE_HD FrictionLosses friction_losses(const Law& law, const FrictionalPath& c, const FrictionalContact& at,
-                                        bool resolve_events) {
-  if (!at.acts) return {{}, 0, false, false, {}};
-  FrictionLosses out{EvaluateStepLosses{{resolve_events}}(law, c), 0, true, at.lasts, at.history};
+using FrictionLossesOf = std::conditional_t<Law::Rolling::acts, RollingFrictionLosses, FrictionLosses>;
+
+SCREE_HD void add_rolling_losses(const FrictionalPath& c, const StepRolling& m, RollingFrictionLosses& out) {
+  const Real work = Real(-0.5) * dot(m.start + m.step, c.relative_rotation);
+  out.rolling = m.rolling_losses.sum(), out.twisting = m.twisting_losses.sum();
+  const Real lost = out.rolling + out.twisting;
+  out.dissipated += lost, out.integrator += (m.stored0 - m.stored1) - work - lost;
+}
+
+template <class Law>
+SCREE_HD FrictionLossesOf<Law> friction_losses(const Law& law, const FrictionalPath& c,
+                                               const FrictionalContactOf<Law>& at, bool resolve_events) {
+  FrictionLossesOf<Law> out{};
+  if (!at.acts) return out;
+  static_cast<FrictionLosses&>(out) = {EvaluateStepLosses{{resolve_events}}(law, c), 0, true, at.lasts,
+                                       at.history};
   const StepFriction& friction = at.friction;
   const Vec3 force = at.lever_arm_ratio0 * friction.start + at.lever_arm_ratio * friction.step;
   const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
@@ -195,6 +243,7 @@ SCREE_HD FrictionLosses friction_losses(const Law& law, const FrictionalPath& c,
   const Real lost = friction.losses.sum();
   out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
   out.friction = lost;
+  if constexpr (Law::Rolling::acts) add_rolling_losses(c, at.rolling, out);
   return out;
 }
 
@@ -202,19 +251,20 @@ struct EvaluateFrictionLosses {
   EvaluateFrictionalContact contact;
 
   template <class Law>
-  SCREE_HD FrictionLosses operator()(const Law& law, const FrictionalPath& c,
-                                     const ContactHistory& old) const {
+  SCREE_HD FrictionLossesOf<Law> operator()(const Law& law, const FrictionalPath& c,
+                                            const ContactHistory& old) const {
     return friction_losses(law, c, contact(law, c, old), contact.start.step.resolve_events);
   }
   template <class Views>
-  SCREE_HD const FrictionLosses* stored(const Views&, Index entry) const;
+  SCREE_HD const RollingFrictionLosses* stored(const Views&, Index entry) const;
 };
 
 // One contact of a particle with a surface on a body over the step; evaluated once for both.
 struct SurfaceFriction {
   bool touches;  // else all members below are undefined
-  FrictionalContact contact;
-  FrictionLosses losses;
+  bool rolls;    // whether the law resists rolling; else those parts of contact and losses are undefined
+  RollingFrictionalContact contact;
+  RollingFrictionLosses losses;
   Vec3 arm;          // from the body's centre to that of a sphere, or to the contact point, at the end of the
                      // step [m]
   Real radius;       // of a sphere; else 0 [m]
@@ -224,12 +274,12 @@ struct SurfaceFriction {
 };
 
 template <class Views>
-SCREE_HD const FrictionalContact* EvaluateFrictionalContact::stored(const Views&, Index entry) const {
+SCREE_HD const RollingFrictionalContact* EvaluateFrictionalContact::stored(const Views&, Index entry) const {
   const SurfaceFriction& at = start.on_bodies[entry];
   return at.touches ? &at.contact : nullptr;
 }
 template <class Views>
-SCREE_HD const FrictionLosses* EvaluateFrictionLosses::stored(const Views&, Index entry) const {
+SCREE_HD const RollingFrictionLosses* EvaluateFrictionLosses::stored(const Views&, Index entry) const {
   const SurfaceFriction& at = contact.start.on_bodies[entry];
   return at.touches ? &at.losses : nullptr;
 }

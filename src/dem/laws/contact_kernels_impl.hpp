@@ -19,6 +19,7 @@ class CpuContactKernels : public ContactKernels {
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
   int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
+  bool rolls() const override { return LawOf<Laws>::Rolling::acts; }
   void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
     for_each(
@@ -44,17 +45,18 @@ class CpuContactKernels : public ContactKernels {
   void return_records(PairList& pairs, const HistoryViews& history) const override {
     if constexpr (kPaired) ::scree::return_records<LawOf<Laws>>(pairs, history);
   }
-  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
-              const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
-    for_each(Serial{}, n,
-             ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
-  }
   [[gnu::flatten]] void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
     for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
   }
-  void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
-                     const SurfacePose* start_surface_poses, SurfaceStep* steps) const override {
-    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_surface_poses, laws_, steps});
+  void surface_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
+                     const SurfacePose* start_surface_poses, const SurfaceStepsTo& to) const override {
+    if constexpr (kFreedoms == 6)
+      for_each(Serial{}, n,
+               SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, to.friction_steps});
+    else if constexpr (kFreedoms == 3)
+      for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start.step, start_surface_poses, laws_, to.steps});
+    else
+      refuse_implicit();
   }
   void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyQuery& query,
                   BodyLoad* out) const override {
@@ -66,15 +68,14 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              BodyLoadItem<Laws, PackedRows, InstantKinematics<Laws>>{{in, laws_}, query.arm, out});
   }
-  void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
+  void body_steps(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start, const Vec3* arm,
                   BodyStep* out, const ShapeContactsTo& to) const override {
-    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
-  }
-  void body_friction_steps(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                           const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, BodyFrictionItem<Laws, PackedRows>{walk, arm, out, to});
-    });
+    if constexpr (kFreedoms == 6)
+      for_each(Serial{}, n, BodyFrictionItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
+    else if constexpr (kFreedoms == 3)
+      for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start.step}}, arm, out, to});
+    else
+      refuse_implicit();
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
                  Real (&sums)[kWallTerms]) const override {
@@ -94,37 +95,39 @@ class CpuContactKernels : public ContactKernels {
   void contact_lines(const ContactViews<PackedRows>& in, Index n, const LineRequest& request) const override {
     for_each(Serial{}, n, ContactLineItem<Laws, PackedRows>{{in, laws_}, request});
   }
-  void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
-                   Real* integrator_loss) const override {
-    for_each(Serial{}, n,
-             ContactLossesItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
-  }
-  void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
-                              const SurfacePose* start_surface_poses,
-                              SurfaceFriction* friction_steps) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      for_each(Serial{}, n, SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, friction_steps});
-    else
-      refuse_friction();
-  }
-  void friction_system(const ContactViews<PackedRows>& in, Index n, const FrictionRequest& r) const override {
-    over_friction_step(in, r.start, [&](const auto& walk) {
+  void system(const ContactViews<PackedRows>& in, Index n, const StepSystem& r) const override {
+    if constexpr (kFreedoms == 6)
       for_each(Serial{}, n,
-               FrictionSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
+               FrictionSystemItem<Laws, PackedRows>{{in, laws_, {r.start}},
+                                                    r.gravity,
+                                                    r.weights,
+                                                    r.forces,
+                                                    r.torques,
+                                                    r.friction_matrix,
                                                     r.phase_squared});
-    });
+    else if constexpr (kFreedoms == 3)
+      for_each(Serial{}, n,
+               ContactSystemItem<Laws, PackedRows>{
+                   {in, laws_, {r.start.step}}, r.gravity, r.weights, r.forces, r.matrix});
+    else
+      refuse_implicit();
   }
-  void friction_losses(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                       const FrictionLossOutputs& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, FrictionLossesItem<Laws, PackedRows>{walk, to});
-    });
+  void step_losses(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
+                   const FrictionLossOutputs& to) const override {
+    if constexpr (kFreedoms == 6)
+      for_each(Serial{}, n, FrictionLossesItem<Laws, PackedRows>{{in, laws_, {start}}, to});
+    else if constexpr (kFreedoms == 3)
+      for_each(Serial{}, n,
+               ContactLossesItem<Laws, PackedRows>{{in, laws_, {start.step}}, to.contact, to.integrator});
+    else
+      refuse_implicit();
   }
   void store_lagged_limits(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
                            const LaggedLimits& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, LaggedLimitItem<Laws, PackedRows>{walk, to});
-    });
+    if constexpr (kFreedoms == 6)
+      for_each(Serial{}, n, LaggedLimitItem<Laws, PackedRows>{{in, laws_, {start}}, to});
+    else
+      refuse_implicit();
   }
   void escaped_particles(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                          EscapedParticle* escaped_particles) const override {
@@ -136,17 +139,9 @@ class CpuContactKernels : public ContactKernels {
   }
 
  private:
-  // Calls use(walk), compiled only for laws that have implicit steps with friction.
-  template <class Use>
-  void over_friction_step(const ContactViews<PackedRows>& in, const FrictionStart& start,
-                          const Use& use) const {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      use(FrictionWalk<Laws, PackedRows>{in, laws_, {start}});
-    else
-      refuse_friction();
-  }
-  [[noreturn]] static void refuse_friction() {
-    throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
+  static constexpr int kFreedoms = kStepFreedoms<LawOf<Laws>>;
+  [[noreturn]] static void refuse_implicit() {
+    throw std::logic_error("CpuContactKernels: the law has no such implicit steps");
   }
 
   // Evaluating a contact twice is faster than storing its result for laws without `kNeedsMotion`.

@@ -68,8 +68,9 @@ struct ImplicitFrictionWorks {
 
   SCREE_HD bool touches(Index entry) const { return friction_steps[entry].touches; }
   SCREE_HD ContactWorks of(Index entry) const {
-    const FrictionLosses& losses = friction_steps[entry].losses;
-    return {losses.dissipated - losses.friction, losses.friction};
+    const RollingFrictionLosses& losses = friction_steps[entry].losses;
+    if (!friction_steps[entry].rolls) return {losses.dissipated - losses.friction, losses.friction};
+    return {losses.dissipated - (losses.friction + losses.rolling + losses.twisting), losses.friction};
   }
 };
 

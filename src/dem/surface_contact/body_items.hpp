@@ -19,6 +19,7 @@ struct BodyLoad {
   Real energy = 0;            // elastic [J]
   Real pairs = 0;             // number of contacts
   SpringEnergies springs;     // parts of the energy, with friction
+  Real cohesion = 0;          // part of the energy [J]
   TangentialLosses losses{};  // parts of the dissipation, over the step [J]
 };
 
@@ -26,8 +27,8 @@ struct BodyLoad {
 struct BodyStep {
   StepSums sums;
   ContactLosses losses;
-  Real friction = 0;   // part of the dissipation [J]
-  Index partners = 0;  // shapes of other bodies in contact
+  TangentialLosses tangential{};  // parts of the dissipation [J]
+  Index partners = 0;             // shapes of other bodies in contact
 };
 
 // Derivatives of a contact force with respect to the motion of its partners, over an implicit step.
@@ -35,6 +36,7 @@ struct ContactSlopes {
   Vec3 normal, direction;   // unit vectors; direction: of sliding, else zero
   Real stiffness, damping;  // normal [N/m], [N s/m]
   Real shear;               // tangential, perpendicular to `direction` [N/m]
+  StepRolling rolling{};    // of laws with rolling resistance
 };
 
 // Contact of a shape with that of another body. other: item.
@@ -56,7 +58,7 @@ struct ShapeContactsTo {
 };
 
 SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
-  return {c.normal, {}, c.step.stiffness, c.step.damping, 0};
+  return {c.normal, {}, c.step.stiffness, c.step.damping, 0, {}};
 }
 
 // Input of the evaluation of shapes.
@@ -81,7 +83,7 @@ struct EvaluateBodyLoad {
   operator()(const Law& law, const Pair& pair, const History& old) const {
     const auto outcome = law.load(pair, old);
     const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
-    return {{{true, outcome.load.exchanged(), EvaluateEnergy{}(law, pair, now), {}, {}, outcome.losses()},
+    return {{{true, outcome.load.exchanged(), energy_of(law, pair, old, now), {}, {}, outcome.losses()},
              pair.geometry.normal()},
             outcome.history};
   }
@@ -89,6 +91,16 @@ struct EvaluateBodyLoad {
   template <class Views>
   SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
     return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  }
+
+ private:
+  // A contact that has opened in the step has losses only.
+  template <class Law, class Pair, class History>
+  SCREE_HD static ContactEnergy energy_of(const Law& law, const Pair& pair, const History& old,
+                                          const History& now) {
+    if constexpr (kHasRange<Law>)
+      if (!law.closed(pair, old)) return {};
+    return EvaluateEnergy{}(law, pair, now);
   }
 };
 
@@ -131,6 +143,8 @@ struct BodyLoadItem {
     contact.arm = point;
     sum.sums.add_contact(contact);
     sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
+    if constexpr (kMayBeCohesive<typename LawOf<Laws>::Normal>)
+      sum.cohesion += share * contact.energy.cohesion;
     if constexpr (!LawOf<Laws>::kNeedsMotion) return;
     sum.springs.add(contact.energy.springs, share);
     contact.losses.scale(share), sum.losses.add(contact.losses);
@@ -167,20 +181,31 @@ SCREE_HD ContactSlopes slopes_of(const FrictionalContact& c) {
   slopes.direction = c.friction.direction, slopes.shear = c.friction.stiffness;
   return slopes;
 }
+SCREE_HD ContactSlopes slopes_of(const RollingFrictionalContact& c) {
+  ContactSlopes slopes = slopes_of(static_cast<const FrictionalContact&>(c));
+  slopes.rolling = c.rolling;
+  return slopes;
+}
+SCREE_HD ContactSlopes slopes_of(const SurfaceFriction& c) {
+  return c.rolls ? slopes_of(c.contact) : slopes_of(static_cast<const FrictionalContact&>(c.contact));
+}
+SCREE_HD ContactSlopes slopes_of(const SurfaceStep& c) { return slopes_of(c.contact); }
 
 // Friction of a contact over an implicit step, with its energy accounting.
 struct EvaluateBodyFriction {
   EvaluateFrictionalContact contact;
 
+  template <class Law>
   struct Found {
-    FrictionalContact contact;
-    FrictionLosses losses;
+    FrictionalContactOf<Law> contact;
+    FrictionLossesOf<Law> losses;
     bool lasts;
     ContactHistory history;
   };
   template <class Law>
-  SCREE_HD Found operator()(const Law& law, const FrictionalPath& path, const ContactHistory& old) const {
-    const FrictionalContact found = contact(law, path, old);
+  SCREE_HD Found<Law> operator()(const Law& law, const FrictionalPath& path,
+                                 const ContactHistory& old) const {
+    const FrictionalContactOf<Law> found = contact(law, path, old);
     return {found, friction_losses(law, path, found, contact.start.step.resolve_events), found.lasts,
             found.history};
   }
@@ -198,14 +223,25 @@ struct BodyFrictionItem {
   BodyStep* out;
   ShapeContactsTo to;
 
+  static constexpr bool kRolls = LawOf<Laws>::Rolling::acts;
+  using Contact = FrictionalContactOf<LawOf<Laws>>;
+
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
     const EvaluateBodyFriction of{{walk.kinematics.start, walk.in.spin}};
     const auto add = [&](const auto& found, Real share) {
       if (!found.losses.acts) return;
-      sum.sums.add_contact(SurfaceFriction{true, from_surface(found.contact), {}, arm[i], self.p.w, {}, {}});
-      sum.losses.add(found.losses, share), sum.friction += share * found.losses.friction;
+      SurfaceFriction contact{};
+      contact.touches = true, contact.rolls = kRolls, contact.arm = arm[i], contact.radius = self.p.w;
+      static_cast<Contact&>(contact.contact) = from_surface(found.contact);
+      sum.sums.add_contact(contact);
+      sum.losses.add(found.losses, share);
+      sum.tangential.of[kFrictionLoss] += share * found.losses.friction;
+      if constexpr (kRolls) {
+        sum.tangential.of[kRollingLoss] += share * found.losses.rolling;
+        sum.tangential.of[kTwistingLoss] += share * found.losses.twisting;
+      }
     };
     walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
       add(found, kPairShare);
@@ -217,10 +253,14 @@ struct BodyFrictionItem {
 
  private:
   // The contact from the surface's side: quantities that are odd under exchange change sign.
-  SCREE_HD static FrictionalContact from_surface(FrictionalContact c) {
+  SCREE_HD static Contact from_surface(Contact c) {
     c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
     c.friction.start = -c.friction.start, c.friction.step = -c.friction.step,
     c.friction.end = -c.friction.end;
+    if constexpr (kRolls) {
+      StepRolling& m = c.rolling;
+      m.start = -m.start, m.step = -m.step, m.end = -m.end;
+    }
     return c;
   }
 };

@@ -99,17 +99,24 @@ void check_rotation(const DeckTable& deck, const Model& model) {
 
 bool is_jkr(const NormalLawParameters& law) { return law.jkr && law.adhesion_work > 0; }
 bool pulls(const NormalLawParameters& law) {
-  return law.is_cohesive() && (!is_jkr(law) || law.attraction > 0);
+  return law.attraction > 0 || (law.adhesion_work > 0 && !law.jkr);
+}
+
+// Whether the pair has adhesion that no plastic law has.
+bool adheres_elastically(const NormalLawParameters& law) {
+  return !law.is_plastic() && (law.adhesion_work > 0 || law.range > 0);
 }
 
 // The pairs that have a law so far, and features that some of them have.
 struct GivenPairs {
   std::vector<bool> slots;  // indexed as Contact::laws
-  bool hertz = false, stiff = false, jkr = false, adhesion = false;
+  bool hertz = false, stiff = false, jkr = false, adhesion = false, bridges = false;
+  bool plastic = false, elastic_adhesion = false;
 
   void add(const NormalLawParameters& law) {
     hertz = hertz || law.effective_modulus > 0, stiff = stiff || (law.acts() && law.effective_modulus == 0);
-    jkr = jkr || is_jkr(law), adhesion = adhesion || pulls(law);
+    jkr = jkr || is_jkr(law), adhesion = adhesion || pulls(law), bridges = bridges || law.bridge.acts();
+    plastic = plastic || law.is_plastic(), elastic_adhesion = elastic_adhesion || adheres_elastically(law);
   }
 };
 
@@ -124,9 +131,24 @@ void check_mixing(const DeckTable& table, const GivenPairs& before, const Normal
 }
 
 // Throws InputError where pairs have different kinds of adhesion: a run has JKR contacts, or added adhesive
-// forces.
+// forces, or plastic contacts, or liquid bridges.
 void check_adhesion_kinds(const DeckTable& table, const GivenPairs& before, const NormalLawParameters& law) {
-  if (!law.is_cohesive() || !(is_jkr(law) || before.jkr) || !(pulls(law) || before.adhesion)) return;
+  if ((law.is_plastic() && before.elastic_adhesion) || (adheres_elastically(law) && before.plastic))
+    table.fail(law.is_plastic()              ? "plasticity_ratio"
+               : table.has("surface_energy") ? "surface_energy"
+               : law.adhesion_work > 0       ? "work_of_adhesion"
+                                             : "attraction_range",
+               "a deck has plasticity_ratio for all pairs with a work of adhesion, or for none, and no "
+               "attraction_range beside it");
+  if (!law.is_cohesive()) return;
+  const bool jkr = is_jkr(law) || before.jkr, adhesion = pulls(law) || before.adhesion;
+  if ((law.bridge.acts() || before.bridges) && (jkr || adhesion || law.is_plastic() || before.plastic))
+    table.fail(law.bridge.acts()         ? "bridge_volume"
+               : law.is_plastic()        ? "plasticity_ratio"
+               : table.has("attraction") ? "attraction"
+                                         : "adhesion",
+               "a deck has liquid bridges for all pairs that attract, or adhesion and attraction");
+  if (!jkr || !adhesion) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
 }
@@ -144,12 +166,14 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   }
   NormalLawParameters law = build_law(deck, table, model, material);
   check_mixing(table, given, law);
+  take_bridges(table, model.space.dimension, law);
   take_attraction(table, law);
   check_adhesion_kinds(table, given, law);
   const Friction friction = build_friction(deck, table, law, material);
   const RollingParameters rolling = build_rolling(table, friction, model.space.dimension);
-  // JKR laws exist only with friction: the contact rotates with its partners.
-  if (table.has("friction") || (law.jkr && law.is_cohesive())) contact.friction.resize(contact.laws.size());
+  // JKR and plastic laws and bridges exist only with friction: the contact rotates with its partners.
+  if (table.has("friction") || is_jkr(law) || law.is_plastic() || law.bridge.acts())
+    contact.friction.resize(contact.laws.size());
   if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
   take_wear(table, friction.friction, material, contact);
   for (int side = 0; side < 2; ++side) {

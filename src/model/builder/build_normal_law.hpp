@@ -20,5 +20,7 @@ NormalLawParameters build_law(const DeckTable& deck, const DeckTable& table, con
                               const int (&material)[2]);
 // Adds adhesion and attraction to the law. Throws InputError where the law cannot have them.
 void take_attraction(const DeckTable& table, NormalLawParameters& law);
+// Adds liquid bridges to the law, before its attraction. dimension: of the domain.
+void take_bridges(const DeckTable& table, int dimension, NormalLawParameters& law);
 
 }  // namespace scree

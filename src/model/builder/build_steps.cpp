@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/builder/build_normal_law.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"
@@ -77,9 +78,10 @@ IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
   if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
   if (model.rolls())
     return {ParticleIntegrator::velocity_verlet,
-            "contacts have rolling or twisting resistance, which only explicit steps support"};
+            "contacts have rolling or twisting resistance, for which explicit steps are the default"};
   if (model.is_cohesive())
-    return {ParticleIntegrator::velocity_verlet, "contacts have adhesion, which only explicit steps support"};
+    return {ParticleIntegrator::velocity_verlet,
+            "contacts have adhesion, for which explicit steps are the default"};
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
@@ -135,6 +137,33 @@ void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
   chosen.push_back({"time", "control", word_of(StepControl::fixed), ""});
 }
 
+namespace {
+
+// Throws InputError where a contact attracts beyond touch or is plastic. needs: the words for explicit steps.
+void check_attraction(const DeckTable& deck, const std::string& needs) {
+  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
+    if (is_positive(pair, "plasticity_ratio"))
+      pair.fail("plasticity_ratio",
+                fmt::format("{}: the force of a plastic contact depends on its path within the step", needs));
+    if (is_positive(pair, "bridge_volume") && is_positive(pair, "surface_tension"))
+      pair.fail("bridge_volume",
+                fmt::format("{}: liquid bridges form and break at different distances", needs));
+    for (const char* key : {"surface_energy", "work_of_adhesion"})
+      if (pair.has(key) && pair.real(key) > 0 &&
+          (!pair.has("adhesion") || pair.choice<Adhesion>("adhesion") == Adhesion::jkr))
+        pair.fail(key, fmt::format("{}: JKR contacts break at a distance beyond touch, which implicit steps "
+                                   "do not resolve; {} is possible with them",
+                                   needs, setting("adhesion", Adhesion::dmt)));
+    if (pair.has("attraction_range") && pair.real("attraction_range") > 0 && pair.real("attraction") > 0)
+      pair.fail("attraction_range",
+                fmt::format("{}: implicit steps do not resolve an attraction beyond touch; without "
+                            "attraction_range the attraction ends where the contact opens, as they need it",
+                            needs));
+  }
+}
+
+}  // namespace
+
 void check_integrator(const DeckTable& deck, const Model& model) {
   const Integrator& integrator = model.integrator;
   const DeckTable& method = deck.table("integrator");
@@ -150,14 +179,7 @@ void check_integrator(const DeckTable& deck, const Model& model) {
   if (integrator.precision == Precision::mixed)
     method.fail("precision",
                 fmt::format("must be \"{}\", unless {}", word_of(Precision::full), explicit_steps));
-  const std::string needs = "needs " + explicit_steps;
-  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
-      if (pair.has(key) && pair.real(key) > 0)
-        pair.fail(key, fmt::format("{}: implicit steps support only friction", needs));
-    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
-      if (pair.has(key) && pair.real(key) > 0) pair.fail(key, needs);
-  }
+  check_attraction(deck, "needs " + explicit_steps);
 }
 
 namespace {

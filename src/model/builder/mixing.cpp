@@ -223,6 +223,10 @@ DeckTable combined_pair(const DeckTable& contact, const LikePairs& like, const s
   pair.take_mean("rolling_damping_ratio"), pair.take_mean("rolling_damping"), pair.take_twisting();
   pair.take_mean("wear_coefficient");
   pair.take_adhesion(), pair.take_mean("attraction"), pair.take_mean("attraction_range");
+  pair.take_mean("plasticity_ratio"), pair.take_same("adhesion_exponent");
+  pair.take_mean("bridge_volume"), pair.take_mean("contact_angle");
+  for (const char* of_liquid : {"surface_tension", "bridge_force", "bridge_viscosity", "bridge_least_gap"})
+    pair.take_same(of_liquid);
   return pair.result();
 }
 

@@ -62,6 +62,12 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
   return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
 }
 
+void add_bridge(const LiquidBridge& liquid, const PairSize& size, PairLimit& limit) {
+  const auto bridge = bridge_alone(liquid, size);
+  limit.sticking_speed = sticking_speed(bridge, smallest_reduced_mass(size));
+  limit.bridge_length = bridge.length;
+}
+
 template <class Parts>
 bool has_material(const Parts& parts, int material) {
   return std::ranges::any_of(parts, [&](const auto& part) { return part.material == material; });
@@ -210,7 +216,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                                 rolling,
                                 stiffness,
                                 typical_slip_stiffness(friction, size),
-                                typical_rolling_stiffness(rolling, size, stiffness),
+                                typical_rolling_stiffness(rolling, size, loading_stiffness(law, size)),
                                 std::min(size.radius_i, size.radius_j)};
       const Real step_a = explicit_step(model, first, dense, springs);
       const Real step_b = explicit_step(model, second, dense, springs);
@@ -221,6 +227,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                         springs.rolling_stiffness,
                         contact_time(stiffness, smallest_reduced_mass(size)),
                         step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
+      if (law.bridge.acts()) add_bridge(law.bridge, size, limits.back());
     }
   }
   return limits;

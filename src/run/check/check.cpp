@@ -22,6 +22,7 @@
 #include "model/data/body_layout.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/touching.hpp"
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"
 #include "run/record/joint_lines.hpp"
@@ -112,11 +113,20 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
 std::string attraction_line(const Model& model, const PairLimit& limit) {
   const NormalLawParameters& law = model.contact.law(limit.material[0], limit.material[1]);
   std::string parts;
-  if (law.adhesion_work > 0)
-    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.jkr ? "JKR" : "DMT", law.adhesion_work);
+  if (law.is_plastic())
+    parts = fmt::format("EEPA, plasticity ratio {:g}, adhesion exponent {:g}{}", law.plasticity_ratio,
+                        law.adhesion_exponent, law.adhesion_work > 0 ? ", " : "");
+  else if (law.adhesion_work > 0)
+    parts = law.jkr ? "JKR, " : "DMT, ";
+  if (law.adhesion_work > 0) parts += fmt::format("work of adhesion {:.6g} J/m^2", law.adhesion_work);
   if (law.attraction > 0)
     parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
-  const Real reach = largest_interaction_range(law, model.particles.totals.largest_radius);
+  if (law.bridge.acts())
+    parts = fmt::format(
+        "liquid bridges after {}, undamped impacts of the smallest partners stick below "
+        "{:.4g} m/s",
+        law.bridge.soulie ? "Soulie" : "Willett", limit.sticking_speed);
+  const Real reach = largest_interaction_range(law, radius_range(model).largest);
   if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }

@@ -49,6 +49,7 @@ void check_alike(const Model& made, const Model& given) {
   CHECK((x.exponent == y.exponent && x.tension == y.tension && x.damping_ratio == y.damping_ratio));
   CHECK((x.effective_modulus == y.effective_modulus && x.adhesion_work == y.adhesion_work));
   CHECK((x.jkr == y.jkr && x.attraction == y.attraction && x.range == y.range));
+  CHECK((x.bridge.volume == y.bridge.volume && x.bridge.contact_angle == y.bridge.contact_angle));
   REQUIRE(made.contact.friction.size() == given.contact.friction.size());
   if (made.rotates()) {
     const Friction f = made.contact.friction_of(0, 1), g = given.contact.friction_of(0, 1);
@@ -153,6 +154,9 @@ TEST_CASE("of materials with moduli the exact effective ones, whatever the rule"
   check_becomes("minimum", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 "surface_energy = 0.04\nadhesion = \"dmt\"\n", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 kMetals);
+  check_becomes("arithmetic", "plasticity_ratio = 0.5\nwork_of_adhesion = 2.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.75\nwork_of_adhesion = 4.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.625\nwork_of_adhesion = 3.0\nadhesion_exponent = 2.0\n", kMetals);
 }
 
 TEST_CASE("derived pairs are listed in the model as keys, in the order of the materials") {
@@ -187,7 +191,15 @@ TEST_CASE("every key of a pair is mixed") {
                                           "surface_energy",
                                           "adhesion",
                                           "attraction",
-                                          "attraction_range"};
+                                          "attraction_range",
+                                          "plasticity_ratio",
+                                          "adhesion_exponent",
+                                          "bridge_volume",
+                                          "surface_tension",
+                                          "contact_angle",
+                                          "bridge_force",
+                                          "bridge_viscosity",
+                                          "bridge_least_gap"};
   for (const Key& key : contact_keys().keys) {
     if (key.name != "pairs") continue;
     CHECK(key.table->keys.size() == known.size());

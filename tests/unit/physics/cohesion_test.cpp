@@ -21,11 +21,6 @@ JkrPair jkr_pair(const ReferenceTable::Row& row) {
 
 }  // namespace
 
-TEST_CASE("the cube root is exact to the last places") {
-  for (const Real x : {1e-30, 3e-7, 0.5, 1.0, 8.0, 27.0, 1e12})
-    CHECK(near(cube_root(x), std::cbrt(x), {.relative = 4 * kUlp}));
-}
-
 TEST_CASE("JKR: characteristic points") {
   const ReferenceTable table("contact/jkr_points.csv");
   for (const auto& row : table.rows()) {
@@ -127,6 +122,35 @@ TEST_CASE(
   const auto undamped = CohesiveLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
   const Real touching = step_contact_force(undamped, {-0.01, 1, 0.02, 1, 0.03}).force;
   CHECK(near(touching / 2 * 0.03, undamped.energy(0.02), {.relative = kRoundOff}));
+}
+
+// Without a range the attraction jumps at touch. The impulse of a step within which the contact opens or
+// closes is that of the part in contact, so that the work is the change of the energy.
+TEST_CASE("an attraction without range does exact work in implicit steps that open or close the contact") {
+  constexpr Real kStep = 1e-3, kReach = 2e-4;
+  const auto check = [&](const auto& law) {
+    for (const Real d0 : {-kReach, -1e-3 * kReach, 1e-3 * kReach, kReach})
+      for (const Real d1 : {-2 * kReach, -1e-3 * kReach, 1e-3 * kReach, 2 * kReach}) {
+        if ((d0 > 0) == (d1 > 0)) continue;
+        CAPTURE(d0, d1);
+        const Real rate = (d1 - d0) / kStep;
+        const ContactStep step{d0, rate, d1, rate, kStep};
+        const StepContactForce over = step_contact_force(law, step);
+        const Real before = d0 > 0 ? law.energy(d0) : 0, after = d1 > 0 ? law.energy(d1) : 0;
+        CHECK(near((start_force(law, step) + over.force) / 2 * (d1 - d0), after - before,
+                   {.relative = kRoundOff, .absolute = kRoundOff * law.attraction * kReach}));
+        CHECK(over.stiffness >= 0);
+        if (d0 > 0) continue;
+        const Real falls = step_contact_force(law, {d0, rate, 1e-9 * kReach, rate, kStep}).force;
+        CHECK(std::abs(falls) < 1e-5 * law.attraction);  // continuous at touch
+      }
+  };
+  NormalLawParameters linear{}, dmt{};
+  linear.normal_stiffness = 1e4, linear.attraction = 1;
+  dmt.effective_modulus = 1e7, dmt.adhesion_work = 5;
+  const PairSize size{0.01, 0.02, 0.1, 0.2};
+  check(CohesiveLaw<LinearRestitutionLaw>(linear).of_pair(size));
+  check(CohesiveLaw<HertzLaw>(dmt).of_pair(size));
 }
 
 }  // namespace scree
