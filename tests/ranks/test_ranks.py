@@ -29,7 +29,9 @@ WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_wo
 LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
-# Plastic grains in their place, which do not stick to some bodies, and plastic grains with a linear stiffness.
+# Wet sand in place of the powder.
+BRIDGES = [HERE / "bridges.toml", "parallel.imbalance=0.0"]
+# Plastic grains in place of the powder, which do not stick to some bodies, and plastic grains with a linear stiffness.
 PLASTIC_MESHES = [*STICKY_MESHES, "contact.pairs.0.plasticity_ratio=0.6", "contact.pairs.0.work_of_adhesion=1.0",
                   "contact.pairs.0.adhesion_exponent=2.5", "contact.pairs.1.attraction=1e-6"]
 PLASTIC = [HERE / "rolling.toml", "parallel.imbalance=0.05", "contact.pairs.0.plasticity_ratio=0.5",
@@ -50,7 +52,7 @@ MAIN_CASES = {
                                         (4,)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
-    "liquid bridges": ([HERE / "bridges.toml", "parallel.imbalance=0.0", *WORKS, *LINES, "time.end=2e-3"], (4,)),
+    "meshes with liquid bridges and their works": ([*BRIDGES, *WORKS, *LINES, "time.end=4e-3"], (4,)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
     "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
     "meshes with plastic grains and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kCases = 300;
 constexpr Real kStep = 0.05;
+constexpr Real kRoundOff = 1e-12;            // of differences of energies of springs, which are about 1
+constexpr Real kStepWithoutReversal = 1e-4;  // displacements are short beside the elongation of springs
 
 NormalLawParameters wet(NormalLawParameters law, bool soulie) {
   law.bridge = {.volume = 0.02,
@@ -138,10 +140,10 @@ TEST_CASE("dampers and unloading springs of every law dissipate") {
   for_each_law([](const auto& law) {
     RandomNumbers random;
     for (int k = 0; k < kCases; ++k, random.vector()) {
-      const auto out = outcome_of(law, contact_of(random, kStep, false));
+      const auto out = outcome_of(law, contact_of(random, kStepWithoutReversal, false));
       if constexpr (!std::decay_t<decltype(law)>::kNeedsMotion) CHECK(out.load.loss >= 0);
       for (const SpringLosses& losses : {out.friction, out.rolling, out.twisting})
-        CHECK((losses.dashpot >= 0 && losses.unloading >= 0));
+        CHECK((losses.dashpot >= 0 && losses.unloading >= -kRoundOff));
     }
   });
 }
