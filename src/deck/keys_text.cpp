@@ -20,9 +20,10 @@ constexpr const char* kModelLimits = R"(The model has these limits today.
 Particles are discs (2D) or spheres (3D); there are no polygons. All particles exist from the start: none are
 inserted, bonded or broken.
 
-Friction acts between particles, bodies and walls. Rolling and twisting resistance and adhesion are available
-in explicit steps (velocity-verlet) only. Adhesion acts on particles and on the discs and spheres on bodies; a
-body's mesh does not adhere to planes.
+Friction and rolling and twisting resistance act between particles, bodies and walls. JKR contacts, plastic
+contacts, liquid bridges and an attraction with a range beyond touch are available in explicit steps
+(velocity-verlet) only. Adhesion acts on particles and on the discs and spheres on bodies; a body's mesh does
+not adhere to planes. Liquid bridges have a constant volume each and exist between spheres and surfaces in 3D.
 
 Particles, and the discs and spheres on bodies, touch each other, planes and meshes. A mesh of a body touches
 planes with the corners of its convex hull. Meshes do not touch each other.
