@@ -173,14 +173,14 @@ struct ContactLaw {
     const auto& law = after_step(partners, old.normal, g.overlap);
     const Real rate = g.rate(pair.velocity);
     const ContactForce f = contact_force(law, g.overlap, rate);
+    Real loss = f.loss;  // before all that follows, where it costs a GPU the fewest registers
+    if constexpr (std::is_same_v<Pair, MovingPair>)
+      loss = mean_damper_power(power_at_start(law, pair, rate, old), f.loss,
+                               g.overlap + step.h * rate <= -interaction_range_of(law));
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
-    out.load = {g.along(f.force), f.loss, {}, {}};
-    if constexpr (std::is_same_v<Pair, MovingPair>)
-      out.load.loss = mean_damper_power(
-          closed(law, step.overlap0, old) ? damper_power(law, step.overlap0, contact.radius0, rate) : 0,
-          f.loss, g.overlap + step.h * rate <= -interaction_range_of(law));
+    out.load = {g.along(f.force), loss, {}, {}};
     if constexpr (kHysteretic)
       if (!old.touched) out.load.loss += law.formation_loss() / step.h;
     if constexpr (kStateful) out.load.loss += law.dissipated / step.h, out.history.normal = law.state;
@@ -279,6 +279,14 @@ struct ContactLaw {
   template <class Pair>
   SCREE_HD static bool closed(const Pair& of, Real overlap, const History& old) {
     return overlap > 0 || ((!kHysteretic || old.touched) && overlap > -interaction_range_of(of));
+  }
+  // Power of the damper at the overlap at the start of the step [W]; of: the normal law of these partners.
+  template <class Of>
+  SCREE_HD static Real power_at_start(const Of& of, const MovingPair& pair, Real rate, const History& old) {
+    const Real d = pair.motion.overlap0;
+    return closed(of, d, old)
+               ? damper_power(of, d, contact_radius(of, effective_radius(of, pair.size), d), rate)
+               : 0;
   }
   SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion, Outcome& out) {
     out.load.force = fused(-motion.lever_arm_ratio, step.acting, out.load.force);

@@ -126,8 +126,8 @@ SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 displaceme
     out.losses.dashpot = dot(out.acting - out.spring, displacement);
   }
   // The step begins with the force `old`: where the stiffness shrinks, its excess over `start` does work.
-  out.losses.unloading =
-      unloading_loss(p, k, old, out.spring) + (1 - k.remaining) / 2 * fused_dot(old, displacement);
+  out.losses.unloading = unloading_loss(p, k, old, out.spring);
+  if (k.remaining < 1) out.losses.unloading += (1 - k.remaining) / 2 * fused_dot(old, displacement);
   return out;
 }
 
