@@ -73,7 +73,8 @@ struct ContactHistoryOf {
   Vec3 spring;           // force of the tangential spring [N]; odd under exchange of i and j
   Vec3 moment;           // moment of the rolling and twisting springs [N m]; odd
   bool touched = false;  // the surfaces have touched: JKR contacts stay closed beyond touch
-  [[no_unique_address]] State normal{};
+  // Without [[no_unique_address]]: nvcc 13 indexes arrays of such a type by another size than sizeof.
+  State normal{};
 
   // The history with i and j exchanged.
   SCREE_HD ContactHistoryOf mirrored() const { return {opposite(spring), opposite(moment), touched, normal}; }
