@@ -73,7 +73,6 @@ struct ContactHistoryOf {
   Vec3 spring;           // force of the tangential spring [N]; odd under exchange of i and j
   Vec3 moment;           // moment of the rolling and twisting springs [N m]; odd
   bool touched = false;  // the surfaces have touched: JKR contacts stay closed beyond touch
-  // Without [[no_unique_address]]: nvcc 13 indexes arrays of such a type by another size than sizeof.
   State normal{};
 
   // The history with i and j exchanged.

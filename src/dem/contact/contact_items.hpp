@@ -38,10 +38,10 @@ struct EvaluateLoad {
 // Load of one contact, or of all contacts of a particle.
 template <int kKinds>
 struct TotalForce {
-  Vec3 force;       // [N], gravity included
-  Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
-  Vec3 torque;      // about its centre, for laws with `kNeedsMotion` [N m]
-  [[no_unique_address]] LossesByKind<kKinds> losses;  // parts of the dissipation, over the step [J]
+  Vec3 force;                   // [N], gravity included
+  Real loss_power;              // dissipation of the contacts, or the particle's share of it [W]
+  Vec3 torque;                  // about its centre, for laws with `kNeedsMotion` [N m]
+  LossesByKind<kKinds> losses;  // parts of the dissipation, over the step [J]
 
   SCREE_HD TotalForce& operator+=(const TotalForce& part) {
     force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
