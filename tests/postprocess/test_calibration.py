@@ -10,8 +10,10 @@ import csv
 import io
 import os
 import pathlib
+import re
 import sys
 import tempfile
+import threading
 import tomllib
 import types
 import unittest
@@ -22,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
-from scree.calibration import materials, scaling, search, surface, tests
+from scree.calibration import materials, runs, scaling, search, surface, tests
 from scree.cli import main
 from scree.commands.calibrate import parameter, setting, target
 from scree.schema import problems
@@ -322,6 +324,18 @@ class CommandTest(unittest.TestCase):
         self.assertIn("nearest to drum.angle = 70", said)
         self.assertIn("the target is not met: measured values go from ", said)
         self.assertTrue((self.folder / "friction=0.5,rolling_friction=0.15/drum/seed_1/run_record.json").exists())
+        with open(self.folder / "sets.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(set(re.findall(r"(?m)^friction = .*drum.angle .*$", said))))
+        self.assertEqual(set(rows[0]), {"friction", "rolling_friction", "drum.angle", "drum.angle spread"})
+
+    def test_nothing_begins_after_a_run_that_failed(self):
+        plan = runs.Plan(pathlib.Path(PROGRAM), threading.Semaphore(1), backend="cpu")
+        for name in ("first", "second"):
+            with self.assertRaisesRegex(scree.ScreeError, "space: missing"):
+                runs.run_deck(scree.Deck(title=name), self.folder / name, plan)
+        self.assertEqual(len(plan.errors), 1)
+        self.assertFalse((self.folder / "second").exists())
 
     def test_errors_are_one_line(self):
         sand = [SAND, "--program", PROGRAM, "-o", self.folder]
@@ -340,7 +354,7 @@ class CommandTest(unittest.TestCase):
                 (["search", *sand, *vary, "--target", "drum.cohesion=30"], "drum has no cohesion; it has angle"),
                 (["search", *sand, *vary, "fraction=0:1", "--target", "repose=30"], "fraction")):
             said = self.command(WRONG, *words)
-            self.assertRegex(said, r"^error: [^\n]*\n$")
+            self.assertRegex(said, r"^(9 sets of [^\n]*\n)?error: [^\n]*\n$")
             self.assertIn(message, said)
 
 
