@@ -88,8 +88,9 @@ def read(path: pathlib.Path, values: Mapping[str, Any] | None = None) -> Grains:
 
 def softened(grains: Grains, factor: float) -> Grains:
     """With moduli or stiffnesses times the factor, and the same pull-off forces: those of JKR, DMT and liquid bridges
-    do not depend on the stiffness; that of elasto-plastic contacts (plasticity_ratio), 3/2 pi g a, grows with the radius
-    of the contact a, which a given load makes as factor^(-1/3) with Hertz's law, factor^(-1/2) with a linear one."""
+    do not depend on the stiffness; that of elasto-plastic contacts (plasticity_ratio), 3/2 pi g a, grows with the
+    radius of the contact a, which a given load makes as factor^(-1/3) with Hertz's law, factor^(-1/2) with a linear
+    one."""
     material, pair = dict(grains.material), dict(grains.pair)
     for table, key in ((material, "young_modulus"), (pair, "stiffness"), (pair, "tangential_stiffness")):
         if key in table:

@@ -125,14 +125,14 @@ def curve_through(points: Sequence[Point], targets: Sequence[Target], center: np
 
 
 def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], Point], tell: Callable[[Point], None],
-           rounds: int) -> Found:
-    """measure: runs the tests with the parameters at these shares of their ranges; called for all points of the grid at
-    once, from several threads. tell: is called for each point, in order."""
+           rounds: int, at_once: int = 1) -> Found:
+    """measure: runs the tests with the parameters at these shares of their ranges; called for this number of points of
+    the grid at once, from several threads. tell: is called for each point, in order."""
     if not 1 <= len(targets) <= 2:
         raise ScreeError("a search for two parameters has one or two targets")
     line = np.linspace(0, 1, GRID)
     points: list[Point] = []
-    with ThreadPoolExecutor(GRID**2) as pool:
+    with ThreadPoolExecutor(at_once) as pool:
         for point in pool.map(measure, [(float(x), float(y)) for x in line for y in line]):
             tell(point)
             points.append(point)

@@ -252,7 +252,7 @@ def run_search(arguments: argparse.Namespace) -> int:
 
     print(f"9 sets of {' and '.join(each.key for each in parameters)}, then up to {arguments.rounds} more; "
           f"each is printed when its runs are done: {folder}", flush=True)
-    found = search(targets, point, tell, arguments.rounds)
+    found = search(targets, point, tell, arguments.rounds, arguments.at_once)
     print_found(parameters, targets, found, plan.seeds)
     write_points(folder / "sets.csv", parameters, targets, found.points)
     print(f"runs and sets.csv: {folder}")
