@@ -17,6 +17,7 @@ import threading
 import tomllib
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -25,7 +26,7 @@ sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
 from scree.calibration import materials, runs, scaling, search, surface, tests
-from scree.cli import main
+from scree.cli import INTERRUPTED, main
 from scree.commands.calibrate import parameter, setting, target
 from scree.schema import problems
 
@@ -336,6 +337,10 @@ class CommandTest(unittest.TestCase):
                 runs.run_deck(scree.Deck(title=name), self.folder / name, plan)
         self.assertEqual(len(plan.errors), 1)
         self.assertFalse((self.folder / "second").exists())
+
+    def test_an_interrupted_search(self):
+        with unittest.mock.patch("scree.commands.calibrate.run_search", side_effect=KeyboardInterrupt):
+            self.assertEqual(self.command(INTERRUPTED, "search", SAND, "--vary", "x", "--target", "y"), "interrupted\n")
 
     def test_errors_are_one_line(self):
         sand = [SAND, "--program", PROGRAM, "-o", self.folder]
