@@ -254,6 +254,14 @@ class SearchTest(unittest.TestCase):
         for shares in found.curve:
             self.assertAlmostEqual(self.angle(*shares), 32.0, delta=2.5)
 
+    def test_a_set_that_meets_by_chance(self):
+        by_chance = (0.0, 1.0)  # 25 in place of 23 degrees
+        found = search.search([search.Target("repose", "angle", 25.0)], self.points_of(
+            lambda x, y: 25.0 if (x, y) == by_chance else self.angle(x, y), noise=0.4), self.told.append, 4)
+        self.assertTrue(found.met)
+        self.assertNotEqual(found.best.shares, by_chance)
+        self.assertAlmostEqual(self.angle(*found.best.shares), 25.0, delta=1.5)
+
     def test_a_target_out_of_reach(self):
         found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), self.told.append, 3)
         self.assertFalse(found.met)
