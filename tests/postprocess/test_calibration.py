@@ -10,11 +10,14 @@ import csv
 import io
 import os
 import pathlib
+import re
 import sys
 import tempfile
+import threading
 import tomllib
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -22,8 +25,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
-from scree.calibration import materials, scaling, search, surface, tests
-from scree.cli import main
+from scree.calibration import materials, runs, scaling, search, surface, tests
+from scree.cli import INTERRUPTED, main
 from scree.commands.calibrate import parameter, setting, target
 from scree.schema import problems
 
@@ -251,6 +254,14 @@ class SearchTest(unittest.TestCase):
         for shares in found.curve:
             self.assertAlmostEqual(self.angle(*shares), 32.0, delta=2.5)
 
+    def test_a_set_that_meets_by_chance(self):
+        by_chance = (0.0, 1.0)  # 25 in place of 23 degrees
+        found = search.search([search.Target("repose", "angle", 25.0)], self.points_of(
+            lambda x, y: 25.0 if (x, y) == by_chance else self.angle(x, y), noise=0.4), self.told.append, 4)
+        self.assertTrue(found.met)
+        self.assertNotEqual(found.best.shares, by_chance)
+        self.assertAlmostEqual(self.angle(*found.best.shares), 25.0, delta=1.5)
+
     def test_a_target_out_of_reach(self):
         found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), self.told.append, 3)
         self.assertFalse(found.met)
@@ -322,6 +333,22 @@ class CommandTest(unittest.TestCase):
         self.assertIn("nearest to drum.angle = 70", said)
         self.assertIn("the target is not met: measured values go from ", said)
         self.assertTrue((self.folder / "friction=0.5,rolling_friction=0.15/drum/seed_1/run_record.json").exists())
+        with open(self.folder / "sets.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(set(re.findall(r"(?m)^friction = .*drum.angle .*$", said))))
+        self.assertEqual(set(rows[0]), {"friction", "rolling_friction", "drum.angle", "drum.angle spread"})
+
+    def test_nothing_begins_after_a_run_that_failed(self):
+        plan = runs.Plan(pathlib.Path(PROGRAM), threading.Semaphore(1), backend="cpu")
+        for name in ("first", "second"):
+            with self.assertRaisesRegex(scree.ScreeError, "space: missing"):
+                runs.run_deck(scree.Deck(title=name), self.folder / name, plan)
+        self.assertEqual(len(plan.errors), 1)
+        self.assertFalse((self.folder / "second").exists())
+
+    def test_an_interrupted_search(self):
+        with unittest.mock.patch("scree.commands.calibrate.run_search", side_effect=KeyboardInterrupt):
+            self.assertEqual(self.command(INTERRUPTED, "search", SAND, "--vary", "x", "--target", "y"), "interrupted\n")
 
     def test_errors_are_one_line(self):
         sand = [SAND, "--program", PROGRAM, "-o", self.folder]
@@ -340,7 +367,7 @@ class CommandTest(unittest.TestCase):
                 (["search", *sand, *vary, "--target", "drum.cohesion=30"], "drum has no cohesion; it has angle"),
                 (["search", *sand, *vary, "fraction=0:1", "--target", "repose=30"], "fraction")):
             said = self.command(WRONG, *words)
-            self.assertRegex(said, r"^error: [^\n]*\n$")
+            self.assertRegex(said, r"^(9 sets of [^\n]*\n)?error: [^\n]*\n$")
             self.assertIn(message, said)
 
 
