@@ -112,7 +112,7 @@ class PairBatch {
   // The compiler leaves out parts of a law that are compile-time constants: a dashpot beside the slider,
   // which most runs do not have, and viscous rolling.
   [[gnu::noinline, gnu::flatten]] void evaluate_by(const Law& of, Index begin, Index end, Real h) {
-    if constexpr (Law::Rolling::acts) {
+    if constexpr (requires { of.rolling.rolling.viscous; }) {
       if (of.rolling.rolling.viscous.damping == 0 && of.rolling.rolling.spring.friction > 0) {
         Law law = of;
         law.rolling.rolling.viscous.damping = 0;
