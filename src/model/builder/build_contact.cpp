@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "deck/pair_laws.hpp"
 #include "model/builder/build_normal_law.hpp"
@@ -90,6 +91,20 @@ void check_adhesion_kinds(const DeckTable& table, const GivenPairs& before, cons
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
 }
 
+// Takes the keys of a law. Throws InputError where they replace parameters that only another law has.
+void take_law(const PairLaw& law, const PairInDeck& pair, PairParameters& parameters) {
+  const auto all = [](const PairParameters& of) {
+    return std::array{of.normal.own, of.friction.own, of.rolling.own};
+  };
+  const auto before = all(parameters);
+  law.take(pair, parameters);
+  const auto after = all(parameters);
+  for (std::size_t k = 0; k < after.size(); ++k)
+    if (before[k] && before[k].operator->() != after[k].operator->())
+      pair.table.fail(after[k]->key(),
+                      fmt::format("stands beside {}; a pair has one of the two", before[k]->key()));
+}
+
 // Parameters of the laws of the pair of these materials.
 PairParameters parameters_of(const DeckTable& deck, const DeckTable& table, const Model& model,
                              const int (&material)[2], const GivenPairs& given) {
@@ -101,7 +116,7 @@ PairParameters parameters_of(const DeckTable& deck, const DeckTable& table, cons
     return materials.empty() ? nullptr : &materials[static_cast<std::size_t>(material[side])];
   };
   const PairInDeck pair{table, {of_material(0), of_material(1)}, model.space.dimension};
-  for (const PairLaw& one : pair_laws()) one.take(pair, parameters);
+  for (const PairLaw& one : pair_laws()) take_law(one, pair, parameters);
   // The damping force of adhesive laws is not limited.
   if (law.is_cohesive() && table.has("restitution"))
     law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
