@@ -35,7 +35,7 @@ class BatchLoads {
       of_j[n]->part[1] = torque_j[n];
     }
     if constexpr (Packed::kParts > 2) {
-      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k)};
+      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k), losses_at(3, k), losses_at(4, k)};
       transpose(more);
       for (Index n = 0; n < kGroup; ++n) of_i[n]->part[2] = of_j[n]->part[2] = more[n];
     }
