@@ -216,7 +216,11 @@ using HertzLaw = HertzLawOf<Real>;
 // Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius, with the law's own
 // parameters; for estimates.
 inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
-  if (!law.depends_on_size()) return law;
+  if (!law.depends_on_size()) {
+    NormalLawParameters same = law;
+    same.normal_damping += law.own->damping(size);
+    return same;
+  }
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
   NormalLawParameters out{law.normal_stiffness, 0, law.exponent, law.tension};
   if (law.effective_modulus == 0) {
