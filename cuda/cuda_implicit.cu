@@ -95,8 +95,7 @@ void CudaImplicitOperations::lag_limits(const FrictionStart& start) {
 void CudaImplicitOperations::account_contacts(const FrictionStart& start) {
   items_.kernels->step_losses(
       items_.device(), items_.views(), items_.owned, start,
-      {now().contact_loss.data(), now().integrator_loss.data(), now().friction_loss.data(),
-       now().rolling_loss.data(), now().twisting_loss.data()});
+      {now().contact_loss.data(), now().integrator_loss.data(), SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())});
   items_.surfaces.accumulate_step_works(items_.device(), *items_.kernels);
   items_.history.accepted();
 }

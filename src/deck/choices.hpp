@@ -79,12 +79,6 @@ template <>
 inline constexpr auto kWords<Adhesion> = std::to_array<Word<Adhesion>>({{"jkr", Adhesion::jkr},
                                                                         {"dmt", Adhesion::dmt}});
 
-// Force of liquid bridges over the gap.
-enum class BridgeForce { willett, soulie };
-template <>
-inline constexpr auto kWords<BridgeForce> =
-    std::to_array<Word<BridgeForce>>({{"willett", BridgeForce::willett}, {"soulie", BridgeForce::soulie}});
-
 // The bodies' velocities at t = 0.
 enum class StartVelocities {
   given,      // the run is refused where the velocities contradict joints and drivers

@@ -11,7 +11,6 @@
 #include "base/elementary.hpp"
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
-#include "physics/liquid_bridge.hpp"
 #include "physics/normal_laws.hpp"
 
 namespace scree {
@@ -110,7 +109,7 @@ struct JkrLaw {
                p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
     return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr) &&
-           !p.is_plastic() && !p.bridge.acts();
+           !p.own;
   }
 
   SCREE_HD JkrPair of_pair(const PairSize& size) const {
@@ -181,8 +180,7 @@ struct CohesiveLaw {
                     static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
                     static_cast<Scalar>(p.range)) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0) && !p.is_plastic() &&
-           !p.bridge.acts();
+    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0) && !p.own;
   }
 
   SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {
@@ -203,7 +201,7 @@ struct CohesiveLaw {
 inline Real largest_interaction_range(const NormalLawParameters& law, Real largest_radius) {
   if (law.range > 0) return law.range;
   constexpr Real kRoundOff = 1e-9;
-  if (law.bridge.acts()) return rupture_ratio(law.bridge) * largest_radius * (1 + kRoundOff);
+  if (law.own) return law.own->interaction_range(largest_radius);
   if (!law.jkr || law.adhesion_work == 0) return 0;
   // The pull-off distance grows with both radii: the bound is that of a sphere on a plane, plus a margin for
   // round-off.

@@ -2,21 +2,12 @@
 // of a law recompiles only what evaluates it.
 #pragma once
 
+#include <vector>
+
 #include "base/types.hpp"
+#include "physics/own_parameters.hpp"
 
 namespace scree {
-
-// Parameters of liquid bridges (physics/liquid_bridge.hpp).
-struct LiquidBridge {
-  Real volume = 0;           // V / r^3, r: the smaller radius [-]; 0: no liquid
-  Real surface_tension = 0;  // gamma [N/m]
-  Real contact_angle = 0;    // theta [rad]
-  Real viscosity = 0;        // mu [Pa s]
-  Real least_gap = 0;        // s_min: gap over R* below which the viscous force does not grow [-]
-  bool soulie = false;       // true: force after Soulie et al.; false: after Willett et al.
-
-  bool acts() const { return volume > 0 && surface_tension > 0; }
-};
 
 // Parameters of the normal law: F = K d^n + C d_dot (Jung, Jun, Sohn, 2013, Eqs. 18-24), or Hertz's law with
 // the modulus E* in place of K and n. A damping ratio in place of C gives the damper of
@@ -34,21 +25,32 @@ struct NormalLawParameters {
   bool jkr = false;        // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
   Real attraction = 0;     // constant cohesive force [N]
   Real range = 0;          // distance beyond touch over which it decreases to zero [m]
-  // Elastic-plastic adhesion (physics/eepa.hpp), with `adhesion_work` as its g and `attraction` as its -f0.
-  Real plasticity_ratio = 0;   // l = 1 - k1/k2 [-]; 0: the pair is elastic
-  Real adhesion_exponent = 0;  // chi [-]; 0: n
-  LiquidBridge bridge{};
+  AnyParameters own{};     // of one law alone
 
   // Whether particles of these materials interact.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
-  bool is_plastic() const { return plasticity_ratio > 0; }
-  // Plastic pairs count as cohesive without adhesion, too: they are laws of the same kind.
-  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0 || is_plastic() || bridge.acts(); }
+  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0 || own->attracts(); }
+  // Whether F = K d.
+  bool is_linear() const { return exponent == 1 && own->is_linear(); }
   NormalLawParameters without_cohesion() const {
-    return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
+    NormalLawParameters law{normal_stiffness, normal_damping,    exponent,
+                            tension,          effective_modulus, damping_ratio};
+    if (!own->attracts()) law.own = own;
+    return law;
+  }
+  // All numbers on which trial impacts depend. The structured bindings name every member, so that a new
+  // member does not compile until it is added here.
+  std::vector<Real> numbers() const {
+    const auto& [k, c, n, tensile, e, zeta, work, is_jkr, pull, reach, of_law] = *this;
+    std::vector<Real> all{k, c, n, Real(tensile), e, zeta, work, Real(is_jkr), pull, reach};
+    const std::vector<Real> more = of_law->numbers();
+    all.push_back(of_law ? 1 : 0), all.insert(all.end(), more.begin(), more.end());
+    return all;
   }
   // Whether law_of_size() depends on the partners' sizes.
-  bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0 || bridge.viscosity > 0; }
+  bool depends_on_size() const {
+    return effective_modulus > 0 || damping_ratio > 0 || own->depends_on_size();
+  }
 };
 
 // Friction parameters.
@@ -57,6 +59,15 @@ struct Friction {
   Real stiffness = 0;      // k_t of `LinearSlider` [N/m]
   Real shear_modulus = 0;  // G* of `MindlinSlider` [Pa]
   Real damping_ratio = 0;  // zeta of the tangential dashpot [-]
+  AnyParameters own{};     // of one law alone
+
+  std::vector<Real> numbers() const {  // as NormalLawParameters::numbers()
+    const auto& [mu, k_t, g, zeta, of_law] = *this;
+    std::vector<Real> all{mu, k_t, g, zeta, Real(of_law ? 1 : 0)};
+    const std::vector<Real> more = of_law->numbers();
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 };
 
 // Parameters of the rolling and twisting resistance.
@@ -67,6 +78,16 @@ struct RollingParameters {
   Real damping_ratio = 0;      // zeta of its dashpot [-]
   Real damping = 0;            // C of `ViscousRolling` [N m s]
   Real twisting_friction = 0;  // mu of `MarshallTwisting` [-]
+  AnyParameters own{};         // of one law alone
+
+  bool act() const { return friction > 0 || damping > 0 || twisting_friction > 0 || own; }
+  std::vector<Real> numbers() const {  // as NormalLawParameters::numbers()
+    const auto& [mu, factor, k_r, zeta, c, twisting, of_law] = *this;
+    std::vector<Real> all{mu, factor, k_r, zeta, c, twisting, Real(of_law ? 1 : 0)};
+    const std::vector<Real> more = of_law->numbers();
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 };
 
 }  // namespace scree

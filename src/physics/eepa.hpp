@@ -22,6 +22,29 @@
 
 namespace scree {
 
+// Parameters of plastic pairs of materials, with `adhesion_work` as their g and `attraction` as their -f0.
+struct Plasticity final : OwnParameters {
+  Real ratio = 0;              // l = 1 - k1/k2 [-]
+  Real adhesion_exponent = 0;  // chi [-]; 0: n
+
+  Plasticity() = default;
+  Plasticity(Real l, Real chi) : ratio(l), adhesion_exponent(chi) {}
+
+  const char* key() const override { return "plasticity_ratio"; }
+  std::vector<Real> numbers() const override { return {ratio, adhesion_exponent}; }
+  std::string title() const override { return "EEPA"; }
+  std::vector<std::pair<std::string, Real>> facts() const override {
+    return {{"plasticity ratio", ratio}, {"adhesion exponent", adhesion_exponent}};
+  }
+  std::string explicit_only() const override {
+    return "the force of a plastic contact depends on its path within the step";
+  }
+  // Plastic pairs count as cohesive without adhesion, too: they are laws of the same kind.
+  bool attracts() const override { return true; }
+  bool is_linear() const override { return false; }
+  Real unloading_stiffness(Real loading) const override { return loading / (1 - ratio); }
+};
+
 // d^(twice / 2) by products and a square root, which have the same bits on CPU and GPU.
 SCREE_HD Real half_power(Real d, int twice) {
   Real out = twice % 2 == 1 ? std::sqrt(d) : 1;
@@ -202,17 +225,18 @@ struct EepaLaw {
   using Pair = EepaPair<std::remove_cvref_t<decltype(NormalLaw{}.of_pair(PairSize{}))>>;
 
   EepaLaw() = default;
-  explicit EepaLaw(const NormalLawParameters& p)
+  explicit EepaLaw(const NormalLawParameters& p) : EepaLaw(p, p.own.value<Plasticity>()) {}
+  EepaLaw(const NormalLawParameters& p, const Plasticity& own)
       : repulsion(p),
-        plasticity_ratio(p.plasticity_ratio),
-        plastic_share(Pair::Curve::overlap(p.plasticity_ratio)),
+        plasticity_ratio(own.ratio),
+        plastic_share(Pair::Curve::overlap(own.ratio)),
         pull_off_per_radius(Real(1.5) * std::numbers::pi_v<Real> * p.adhesion_work),
         attraction(p.attraction),
         twice_chi(static_cast<int>(
-            std::lround(2 * (p.adhesion_exponent > 0 ? p.adhesion_exponent : Pair::Curve::kExponent)))) {}
+            std::lround(2 * (own.adhesion_exponent > 0 ? own.adhesion_exponent : Pair::Curve::kExponent)))) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && p.range == 0 && !p.bridge.acts() &&
-           (p.plasticity_ratio > 0 || p.adhesion_work == 0);
+    return NormalLaw::accepts(p.without_cohesion()) && p.range == 0 && p.own.are_only<Plasticity>() &&
+           (p.own || p.adhesion_work == 0);
   }
 
   SCREE_HD Pair of_pair(const PairSize& size) const {

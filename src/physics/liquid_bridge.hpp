@@ -15,6 +15,46 @@
 
 namespace scree {
 
+// Parameters of liquid bridges.
+struct LiquidBridge {
+  Real volume = 0;           // V / r^3, r: the smaller radius [-]; 0: no liquid
+  Real surface_tension = 0;  // gamma [N/m]
+  Real contact_angle = 0;    // theta [rad]
+  Real viscosity = 0;        // mu [Pa s]
+  Real least_gap = 0;        // s_min: gap over R* below which the viscous force does not grow [-]
+  bool soulie = false;       // true: force after Soulie et al.; false: after Willett et al.
+
+  bool acts() const { return volume > 0 && surface_tension > 0; }
+};
+
+// Those of a pair of materials whose contacts have bridges.
+struct BridgeParameters final : OwnParameters {
+  LiquidBridge liquid;
+
+  BridgeParameters() = default;
+  explicit BridgeParameters(const LiquidBridge& of) : liquid(of) {}
+
+  const char* key() const override { return "bridge_volume"; }
+  // None: bridges have a bound of their own on the step, longest_step(), and trials are dry.
+  std::vector<Real> numbers() const override { return {}; }
+  std::string title() const override {
+    return std::string("liquid bridges after ") + (liquid.soulie ? "Soulie" : "Willett");
+  }
+  std::string explicit_only() const override {
+    return "liquid bridges form and break at different distances";
+  }
+  bool attracts() const override { return true; }
+  bool depends_on_size() const override { return liquid.viscosity > 0; }
+  inline Real interaction_range(Real largest_radius) const override;
+  inline Real damping(const PairSize& size) const override;
+  inline Real stiffness(const PairSize& size) const override;
+  inline Real sticking_speed(const PairSize& size, Real mass) const override;
+  inline Real longest_step(const PairSize& size, Real mass) const override;
+  std::string step_reason(const std::string& pair) const override {
+    return "0.05 of the time in which liquid bridges of " + pair + " stretch at the speed that they stop";
+  }
+};
+
 // Force of a bridge over its force at touch, as a function of s, the gap over a length L, in one of two
 // forms:
 //   Willett, Adams, Johnson, Seville, Langmuir 16 (2000):  1 / (1 + 1.05 s + 2.5 s^2)
@@ -127,10 +167,11 @@ struct BridgeLaw {
     wetting = of.surface_tension * std::cos(of.contact_angle), volume_logarithm = logarithm(of.volume);
     rupture = rupture_ratio(of), lubrication = 6 * std::numbers::pi_v<Real> * of.viscosity;
   }
-  explicit BridgeLaw(const NormalLawParameters& p) : BridgeLaw(NormalLaw(p), p.bridge) {}
+  explicit BridgeLaw(const NormalLawParameters& p)
+      : BridgeLaw(NormalLaw(p), p.own.value<BridgeParameters>().liquid) {}
   static bool accepts(const NormalLawParameters& p) {
     return NormalLaw::accepts(p.without_cohesion()) && p.adhesion_work == 0 && p.attraction == 0 &&
-           !p.is_plastic();
+           p.own.are_only<BridgeParameters>();
   }
 
   SCREE_HD auto of_pair(const PairSize& size) const {
@@ -182,16 +223,29 @@ inline BridgePair<LinearLaw> bridge_alone(const LiquidBridge& of, const PairSize
   return BridgeLaw<LinearRestitutionLaw>({}, of).of_pair(size);
 }
 
-// Largest decrease of the force of a bridge with the gap [N/m]. In Willett's form the slope is steepest at
-// s = 0.134, and -1.224 there.
-inline Real largest_bridge_slope(const LiquidBridge& of, const PairSize& size) {
-  const auto pair = bridge_alone(of, size);
+// The rupture distance, with a margin for round-off.
+Real BridgeParameters::interaction_range(Real largest_radius) const {
+  constexpr Real kRoundOff = 1e-9;
+  return rupture_ratio(liquid) * largest_radius * (1 + kRoundOff);
+}
+// That of the liquid between touching surfaces.
+Real BridgeParameters::damping(const PairSize& size) const {
+  if (!(liquid.viscosity > 0)) return 0;
+  return 6 * std::numbers::pi_v<Real> * liquid.viscosity * size.effective_radius() / liquid.least_gap;
+}
+// Largest decrease of the force with the gap. In Willett's form the slope is steepest at s = 0.134, and
+// -1.224 there.
+Real BridgeParameters::stiffness(const PairSize& size) const {
+  const auto pair = bridge_alone(liquid, size);
   return pair.attraction / pair.length * (pair.shape.decays ? 1 - pair.shape.constant : Real(1.224));
 }
-
-// Speed below which undamped impacts stick by the bridge [m/s]; mass: m* [kg].
-inline Real sticking_speed(const BridgePair<LinearLaw>& bridge, Real mass) {
-  return std::sqrt(2 * bridge.formation_loss() / mass);
+Real BridgeParameters::sticking_speed(const PairSize& size, Real mass) const {
+  return std::sqrt(2 * bridge_alone(liquid, size).formation_loss() / mass);
+}
+// A share of the time in which the force decreases at the speed below which impacts stick.
+Real BridgeParameters::longest_step(const PairSize& size, Real mass) const {
+  constexpr Real kShare = 0.05;
+  return kShare * bridge_alone(liquid, size).length / sticking_speed(size, mass);
 }
 
 }  // namespace scree

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
 #include "base/hd.hpp"
 #include "base/root.hpp"
@@ -41,7 +40,7 @@ struct LinearLawOf {
   explicit LinearLawOf(const NormalLawParameters& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.is_cohesive();
+    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.is_cohesive() && !p.own;
   }
 
   // Member by member: gcc treats a copy of the whole object as one memory access and does not vectorize it.
@@ -78,7 +77,7 @@ struct LinearRestitutionLawOf {
       : LinearRestitutionLawOf(T(p.normal_stiffness), T(p.normal_damping),
                                T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && !p.is_cohesive();
+    return p.exponent == 1 && p.effective_modulus == 0 && !p.is_cohesive() && !p.own;
   }
 
   SCREE_HD LinearLawOf<T> of_pair(const PairSizeOf<T>& size) const {
@@ -113,7 +112,9 @@ struct PowerLawOf {
   explicit PowerLawOf(const NormalLawParameters& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
                    T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness * (p.exponent + 1) / 2))) {}
-  static bool accepts(const NormalLawParameters& p) { return p.effective_modulus == 0 && !p.is_cohesive(); }
+  static bool accepts(const NormalLawParameters& p) {
+    return p.effective_modulus == 0 && !p.is_cohesive() && !p.own;
+  }
 
   SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>& size) const {
     PowerLawOf pair = *this;
@@ -199,7 +200,7 @@ struct HertzLawOf {
       : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
   // Pairs that do not interact are accepted by any law.
   static bool accepts(const NormalLawParameters& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && !p.is_cohesive();
+    return (p.effective_modulus > 0 || !p.acts()) && !p.is_cohesive() && !p.own;
   }
 
   SCREE_HD HertzPairOf<T> of_pair(const PairSizeOf<T>& size) const {
@@ -212,24 +213,24 @@ struct HertzLawOf {
 };
 using HertzLaw = HertzLawOf<Real>;
 
-// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius, and the plasticity
-// ratio; for estimates.
+// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius, with the law's own
+// parameters; for estimates.
 inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
-  if (!law.depends_on_size()) return law;
+  if (!law.depends_on_size()) {
+    NormalLawParameters same = law;
+    same.normal_damping += law.own->damping(size);
+    return same;
+  }
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
-  // That of the liquid between touching surfaces, as in liquid_bridge.hpp.
-  const Real liquid = law.bridge.viscosity > 0 ? 6 * std::numbers::pi_v<Real> * law.bridge.viscosity *
-                                                     size.effective_radius() / law.bridge.least_gap
-                                               : 0;
   NormalLawParameters out{law.normal_stiffness, 0, law.exponent, law.tension};
   if (law.effective_modulus == 0) {
-    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap) + liquid;
+    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap);
   } else {
     const auto pair = HertzLaw(law).of_pair(size);
     out.normal_stiffness = pair.modulus * std::sqrt(pair.radius), out.exponent = Real(1.5);
-    out.normal_damping = pair.damping(overlap) + liquid;
+    out.normal_damping = pair.damping(overlap);
   }
-  out.plasticity_ratio = law.plasticity_ratio;
+  out.normal_damping += law.own->damping(size), out.own = law.own;
   return out;
 }
 

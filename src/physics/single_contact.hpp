@@ -12,13 +12,21 @@
 
 namespace scree {
 
+// A tangential law whose formulas are not those below says kDoubleOnly, as one beside another rolling law
+// than AnyRolling.
+template <class Tangential>
+inline constexpr bool kHasOtherFormulas = requires {
+  Tangential::kDoubleOnly;
+};
+
 // Laws with friction, without adhesion and without a state of the normal law. Those without friction have
 // `ContactLaw::load`.
 template <class Law>
 inline constexpr bool kHasSingleForm = false;
 template <class Law>
 requires Law::kNeedsMotion inline constexpr bool kHasSingleForm<Law> =
-    Law::Tangential::acts && !Law::kHasRange && !Law::kStateful;
+    Law::Tangential::acts && !Law::kHasRange && !Law::kStateful &&
+    !kHasOtherFormulas<typename Law::Tangential>;
 
 template <int kKinds>
 struct SingleLoad {

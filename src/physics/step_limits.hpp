@@ -19,8 +19,6 @@ namespace scree {
 inline constexpr Real kStableStepFraction = Real(1) / 3;  // of the stability limit in dense contact
 // Of the shortest contact duration, where a JKR contact must break within one step.
 inline constexpr Real kPullOffShare = 0.01;
-// Of the time in which the force of a liquid bridge decreases at the speed below which impacts stick.
-inline constexpr Real kBridgeShare = 0.05;
 // Recommended phase of a body on its contacts in one step [rad]: its contacts are integrated staggered with
 // the particles'.
 inline constexpr Real kGoodBodyPhase = 0.3;
@@ -36,17 +34,16 @@ SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 inline Real loading_stiffness(const NormalLawParameters& of, const PairSize& size) {
   const NormalLawParameters law = law_of_size(of, size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
-  const Real of_bridge = of.bridge.acts() ? largest_bridge_slope(of.bridge, size) : 0;
+  const Real own = of.own->stiffness(size);
   if (law.exponent == 1)
-    return std::max({law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0, of_bridge});
+    return std::max({law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0, own});
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
   if (of.jkr && of.is_cohesive()) return JkrLaw(of).of_pair(size).slope(overlap);
-  return std::max(law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1), of_bridge);
+  return std::max(law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1), own);
 }
-// The largest stiffness at this overlap: that of unloading, k2 = k1 / (1 - l), for plastic pairs.
+// The largest stiffness at this overlap: for plastic pairs that of unloading.
 inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
-  const Real loading = loading_stiffness(of, size);
-  return of.is_plastic() ? loading / (1 - of.plasticity_ratio) : loading;
+  return of.own->unloading_stiffness(loading_stiffness(of, size));
 }
 
 // Circular frequency of a single undamped contact [1/s].
@@ -92,17 +89,20 @@ SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
 // Tangential stiffness [N/m] for estimates; where it depends on the overlap, at 1 % of the smaller radius.
 inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
   if (of.friction == 0) return 0;
+  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j),
+             radius = std::sqrt(size.effective_radius() * overlap);
+  if (of.own) return of.own->slip_stiffness(radius);
   if (of.shear_modulus == 0) return LinearSlider::of(of).stiffness_at(0);
-  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
-  return MindlinSlider::of(of).stiffness_at(std::sqrt(size.effective_radius() * overlap));
+  return MindlinSlider::of(of).stiffness_at(radius);
 }
 
 // Rolling and twisting stiffness for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of the
 // normal spring [N/m]. Twisting, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
 // neglected.
 inline Real typical_rolling_stiffness(const RollingParameters& of, const PairSize& size, Real stiffness) {
-  if (of.friction == 0) return 0;
   const Real radius = std::min(size.radius_i, size.radius_j);
+  if (of.own) return of.own->rolling_stiffness(size, stiffness) / (radius * radius);
+  if (of.friction == 0) return 0;
   return AnyRolling::of(of).rolling.stiffness_at(size, stiffness) / (radius * radius);
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "physics/cohesion.hpp"
+#include "physics/eepa.hpp"
+#include "physics/liquid_bridge.hpp"
 #include "support/contact_record.hpp"
 #include "support/history_test_box.hpp"
 
@@ -122,8 +124,8 @@ inline Model plastic(Model model) {
       law.attraction = 2;
       continue;
     }
-    law.plasticity_ratio = kind == 0 ? 0.4 : 0.8, law.adhesion_work = kind == 0 ? 30 : 100;
-    law.adhesion_exponent = kind == 0 ? 1.5 : 3;
+    law.adhesion_work = kind == 0 ? 30 : 100;
+    law.own = kind == 0 ? Plasticity(0.4, 1.5) : Plasticity(0.8, 3);
   }
   return model;
 }
@@ -137,12 +139,12 @@ inline Model wet(Model model) {
     NormalLawParameters& law = model.contact.laws[static_cast<std::size_t>(k)];
     law.tension = false;
     if (count > 1 && kind == 2) continue;
-    law.bridge = {.volume = kind == 0 ? 1e-3 : 1e-2,
-                  .surface_tension = 8,
-                  .contact_angle = 0.2,
-                  .viscosity = kind == 0 ? 0.1 : 0,
-                  .least_gap = 0.1,
-                  .soulie = kind == 0};
+    law.own = BridgeParameters({.volume = kind == 0 ? 1e-3 : 1e-2,
+                                .surface_tension = 8,
+                                .contact_angle = 0.2,
+                                .viscosity = kind == 0 ? 0.1 : 0,
+                                .least_gap = 0.1,
+                                .soulie = kind == 0});
     model.contact.interaction_range = std::max(
         model.contact.interaction_range, contact_search_range(law, model.particles.totals.largest_radius));
   }

@@ -26,7 +26,7 @@ RotationEnergies make_rotation_energies(const Real* sums, const HostSurfaces& bo
   RotationEnergies out{sums[kRotational],
                        sums[kFrictionSprings] + shapes.friction,
                        sums[kRollingSprings] + shapes.rolling,
-                       {{losses[kFrictionLoss], losses[kRollingLoss], losses[kTwistingLoss]}}};
+                       {{SCREE_LOSS_KINDS(SCREE_LOSS_VALUE, losses)}}};
   out.losses.add(bodies.losses().tangential);
   return out;
 }

@@ -73,8 +73,7 @@ void CpuImplicitOperations::lag_limits(const FrictionStart& start) {
 void CpuImplicitOperations::account_contacts(const FrictionStart& start) {
   items_.kernels->step_losses(
       items_.views(), owned(), start,
-      {now().contact_loss.data(), now().integrator_loss.data(), now().friction_loss.data(),
-       now().rolling_loss.data(), now().twisting_loss.data()});
+      {now().contact_loss.data(), now().integrator_loss.data(), SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())});
   items_.surfaces.accumulate_step_works(side().poses(), now(), items_.list.surfaces);
   items_.history.accepted();
 }

@@ -35,7 +35,7 @@ class BatchLoads {
       of_j[n]->part[1] = torque_j[n];
     }
     if constexpr (Packed::kParts > 2) {
-      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k)};
+      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k), losses_at(3, k), losses_at(4, k)};
       transpose(more);
       for (Index n = 0; n < kGroup; ++n) of_i[n]->part[2] = of_j[n]->part[2] = more[n];
     }
@@ -112,7 +112,7 @@ class PairBatch {
   // The compiler leaves out parts of a law that are compile-time constants: a dashpot beside the slider,
   // which most runs do not have, and viscous rolling.
   [[gnu::noinline, gnu::flatten]] void evaluate_by(const Law& of, Index begin, Index end, Real h) {
-    if constexpr (Law::Rolling::acts) {
+    if constexpr (requires { of.rolling.rolling.viscous; }) {
       if (of.rolling.rolling.viscous.damping == 0 && of.rolling.rolling.spring.friction > 0) {
         Law law = of;
         law.rolling.rolling.viscous.damping = 0;

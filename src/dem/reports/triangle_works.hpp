@@ -53,8 +53,7 @@ struct ExplicitWorks {
     const Real lost = h * contact.load.loss;
     if (!moves) return {lost, 0};
     const TangentialLosses& losses = contact.losses;
-    return {lost - (losses.of[kFrictionLoss] + losses.of[kRollingLoss] + losses.of[kTwistingLoss]),
-            losses.of[kFrictionLoss]};
+    return {lost - losses.sum(), losses.of[kFrictionLoss]};
   }
 };
 struct ImplicitWorks {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/builder/build_normal_law.hpp"
+#include "deck/pair_laws.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"
@@ -139,15 +139,25 @@ void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
 
 namespace {
 
-// Throws InputError where a contact attracts beyond touch or is plastic. needs: the words for explicit steps.
-void check_attraction(const DeckTable& deck, const std::string& needs) {
+// Parameters that single laws of a pair in the deck have.
+std::vector<AnyParameters> own_parameters(const DeckTable& pair, const Contact& contact) {
+  int material[2] = {0, 0};
+  for (std::size_t side = 0; side < 2 && pair.has("materials"); ++side)
+    material[side] =
+        static_cast<int>(std::ranges::find(contact.material_names, pair.texts("materials")[side]) -
+                         contact.material_names.begin());
+  std::vector<AnyParameters> all{contact.law(material[0], material[1]).own,
+                                 contact.rolling_of(material[0], material[1]).own};
+  if (!contact.friction.empty()) all.push_back(contact.friction_of(material[0], material[1]).own);
+  return all;
+}
+
+// Throws InputError where the law of a pair has no implicit steps. needs: the words for explicit steps.
+void check_attraction(const DeckTable& deck, const Contact& contact, const std::string& needs) {
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    if (is_positive(pair, "plasticity_ratio"))
-      pair.fail("plasticity_ratio",
-                fmt::format("{}: the force of a plastic contact depends on its path within the step", needs));
-    if (is_positive(pair, "bridge_volume") && is_positive(pair, "surface_tension"))
-      pair.fail("bridge_volume",
-                fmt::format("{}: liquid bridges form and break at different distances", needs));
+    for (const AnyParameters& own : own_parameters(pair, contact))
+      if (const std::string reason = own->explicit_only(); !reason.empty())
+        pair.fail(own->key(), fmt::format("{}: {}", needs, reason));
     for (const char* key : {"surface_energy", "work_of_adhesion"})
       if (pair.has(key) && pair.real(key) > 0 &&
           (!pair.has("adhesion") || pair.choice<Adhesion>("adhesion") == Adhesion::jkr))
@@ -179,7 +189,7 @@ void check_integrator(const DeckTable& deck, const Model& model) {
   if (integrator.precision == Precision::mixed)
     method.fail("precision",
                 fmt::format("must be \"{}\", unless {}", word_of(Precision::full), explicit_steps));
-  check_attraction(deck, "needs " + explicit_steps);
+  check_attraction(deck, model.contact, "needs " + explicit_steps);
 }
 
 namespace {

@@ -64,7 +64,7 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
 Real trial_speed(Real fastest, const NormalLawParameters& law, const Partners& two) {
   constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlap over radius
   const auto speed = [&](Real share) { return overlapping_speed(law, two.mass(), share * two.radius()); };
-  if (law.exponent == 1 && !law.is_plastic()) return speed(kLinear);
+  if (law.is_linear()) return speed(kLinear);
   return fastest > 0 ? std::min(fastest, speed(kMost)) : speed(kAtRest);
 }
 
@@ -146,25 +146,18 @@ auto with_explicit_trials(const Field& field, const PairLimit& limit, const Use&
   });
 }
 
-// All data on which the trial of a pair depends, besides the model's step and integrator. The structured
-// bindings name every member, so that a new member does not compile until it is added here.
+// All data on which the trial of a pair depends, besides the model's step and integrator.
 using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
   const std::size_t pair = pair_of(field, limit);
-  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range, plasticity, chi, bridge] =
-      contact.laws[pair];
-  TrialKey key{k,     c,          n,   Real(tension),         e, zeta, work, Real(jkr), attraction,
-               range, plasticity, chi, field.speeds.of(limit)};
-  key.push_back(bridge.acts() ? 1 : 0);  // of which trials see no more than that
-  if (!contact.friction.empty()) {
-    const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
-    key.insert(key.end(), {mu, k_t, g, zeta_t});
-  }
-  if (!contact.rolling.empty()) {
-    const auto& [mu, factor, k_r, zeta_r, c_r, twisting] = contact.rolling[pair];
-    key.insert(key.end(), {mu, factor, k_r, zeta_r, c_r, twisting});
-  }
+  TrialKey key{field.speeds.of(limit)};
+  const auto add = [&](const std::vector<Real>& numbers) {
+    key.insert(key.end(), numbers.begin(), numbers.end());
+  };
+  add(contact.laws[pair].numbers());
+  if (!contact.friction.empty()) add(contact.friction[pair].numbers());
+  if (!contact.rolling.empty()) add(contact.rolling[pair].numbers());
   const Partners two = lightest_partners(field.model, field.uses, limit);
   for (const auto& [radius, mass, is_particle, inertia_factor] : {two.i, two.j})
     key.insert(key.end(), {radius, mass, Real(is_particle), inertia_factor});

@@ -62,12 +62,6 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
   return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
 }
 
-void add_bridge(const LiquidBridge& liquid, const PairSize& size, PairLimit& limit) {
-  const auto bridge = bridge_alone(liquid, size);
-  limit.sticking_speed = sticking_speed(bridge, smallest_reduced_mass(size));
-  limit.bridge_length = bridge.length;
-}
-
 template <class Parts>
 bool has_material(const Parts& parts, int material) {
   return std::ranges::any_of(parts, [&](const auto& part) { return part.material == material; });
@@ -220,14 +214,16 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                                 std::min(size.radius_i, size.radius_j)};
       const Real step_a = explicit_step(model, first, dense, springs);
       const Real step_b = explicit_step(model, second, dense, springs);
+      const Real mass = smallest_reduced_mass(size);
       limits.push_back({{a, b},
                         sized,
                         stiffness,
                         springs.slip_stiffness,
                         springs.rolling_stiffness,
-                        contact_time(stiffness, smallest_reduced_mass(size)),
-                        step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
-      if (law.bridge.acts()) add_bridge(law.bridge, size, limits.back());
+                        contact_time(stiffness, mass),
+                        step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b),
+                        law.own->sticking_speed(size, mass),
+                        law.own->longest_step(size, mass)});
     }
   }
   return limits;

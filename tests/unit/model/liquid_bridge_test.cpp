@@ -44,8 +44,10 @@ const std::string kWater = "bridge_volume = 1e-3\nsurface_tension = 0.0728\n";
 TEST_CASE("the keys of liquid bridges are the pair's, beside a linear law and Hertz's") {
   const Model water = model_of(linear(kWater + "restitution = 0.6\n"));
   const NormalLawParameters& law = water.contact.law(0, 0);
-  CHECK((law.bridge.volume == 1e-3 && law.bridge.surface_tension == 0.0728));
-  CHECK((law.bridge.contact_angle == 0 && law.bridge.viscosity == 0 && !law.bridge.soulie));
+  REQUIRE(law.own.as<BridgeParameters>());
+  const LiquidBridge& liquid = law.own.as<BridgeParameters>()->liquid;
+  CHECK((liquid.volume == 1e-3 && liquid.surface_tension == 0.0728));
+  CHECK((liquid.contact_angle == 0 && liquid.viscosity == 0 && !liquid.soulie));
   CHECK(near(restitution_of(law.damping_ratio, true), 0.6, {.relative = kRoundOff}));
   CHECK(water.rotates());  // the contact rotates with its partners
   CHECK(water.is_cohesive());
@@ -53,7 +55,8 @@ TEST_CASE("the keys of liquid bridges are the pair's, beside a linear law and He
   const LiquidBridge oil =
       model_of(hertz(kWater + "contact_angle = 0.3\nbridge_force = \"soulie\"\nbridge_viscosity = 0.1\n"))
           .contact.law(0, 0)
-          .bridge;
+          .own.value<BridgeParameters>()
+          .liquid;
   CHECK((oil.contact_angle == 0.3 && oil.viscosity == 0.1 && oil.least_gap == 0.01 && oil.soulie));
   for (const std::string dry :
        {"bridge_volume = 0.0\nsurface_tension = 0.07\n", "bridge_volume = 1e-3\nsurface_tension = 0.0\n"}) {
@@ -65,7 +68,7 @@ TEST_CASE("the keys of liquid bridges are the pair's, beside a linear law and He
 TEST_CASE("sticking speed of the smallest partners; the chosen step resolves it") {
   const PairLimit water = pair_limits(model_of(linear(kWater)))[0];
   CHECK(near(water.sticking_speed, std::sqrt(2 * 1.02536867e-8 / 5e-6), {.relative = 1e-8}));
-  CHECK(near(water.bridge_length, std::sqrt(1e-9), {.relative = 1e-12}));
+  CHECK(near(water.longest_step, 0.05 * std::sqrt(1e-9) / water.sticking_speed, {.relative = 1e-12}));
   CHECK(pair_limits(model_of(linear("")))[0].sticking_speed == 0);
   // Viscosity shortens the stable step.
   CHECK(pair_limits(model_of(linear(kWater + "bridge_viscosity = 1.0\n")))[0].explicit_step <
@@ -89,7 +92,8 @@ TEST_CASE("liquid bridges of combined pairs") {
   const LiquidBridge mixed =
       model_of(deck("bridge_volume = 4e-3\nsurface_tension = 0.0728\ncontact_angle = 0.4\n"))
           .contact.law(0, 1)
-          .bridge;
+          .own.value<BridgeParameters>()
+          .liquid;
   CHECK(near(mixed.volume, 2e-3, {.relative = kRoundOff}));
   CHECK(near(mixed.contact_angle, 0.2, {.relative = kRoundOff}));
   CHECK(mixed.surface_tension == 0.0728);

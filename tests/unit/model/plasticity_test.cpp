@@ -56,15 +56,17 @@ std::string beside_steel(const std::string& soil, const std::string& both) {
 TEST_CASE("plastic pairs have the law of their loading curve, with friction") {
   const Model soil = model_of(hertz("plasticity_ratio = 0.6\nwork_of_adhesion = 20.0\nattraction = 1e-3\n"));
   const NormalLawParameters& law = soil.contact.law(0, 0);
-  CHECK((law.plasticity_ratio == 0.6 && law.adhesion_work == 20 && law.attraction == 1e-3 && !law.jkr));
-  CHECK(law.adhesion_exponent == 1.5);
+  REQUIRE(law.own.as<Plasticity>());
+  CHECK((law.own.as<Plasticity>()->ratio == 0.6 && law.adhesion_work == 20 && law.attraction == 1e-3 &&
+         !law.jkr));
+  CHECK(law.own.as<Plasticity>()->adhesion_exponent == 1.5);
   CHECK((soil.rotates() && soil.is_cohesive() && soil.contact.interaction_range == 0));
   CHECK(history_of(soil.contact) == 8);
   with_contact_laws(soil.contact, []<class Law>(const std::vector<Law>&) {
     CHECK(std::is_same_v<typename Law::Normal, EepaLaw<HertzLaw>>);
   });
   const Model balls = model_of(linear("plasticity_ratio = 0.6\nadhesion_exponent = 3.5\n"));
-  CHECK(balls.contact.law(0, 0).adhesion_exponent == 3.5);
+  CHECK(balls.contact.law(0, 0).own.value<Plasticity>().adhesion_exponent == 3.5);
   with_contact_laws(balls.contact, []<class Law>(const std::vector<Law>&) {
     CHECK(std::is_same_v<typename Law::Normal, EepaLaw<LinearRestitutionLaw>>);
   });
@@ -72,7 +74,7 @@ TEST_CASE("plastic pairs have the law of their loading curve, with friction") {
   const Real damped =
       model_of(linear("plasticity_ratio = 0.6\nrestitution = 0.7\n")).contact.law(0, 0).damping_ratio;
   CHECK(damped == damping_ratio_of(0.7, true));
-  CHECK_FALSE(model_of(linear("plasticity_ratio = 0.0\n")).contact.law(0, 0).is_plastic());
+  CHECK_FALSE(model_of(linear("plasticity_ratio = 0.0\n")).contact.law(0, 0).own);
 }
 
 TEST_CASE("the step of plastic pairs follows from the stiffness of unloading") {
@@ -85,7 +87,7 @@ TEST_CASE("the step of plastic pairs follows from the stiffness of unloading") {
 TEST_CASE("pairs without plasticity may stand beside plastic ones") {
   const Model model = model_of(beside_steel("plasticity_ratio = 0.6\nwork_of_adhesion = 20.0\n",
                                             "friction = 0.3\nattraction = 1e-3\n"));
-  CHECK(!model.contact.law(0, 1).is_plastic());
+  CHECK(!model.contact.law(0, 1).own.as<Plasticity>());
   CHECK(history_of(model.contact) == 8);
 }
 

@@ -24,8 +24,8 @@ NormalLawParameters parameters(bool hertzian, Real plasticity, Real energy, Real
                                Real chi = 0) {
   NormalLawParameters p;
   (hertzian ? p.effective_modulus : p.normal_stiffness) = hertzian ? kModulus : kStiffness;
-  p.plasticity_ratio = plasticity, p.adhesion_work = energy, p.attraction = attraction;
-  p.adhesion_exponent = chi;
+  p.adhesion_work = energy, p.attraction = attraction;
+  if (plasticity > 0) p.own = Plasticity(plasticity, chi);
   return p;
 }
 

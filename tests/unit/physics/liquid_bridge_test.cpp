@@ -140,7 +140,8 @@ TEST_CASE("viscous liquid: damping of the gap, of which friction knows nothing")
     CHECK(near(f.loss, pair.damping(d) * rate * rate, {.relative = kRoundOff}));
     CHECK(near(pair.friction_load(f.force, d), d > 0 ? 1e4 * d + 0.02 * rate : 0, {.relative = 1e-12}));
   }
-  const NormalLawParameters law{.normal_stiffness = 1e4, .normal_damping = 0.02, .bridge = oil};
+  const NormalLawParameters law{
+      .normal_stiffness = 1e4, .normal_damping = 0.02, .own = BridgeParameters(oil)};
   CHECK(near(law_of_size(law, kGrains).normal_damping, 0.02 + kStokes / 0.01, {.relative = kRoundOff}));
 }
 

@@ -62,7 +62,7 @@ void add_table(const ReferenceTable& table, Real n, Real parts, ImpactErrors& er
     if (row["n"] != n) continue;
     CAPTURE(n, row["l"]);
     NormalLawParameters p;
-    p.plasticity_ratio = row["l"];
+    p.own = Plasticity(row["l"], 0);
     (n == 1 ? p.normal_stiffness : p.effective_modulus) = n == 1 ? 1e4 : 1e7;
     const Real k1 = n == 1 ? 1e4 : 4e7 / 3 * std::sqrt(radius),
                d_max = std::pow((n + 1) * mass * v * v / 2 / k1, 1 / (n + 1));
@@ -95,8 +95,7 @@ TEST_CASE("EEPA with adhesion: two spheres rebound or stick") {
     CAPTURE(row["g"], row["v"]);
     const NormalLawParameters p{.effective_modulus = row["E_star"],
                                 .adhesion_work = row["g"],
-                                .plasticity_ratio = row["l"],
-                                .adhesion_exponent = row["chi"]};
+                                .own = Plasticity(row["l"], row["chi"])};
     const Real h = loading_time(row["d_max"], row["v"]) / 8000;
     const Impact found =
         impact(head_on<EepaLaw<HertzLaw>>(p, row["R_star"], row["m_star"], row["v"], h), 400000);
@@ -116,8 +115,7 @@ TEST_CASE("EEPA: the pull-off force after a preload") {
     CAPTURE(row["g"], row["v"]);
     const EepaLaw<HertzLaw> law({.effective_modulus = row["E_star"],
                                  .adhesion_work = row["g"],
-                                 .plasticity_ratio = row["l"],
-                                 .adhesion_exponent = row["chi"]});
+                                 .own = Plasticity(row["l"], row["chi"])});
     const PairSize size{row["R_star"], kInfinity, row["m_star"], kInfinity};
     const auto pair = law.of_pair(size);
     EepaState state = pair.after({}, row["d_max"]).state;

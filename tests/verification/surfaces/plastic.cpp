@@ -23,8 +23,7 @@ constexpr Real kStep = 1e-7;
 
 EepaPair<HertzPairOf<Real>> pair_law(Real radius) {
   NormalLawParameters p;
-  p.effective_modulus = kYoung, p.adhesion_work = kWork, p.plasticity_ratio = kRatio;
-  p.adhesion_exponent = 2.5;
+  p.effective_modulus = kYoung, p.adhesion_work = kWork, p.own = Plasticity(kRatio, 2.5);
   return EepaLaw<HertzLaw>(p).of_pair({radius, kInfinity, 1, kInfinity});
 }
 
