@@ -265,12 +265,9 @@ struct SurfaceStart {
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
-  virtual int history() const = 0;  // number of history values of a contact of this law
-  virtual bool rolls() const = 0;   // as in `ContactKernels`
-  // Why explicit steps cannot be in mixed precision with this law; empty if they can.
-  virtual const char* mixed_trouble() const = 0;
-  virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
-                      Real* loss_power, Vec3* angular_acceleration) const = 0;
+  virtual LawTraits traits() const = 0;
+  // Applies the item of the request to n particles.
+  virtual void run(Device device, const DeviceViews& in, Index n, const ContactRequest& request) const = 0;
   // Contacts of particles with surfaces on bodies at an instant or over an explicit step, and their sums over
   // each surface that has chunks.
   virtual void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
@@ -286,26 +283,11 @@ class DeviceContactKernels {
   // `exact_sums` calls.
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
-  virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
-  // A field of the output that depends on contacts.
-  virtual void output(Device device, const DeviceViews& in, const OutputRequest& request) const = 0;
-  // As in `ContactKernels`; for the particles first ... end - 1.
+  // As in `ContactKernels`.
   virtual void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                               ShownContact* shown) const = 0;
-  virtual void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
-                             const LineRequest& request) const = 0;
-  // Implicit steps, as in `ContactKernels`.
+  // Forces and Newton matrix of an implicit step.
   virtual void system(Device device, const DeviceStepSystem& request) const = 0;
-  virtual void step_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                           const FrictionLossOutputs& to) const = 0;
-  virtual void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                                   const LaggedLimits& to) const = 0;
-  // Energy that n escaped particles take along, and what their contacts leave with the remaining particles:
-  // `EscapeEnergyItem` and `EscapedContactsItem`.
-  virtual void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-                                 EscapedParticle* escaped_particles) const = 0;
-  virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
-                          const StartViews& start) const = 0;
   // Closes one explicit step and opens the next; does nothing once the control block says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
   virtual void mixed_advance(Device device, const MixedRequest& request) const = 0;
@@ -313,8 +295,8 @@ class DeviceContactKernels {
   virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };
 
-// Kernels of one type of law. Each type is compiled in a source file of its own, contact_kernels_*.cu,
-// because compilation takes long.
+// Kernels of one type of law. Each type is compiled in a source file of its own, which is generated from
+// law.cu.in, because compilation takes long.
 template <class Law>
 std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials);
 

@@ -90,7 +90,7 @@ __global__ void __launch_bounds__(kSystemThreads)
     friction_losses_kernel(Index n, const __grid_constant__ DeviceViews in,
                            const __grid_constant__ FrictionStart start, const FrictionLossOutputs to,
                            const Laws laws) {
-  constexpr int kWords = sizeof(FrictionLossSumsOf<LawOf<Laws>>) / sizeof(double);
+  constexpr int kWords = sizeof(FrictionLossSums<kLossKindsOf<LawOf<Laws>>>) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = thread_index();
   if (i - static_cast<Index>(threadIdx.x) % warpSize >= n) return;
@@ -98,19 +98,11 @@ __global__ void __launch_bounds__(kSystemThreads)
   const auto views = warp_views(in, &contacts[threadIdx.x / kSlice], idle);
   const FrictionLossesItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
   auto self = item.walk.self(idle ? n - 1 : i);
-  FrictionLossSumsOf<LawOf<Laws>> sum;
+  FrictionLossSums<kLossKindsOf<LawOf<Laws>>> sum;
   self.i = i;
   item.add_neighbors(self, sum);
   if (!idle) item.finish(self, sum);
 }
-
-// Applies the item to the particles from `first` on.
-template <class Item>
-struct FromItem {
-  Item item;
-  Index first;
-  SCREE_HD void operator()(Index i) const { item(first + i); }
-};
 
 template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
@@ -126,16 +118,9 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
 
-  int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
-  bool rolls() const override { return LawOf<Laws>::Rolling::acts; }
-  const char* mixed_trouble() const override {
-    return kHasRange<LawOf<Laws>> ? "particles attract each other" : "";
-  }
-  void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
-              Vec3* angular_acceleration) const override {
-    for_each(
-        device, n,
-        ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
+  LawTraits traits() const override { return LawTraits::of<LawOf<Laws>>(); }
+  void run(Device device, const DeviceViews& in, Index n, const ContactRequest& request) const override {
+    with_requested_item(in, laws_, request, [&](const auto& item) { queue(device, n, item); });
   }
   void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
                      SurfaceLoad* loads, const LoadSumOutputs& sums) const override {
@@ -166,21 +151,9 @@ class ContactKernelsOf : public DeviceContactKernels {
                  ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const override {
     exact_sums(device, n, WallContactItem<Laws, SlicedRows>{{in, laws_}, choice}, sums, share);
   }
-  void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
-    for_each(device, n, ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out});
-  }
-  void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
-    with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},
-                        [&](const auto& item) { for_each(device, request.n, item); });
-  }
   void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                       ShownContact* shown) const override {
     for_each(device, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
-  }
-  void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
-                     const LineRequest& request) const override {
-    using Item = ContactLineItem<Laws, SlicedRows>;
-    for_each(device, end - first, FromItem<Item>{{{in, laws_}, request}, first});
   }
   void system(Device device, const DeviceStepSystem& r) const override {
     if (r.end == r.first) return;
@@ -192,34 +165,6 @@ class ContactKernelsOf : public DeviceContactKernels {
     else
       refuse_implicit();
     require_cuda(cudaGetLastError(), "system");
-  }
-  void step_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                   const FrictionLossOutputs& to) const override {
-    if (n == 0) return;
-    if constexpr (kFreedoms == 6)
-      friction_losses_kernel<Laws>
-          <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
-    else if constexpr (kFreedoms == 3)
-      for_each(device, n,
-               ContactLossesItem<Laws, SlicedRows>{{in, laws_, {start.step}}, to.contact, to.integrator});
-    else
-      refuse_implicit();
-    require_cuda(cudaGetLastError(), "losses over a step");
-  }
-  void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                           const LaggedLimits& to) const override {
-    if constexpr (kFreedoms == 6)
-      for_each(device, n, LaggedLimitItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
-    else
-      refuse_implicit();
-  }
-  void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-                         EscapedParticle* escaped_particles) const override {
-    for_each(device, n, EscapeEnergyItem<Laws, SlicedRows>{{in, laws_}, box, escaped_particles});
-  }
-  void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
-                  const StartViews& start) const override {
-    for_each(device, n, EscapedContactsItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     if constexpr (LawOf<Laws>::kNeedsMotion) {
@@ -252,6 +197,16 @@ class ContactKernelsOf : public DeviceContactKernels {
 
  private:
   static constexpr int kFreedoms = kStepFreedoms<LawOf<Laws>>;
+  template <class Item>
+  static void queue(Device device, Index n, const Item& item) {
+    for_each(device, n, item);
+  }
+  static void queue(Device device, Index n, const FrictionLossesItem<Laws, SlicedRows>& item) {
+    if (n == 0) return;
+    friction_losses_kernel<Laws><<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(
+        n, item.walk.in, item.walk.kinematics.start, item.to, item.walk.laws);
+    require_cuda(cudaGetLastError(), "losses over a step");
+  }
   [[noreturn]] static void refuse_implicit() {
     throw std::logic_error("ContactKernelsOf: the law has no such implicit steps");
   }

@@ -14,8 +14,9 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
 
 // Why a run is in double precision although the deck asks for mixed.
 std::string CudaBackend::double_reason() const {
-  return bodies_.have_surfaces() ? "bodies have shapes or meshes, or walls are meshes or move"
-                                 : items_.kernels->mixed_trouble();
+  return bodies_.have_surfaces()              ? "bodies have shapes or meshes, or walls are meshes or move"
+         : items_.kernels->traits().has_range ? "particles attract each other"
+                                              : "";
 }
 
 std::string CudaBackend::description() const {

@@ -19,7 +19,7 @@ void swap_motion(ParticleArrays& now, SecondArrays& start) {
 void CudaImplicitArrays::resize(const CudaItems& items) {
   step.resize({static_cast<std::size_t>(items.owned), static_cast<std::size_t>(items.layout.items),
                static_cast<std::size_t>(items.list.slots()),
-               static_cast<std::size_t>(items.surfaces.entries()), items.kernels->rolls()},
+               static_cast<std::size_t>(items.surfaces.entries()), items.kernels->traits().rolls},
               items.model.rotates());
 }
 
@@ -88,14 +88,16 @@ void CudaImplicitOperations::lag_limits(const FrictionStart& start) {
   clear(neighbors, items_.list.entries());
   clear(surfaces, items_.surfaces.entries());
   queue_with_ghosts([](Device, Index, Index) {}, nullptr);
-  items_.kernels->store_lagged_limits(items_.device(), items_.views(), items_.owned, start,
-                                      {neighbors.data(), surfaces.data()});
+  items_.kernels->run(items_.device(), items_.views(), items_.owned,
+                      LimitRequest{start, {neighbors.data(), surfaces.data()}});
 }
 
 void CudaImplicitOperations::account_contacts(const FrictionStart& start) {
-  items_.kernels->step_losses(
-      items_.device(), items_.views(), items_.owned, start,
-      {now().contact_loss.data(), now().integrator_loss.data(), SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())});
+  const LossRequest request{start,
+                            {now().contact_loss.data(),
+                             now().integrator_loss.data(),
+                             {SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())}}};
+  items_.kernels->run(items_.device(), items_.views(), items_.owned, request);
   items_.surfaces.accumulate_step_works(items_.device(), *items_.kernels);
   items_.history.accepted();
 }
@@ -103,7 +105,7 @@ void CudaImplicitOperations::account_contacts(const FrictionStart& start) {
 std::unique_ptr<ImplicitStep> open_cuda_step(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays,
                                              Real h) {
   using On = CudaImplicitOperations;
-  if (items.model.rotates() && items.kernels->rolls())
+  if (items.model.rotates() && items.kernels->traits().rolls)
     return std::make_unique<ImplicitSchedule<On, RollingFreedoms>>(items, bodies, arrays, h);
   if (items.model.rotates())
     return std::make_unique<ImplicitSchedule<On, SixFreedoms>>(items, bodies, arrays, h);

@@ -109,10 +109,20 @@ struct ContactOutcomeOf {
 };
 using ContactOutcome = ContactOutcomeOf<ContactHistory>;
 
-// The law of a contact. Without friction, rolling resistance, JKR adhesion and a state of the normal law
-// (`kNeedsMotion` is false) it is a function of the instant: `load(pair)`. Otherwise it needs the motion of
-// the partners over the step and the contact history: `load(moving pair, history)`. Both are pure: the new
-// history is returned, and only the item that accepts the step stores it.
+// The same of a law that is a function of the instant.
+template <class T, class Vector>
+struct InstantOutcomeOf {
+  ContactLoadOf<T, Vector> load;
+  [[no_unique_address]] NoState history{};
+
+  SCREE_HD TangentialLosses losses() const { return {}; }
+};
+
+// The law of a contact: `respond(pair, history)`. Without friction, rolling resistance, JKR adhesion and a
+// state of the normal law (`kNeedsMotion` is false) it is a function of the instant, a `PairState`. Otherwise
+// it needs the contact history and the motion of the partners over the step that ends at the instant, a
+// `MovingPair`, or that they do not move, an `InstantPair`. It is pure: the new history is returned, and only
+// the item that accepts the step stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
@@ -134,18 +144,14 @@ struct ContactLaw {
   static constexpr int kHistory =
       TangentialLaw::kHistory + RollingLaw::kHistory + (kHysteretic ? 1 : 0) + State::kNumbers;
 
-  // Load of a closed contact. Pure; both partners get the same but for the sign of odd quantities.
+  // Response of a closed contact at an instant; both partners get the same but for the sign of odd
+  // quantities.
   template <class T, class Vector>
-  SCREE_HD ContactLoadOf<T, Vector> load(const PairStateOf<T, Vector>& pair) const {
+  SCREE_HD InstantOutcomeOf<T, Vector> respond(const PairStateOf<T, Vector>& pair, const History&) const {
     static_assert(!kNeedsMotion);
-    return normal_load(pair);
-  }
-  // Load of the normal law alone.
-  template <class T, class Vector>
-  SCREE_HD ContactLoadOf<T, Vector> normal_load(const PairStateOf<T, Vector>& pair) const {
     const auto law = normal.template as<T>().of_pair(pair.size);
     const ContactForceOf<T> f = contact_force(law, pair.geometry.overlap, pair.geometry.rate(pair.velocity));
-    return {pair.geometry.along(f.force), f.loss, {}, {}};
+    return {{pair.geometry.along(f.force), f.loss, {}, {}}};
   }
 
   // Whether the contact is closed; the partners may be apart.
@@ -156,10 +162,10 @@ struct ContactLaw {
   // Whether a step that opens the contact breaks a JKR contact, whose springs hold energy.
   SCREE_HD static bool breaks(const History& old) { return kHysteretic && old.touched; }
 
-  // Outcome of a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
+  // The same over a step. All zero without a contact, but for the losses of a contact that `breaks()`. Pair:
   // `MovingPair`, or `InstantPair`.
   template <class Pair = MovingPair>
-  SCREE_HD Outcome load(const Pair& pair, const History& old) const {
+  SCREE_HD Outcome respond(const Pair& pair, const History& old) const {
     Outcome out{};
     const auto partners = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;

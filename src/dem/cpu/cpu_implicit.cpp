@@ -18,7 +18,7 @@ CpuImplicitOperations::CpuImplicitOperations(CpuItems& items, CpuImplicitArrays&
   items.side.store_start();
   arrays_.step.resize(
       {static_cast<std::size_t>(owned()), static_cast<std::size_t>(items.layout.items),
-       items.list.neighbors.size(), items.list.surfaces.surfaces.size(), items.kernels->rolls()},
+       items.list.neighbors.size(), items.list.surfaces.surfaces.size(), items.kernels->traits().rolls},
       store.rotates);
 }
 
@@ -67,13 +67,15 @@ void CpuImplicitOperations::lag_limits(const FrictionStart& start) {
   std::vector<Real>&neighbors = arrays().six.neighbor_limits, &surfaces = arrays().six.surface_limits;
   neighbors.assign(items_.list.neighbors.size(), kNoContact);
   surfaces.assign(items_.list.surfaces.surfaces.size(), kNoContact);
-  items_.kernels->store_lagged_limits(items_.views(), owned(), start, {neighbors.data(), surfaces.data()});
+  items_.kernels->run(items_.views(), owned(), LimitRequest{start, {neighbors.data(), surfaces.data()}});
 }
 
 void CpuImplicitOperations::account_contacts(const FrictionStart& start) {
-  items_.kernels->step_losses(
-      items_.views(), owned(), start,
-      {now().contact_loss.data(), now().integrator_loss.data(), SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())});
+  const LossRequest request{start,
+                            {now().contact_loss.data(),
+                             now().integrator_loss.data(),
+                             {SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now())}}};
+  items_.kernels->run(items_.views(), owned(), request);
   items_.surfaces.accumulate_step_works(side().poses(), now(), items_.list.surfaces);
   items_.history.accepted();
 }
@@ -93,7 +95,7 @@ void CpuImplicitOperations::undo() {
 
 std::unique_ptr<ImplicitStep> open_cpu_step(CpuItems& items, CpuImplicitArrays& arrays, Real h) {
   using On = CpuImplicitOperations;
-  if (items.store.rotates && items.kernels->rolls())
+  if (items.store.rotates && items.kernels->traits().rolls)
     return std::make_unique<ImplicitSchedule<On, RollingFreedoms>>(items, arrays, h);
   if (items.store.rotates) return std::make_unique<ImplicitSchedule<On, SixFreedoms>>(items, arrays, h);
   return std::make_unique<ImplicitSchedule<On, ThreeFreedoms>>(items, arrays, h);

@@ -74,7 +74,7 @@ class CpuImplicitOperations {
   void take_surface_steps();
   template <class Residual, class Norms>
   void form_system(const StepSystem& system, const Residual& residual, const Norms& norms) {
-    items_.kernels->system(items_.views(), owned(), system);
+    items_.kernels->run(items_.views(), owned(), system);
     for_each(residual);
     largest_ = {};
     for (Index i = 0; i < owned(); ++i) take_larger(norms(i));

@@ -146,7 +146,7 @@ class PairBatch {
         acts_[k] = closed_[k] || Law::breaks(old);
         if (!acts_[k]) continue;
       }
-      const auto outcome = law.load(pair, old);
+      const auto outcome = law.respond(pair, old);
       loads_.put(k, outcome.load, outcome.losses());
       put_history(k, outcome.history);
     }

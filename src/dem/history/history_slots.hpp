@@ -66,11 +66,16 @@ struct HistoryViews {
   template <class Law>
   SCREE_HD auto read(const Vec4* records, std::int64_t slot) const {
     constexpr int kRecords = records_of(Law::kHistory);
-    Vec4 at[kMostRecords];
-    // Further records are read whether the contact was closed or not, beside the first one and not after it.
-    for (int r = 0; r < kRecords; ++r) at[r] = records[slot * kRecords + r];
-    const bool closed = at[0].w == step;
-    return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
+    if constexpr (kRecords == 0) {
+      return typename Law::History{};
+    } else {
+      Vec4 at[kMostRecords];
+      // Further records are read whether the contact was closed or not, beside the first one and not after
+      // it.
+      for (int r = 0; r < kRecords; ++r) at[r] = records[slot * kRecords + r];
+      const bool closed = at[0].w == step;
+      return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
+    }
   }
   // History of a contact that continues the one at the slot; -1: a new contact.
   template <class Law>

@@ -56,7 +56,7 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       planes_(wall_planes(model)),
       entries_(model, subdomain, *kernels_, model.contact.interaction_range,
                masses_of_parents(model, surfaces)),
-      accepted_(packed_content(model, kernels_->history()), {model.space.min, subdomain.period()}),
+      accepted_(packed_content(model, kernels_->traits().history), {model.space.min, subdomain.period()}),
       trial_(accepted_) {}
 
 // Possible partners of each placed surface, in order.
@@ -277,7 +277,7 @@ void BodyContacts::find_loads(const SurfacePoses& poses, Real h) {
       poses, store_, list_.surfaces,
       {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
-  kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
+  kernels_->run(views(history), store_.owned, BodyLoadRequest{arm_.data(), h, loads_.data()});
   for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = corners_.surface_of(items_[i].surface);
   if (in_step) trial_.accepted();
 }
@@ -292,7 +292,7 @@ void BodyContacts::find_steps(const SurfacePoses& poses, Real h) {
   if (accepted_.exists()) trial_ = accepted_, has_step_ = true;
   entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
   start.on_bodies = entries_.friction_steps();
-  kernels_->body_steps(views(trial_.views()), store_.owned, start, arm_.data(), steps_.data(), to);
+  kernels_->run(views(trial_.views()), store_.owned, BodyStepRequest{start, arm_.data(), steps_.data(), to});
   if (accepted_.exists()) trial_.accepted();
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
   find_pairs();

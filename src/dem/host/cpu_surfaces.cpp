@@ -66,7 +66,7 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePoses& poses, const ParticleS
           touches_before_.data(),
           box_,
           query.history,
-          records_of(kernels_.history()),
+          records_of(kernels_.traits().history),
           query.spin,
           query.h,
           interaction_range_,

@@ -134,7 +134,7 @@ struct FrictionSystemItem {
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
-  SCREE_HD EvaluateFrictionalContact contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
+  SCREE_HD RespondWithFriction<> contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
   // Stores the k-th contact of row i as an entry of the matrix. Returns its contribution to the sums.
   SCREE_HD FrictionSums take(const Contact& c, Index i, Index j, Index k, Real& largest_phase) const {
     const std::int64_t slot = walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride();
@@ -154,43 +154,35 @@ struct FrictionSystemItem {
   }
 };
 
-// Outputs of the energy accounting; friction, rolling, twisting: parts of contact [J].
+// Outputs of the energy accounting; losses: parts of `contact`, null where the law does not distinguish them
+// [J].
 struct FrictionLossOutputs {
-  Real *contact, *integrator, *friction;
-  Real *rolling = nullptr, *twisting = nullptr;  // null where no contact resists rolling
+  Real *contact, *integrator;
+  Real* losses[kLossKinds];
 };
 
-// Sums of the energy accounting over a particle's share of its contacts.
+// Sums of the energy accounting over a particle's share of its contacts [J].
+template <int kKinds>
 struct FrictionLossSums {
-  Real dissipated = 0, integrator = 0, friction = 0;  // [J]
+  Real dissipated = 0, integrator = 0;
+  LossesByKind<kKinds> by_kind{};
 
   SCREE_HD static FrictionLossSums of(const FrictionLosses& one, Real share) {
-    return {share * one.dissipated, share * one.integrator, share * one.friction};
+    FrictionLossSums out{share * one.dissipated, share * one.integrator};
+    for (int k = 0; k < kKinds; ++k) out.by_kind.of[k] = share * one.by_kind.of[k];
+    return out;
   }
   // No contact: adding it changes no bit, not even the sign of a zero.
-  SCREE_HD static FrictionLossSums nothing() { return {-0.0, -0.0, -0.0}; }
+  SCREE_HD static FrictionLossSums nothing() {
+    FrictionLossSums out{-0.0, -0.0};
+    out.by_kind.fill(-0.0);
+    return out;
+  }
   SCREE_HD FrictionLossSums& operator+=(const FrictionLossSums& part) {
-    dissipated += part.dissipated, integrator += part.integrator, friction += part.friction;
+    dissipated += part.dissipated, integrator += part.integrator, by_kind.add(part.by_kind);
     return *this;
   }
 };
-
-// The same for laws with rolling resistance.
-struct RollingLossSums : FrictionLossSums {
-  Real rolling = 0, twisting = 0;  // [J]
-
-  SCREE_HD static RollingLossSums of(const RollingFrictionLosses& one, Real share) {
-    return {FrictionLossSums::of(one, share), share * one.rolling, share * one.twisting};
-  }
-  SCREE_HD static RollingLossSums nothing() { return {FrictionLossSums::nothing(), -0.0, -0.0}; }
-  SCREE_HD RollingLossSums& operator+=(const RollingLossSums& part) {
-    FrictionLossSums::operator+=(part);
-    rolling += part.rolling, twisting += part.twisting;
-    return *this;
-  }
-};
-template <class Law>
-using FrictionLossSumsOf = std::conditional_t<Law::Rolling::acts, RollingLossSums, FrictionLossSums>;
 
 // Accounts for particle i's share of the energies of its contacts over an accepted step, and stores their
 // history.
@@ -200,8 +192,7 @@ struct FrictionLossesItem {
   FrictionLossOutputs to;
 
   using Self = typename FrictionWalk<Laws, Rows>::Self;
-  using Losses = FrictionLossesOf<LawOf<Laws>>;
-  using Sums = FrictionLossSumsOf<LawOf<Laws>>;
+  using Sums = FrictionLossSums<kLossKindsOf<LawOf<Laws>>>;
 
   SCREE_HD void operator()(Index i) const {
     const Self self = walk.self(i);
@@ -216,20 +207,16 @@ struct FrictionLossesItem {
     if constexpr (kShared<Rows>) {
       walk.in.rows.sum_contacts(self.i, walk.kinematics.test(walk.in, self), SharedLosses{*this}, sum);
     } else {
-      walk.template neighbors<true>(self, evaluator(), [&](const Losses& one, Index) {
-        if (one.acts) sum += Sums::of(one, kPairShare);
+      walk.template neighbors<true>(self, contact_of(), [&](const FrictionalContact& c, Index) {
+        if (c.acts) sum += Sums::of(c.losses, kPairShare);
       });
     }
   }
   SCREE_HD void finish(const Self& self, Sums& sum) const {
-    walk.template surfaces<true>(self, evaluator(),
-                                 [&](const Losses& one, Index) { sum += Sums::of(one, 1); });
+    walk.template surfaces<true>(self, contact_of(),
+                                 [&](const FrictionalContact& c, Index) { sum += Sums::of(c.losses, 1); });
     to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
-    to.friction[self.i] += sum.friction;
-    if constexpr (LawOf<Laws>::Rolling::acts) {
-      if (sum.rolling != 0) to.rolling[self.i] += sum.rolling;
-      if (sum.twisting != 0) to.twisting[self.i] += sum.twisting;
-    }
+    sum.by_kind.accumulate(to.losses, self.i);
   }
 
  private:
@@ -238,15 +225,15 @@ struct FrictionLossesItem {
     const FrictionLossesItem& item;
 
     SCREE_HD Sums operator()(Index i, Index j, std::int64_t slot) const {
-      const Losses one = item.walk.contact_at(item.evaluator(), i, j, slot);
+      const auto c = item.walk.contact_at(item.contact_of(), i, j, slot);
       const auto& history = item.walk.in.history;
-      if (one.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, one.history);
-      return one.acts ? Sums::of(one, kPairShare) : Sums::nothing();
+      if (c.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, c.history);
+      return c.acts ? Sums::of(c.losses, kPairShare) : Sums::nothing();
     }
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
-  SCREE_HD EvaluateFrictionLosses evaluator() const { return {{walk.kinematics.start, walk.in.spin}}; }
+  SCREE_HD RespondWithFriction<true> contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
 };
 
 // Stores the friction limits of particle i's contacts at the iterate, including limits that are already
@@ -258,7 +245,7 @@ struct LaggedLimitItem {
 
   SCREE_HD void operator()(Index i) const {
     const auto self = walk.self(i);
-    const EvaluateFrictionalContact of{walk.kinematics.start, walk.in.spin};
+    const RespondWithFriction<> of{walk.kinematics.start, walk.in.spin};
     walk.neighbors(self, of, [&](const FrictionalContact& c, Index) {
       if (c.acts) to.neighbors[c.slot] = c.friction.limit;
     });

@@ -112,7 +112,12 @@ struct OverFrictionStep {
   }
 };
 
-// Quantities of one contact that the step is solved with.
+// Energy accounting of a contact over the step.
+struct FrictionLosses : ContactLosses {
+  TangentialLosses by_kind;  // parts of the dissipation [J]
+};
+
+// Response of one contact to the step.
 struct FrictionalContact {
   StepContact normal;
   StepFriction friction;
@@ -123,6 +128,7 @@ struct FrictionalContact {
   bool acts;   // else all members above are undefined
   bool lasts;  // the contact exists at the end of the step, with this history
   ContactHistory history;
+  FrictionLosses losses;  // only where asked for
 };
 
 // The same for laws with rolling resistance.
@@ -134,10 +140,33 @@ template <class Law>
 using FrictionalContactOf =
     std::conditional_t<Law::Rolling::acts, RollingFrictionalContact, FrictionalContact>;
 
-// Evaluates a contact over the step. spins: of both partners at the ends of the step, as functions of at_end:
+SCREE_HD void add_rolling_losses(const FrictionalPath& c, const StepRolling& m, FrictionLosses& out) {
+  const Real work = Real(-0.5) * dot(m.start + m.step, c.relative_rotation);
+  const Real rolling = m.rolling_losses.sum(), twisting = m.twisting_losses.sum(), lost = rolling + twisting;
+  out.by_kind.of[kRollingLoss] = rolling, out.by_kind.of[kTwistingLoss] = twisting;
+  out.dissipated += lost, out.integrator += (m.stored0 - m.stored1) - work - lost;
+}
+
+template <class Contact>
+SCREE_HD FrictionLosses friction_losses(const FrictionalPath& c, const Contact& at) {
+  FrictionLosses out{at.normal.losses, {}};
+  const StepFriction& friction = at.friction;
+  const Vec3 force = at.lever_arm_ratio0 * friction.start + at.lever_arm_ratio * friction.step;
+  const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
+  const Real work =
+      Real(0.5) * (dot(moment, c.arm_rotation) - dot(force, c.displacement - c.step.h * c.surface_velocity));
+  const Real lost = friction.losses.sum();
+  out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
+  out.by_kind.of[kFrictionLoss] = lost;
+  if constexpr (std::is_same_v<Contact, RollingFrictionalContact>) add_rolling_losses(c, at.rolling, out);
+  return out;
+}
+
+// Response of a contact to the step. spins: of both partners at the ends of the step, as functions of at_end:
 // arm_sum(), the sum of the spins times their arms, even [m/s], for laws with a tangential dashpot; and
-// relative(), the spin of i relative to j, odd [rad/s], for laws with rolling resistance.
-template <class Law, class Spins>
+// relative(), the spin of i relative to j, odd [rad/s], for laws with rolling resistance. kLosses: with the
+// energy accounting.
+template <bool kLosses, class Law, class Spins>
 SCREE_HD FrictionalContactOf<Law> frictional_contact(const Law& law, const FrictionalPath& c,
                                                      const ContactHistory& old, bool resolve_events,
                                                      const Spins& spins) {
@@ -146,7 +175,7 @@ SCREE_HD FrictionalContactOf<Law> frictional_contact(const Law& law, const Frict
   out.acts = OverFrictionStep::closed(c), out.lasts = c.step.acts_at_end();
   if (!out.acts) return out;
   const auto normal = law.normal.of_pair(c.size);
-  out.normal = EvaluateStepContact{resolve_events}.of(normal, c);
+  out.normal = RespondOverStep<kLosses>{resolve_events}.of(normal, c);
   out.normal0 = c.normal0, out.lever_arm_ratio0 = c.lever_arm_ratio0,
   out.lever_arm_ratio = c.motion.lever_arm_ratio;
   out.curvature = c.curvature;
@@ -174,16 +203,18 @@ SCREE_HD FrictionalContactOf<Law> frictional_contact(const Law& law, const Frict
     out.history.moment = out.rolling.spring;
     out.radius_i = c.motion.arm_i, out.radius_j = c.motion.arm_j;
   }
+  if constexpr (kLosses) out.losses = friction_losses(c, out);
   return out;
 }
 
-struct EvaluateFrictionalContact {
+template <bool kLosses = false>
+struct RespondWithFriction {
   FrictionStart start;
   const Vec4* spin;  // at the end of the step
 
   // Spins of a pair of items; see `frictional_contact()`.
   struct ItemSpins {
-    const EvaluateFrictionalContact& of;
+    const RespondWithFriction& of;
     const FrictionalPath& c;
 
     SCREE_HD Vec3 arm_sum(bool at_end) const {
@@ -202,69 +233,17 @@ struct EvaluateFrictionalContact {
   template <class Law>
   SCREE_HD FrictionalContactOf<Law> operator()(const Law& law, const FrictionalPath& c,
                                                const ContactHistory& old) const {
-    return frictional_contact(law, c, old, start.step.resolve_events, ItemSpins{*this, c});
+    return frictional_contact<kLosses>(law, c, old, start.step.resolve_events, ItemSpins{*this, c});
   }
   template <class Views>
   SCREE_HD const RollingFrictionalContact* stored(const Views&, Index entry) const;
 };
 
-// Energy accounting of a contact over the step, and its new history.
-struct FrictionLosses : ContactLosses {
-  Real friction;  // part of the dissipation [J]
-  bool acts, lasts;
-  ContactHistory history;
-};
-// The same for laws with rolling resistance.
-struct RollingFrictionLosses : FrictionLosses {
-  Real rolling, twisting;  // parts of the dissipation [J]
-};
-template <class Law>
-using FrictionLossesOf = std::conditional_t<Law::Rolling::acts, RollingFrictionLosses, FrictionLosses>;
-
-SCREE_HD void add_rolling_losses(const FrictionalPath& c, const StepRolling& m, RollingFrictionLosses& out) {
-  const Real work = Real(-0.5) * dot(m.start + m.step, c.relative_rotation);
-  out.rolling = m.rolling_losses.sum(), out.twisting = m.twisting_losses.sum();
-  const Real lost = out.rolling + out.twisting;
-  out.dissipated += lost, out.integrator += (m.stored0 - m.stored1) - work - lost;
-}
-
-template <class Law>
-SCREE_HD FrictionLossesOf<Law> friction_losses(const Law& law, const FrictionalPath& c,
-                                               const FrictionalContactOf<Law>& at, bool resolve_events) {
-  FrictionLossesOf<Law> out{};
-  if (!at.acts) return out;
-  static_cast<FrictionLosses&>(out) = {EvaluateStepLosses{{resolve_events}}(law, c), 0, true, at.lasts,
-                                       at.history};
-  const StepFriction& friction = at.friction;
-  const Vec3 force = at.lever_arm_ratio0 * friction.start + at.lever_arm_ratio * friction.step;
-  const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
-  const Real work =
-      Real(0.5) * (dot(moment, c.arm_rotation) - dot(force, c.displacement - c.step.h * c.surface_velocity));
-  const Real lost = friction.losses.sum();
-  out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
-  out.friction = lost;
-  if constexpr (Law::Rolling::acts) add_rolling_losses(c, at.rolling, out);
-  return out;
-}
-
-struct EvaluateFrictionLosses {
-  EvaluateFrictionalContact contact;
-
-  template <class Law>
-  SCREE_HD FrictionLossesOf<Law> operator()(const Law& law, const FrictionalPath& c,
-                                            const ContactHistory& old) const {
-    return friction_losses(law, c, contact(law, c, old), contact.start.step.resolve_events);
-  }
-  template <class Views>
-  SCREE_HD const RollingFrictionLosses* stored(const Views&, Index entry) const;
-};
-
 // One contact of a particle with a surface on a body over the step; evaluated once for both.
 struct SurfaceFriction {
   bool touches;  // else all members below are undefined
-  bool rolls;    // whether the law resists rolling; else those parts of contact and losses are undefined
+  bool rolls;    // whether the law resists rolling; else that part of the contact is undefined
   RollingFrictionalContact contact;
-  RollingFrictionLosses losses;
   Vec3 arm;          // from the body's centre to that of a sphere, or to the contact point, at the end of the
                      // step [m]
   Real radius;       // of a sphere; else 0 [m]
@@ -273,15 +252,12 @@ struct SurfaceFriction {
   Vec3 surface_velocity;  // see FrictionalPath
 };
 
+template <bool kLosses>
 template <class Views>
-SCREE_HD const RollingFrictionalContact* EvaluateFrictionalContact::stored(const Views&, Index entry) const {
+SCREE_HD const RollingFrictionalContact* RespondWithFriction<kLosses>::stored(const Views&,
+                                                                              Index entry) const {
   const SurfaceFriction& at = start.on_bodies[entry];
   return at.touches ? &at.contact : nullptr;
-}
-template <class Views>
-SCREE_HD const RollingFrictionLosses* EvaluateFrictionLosses::stored(const Views&, Index entry) const {
-  const SurfaceFriction& at = contact.start.on_bodies[entry];
-  return at.touches ? &at.losses : nullptr;
 }
 
 }  // namespace scree

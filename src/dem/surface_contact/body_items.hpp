@@ -61,31 +61,19 @@ SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
   return {c.normal, {}, c.step.stiffness, c.step.damping, 0, {}};
 }
 
-// Input of the evaluation of shapes.
-struct BodyQuery {
-  const Vec3* arm;  // of their centres from the bodies' centres [m]
-  Real h;  // length of the explicit step that ends now, for laws with `kNeedsMotion` [s]; 0: an instant
-};
-
 // Load on the body of a shape. In `SurfaceLoad` the other partner takes the role of the particle.
 struct EvaluateBodyLoad {
   struct Found {
     SurfaceLoad contact;
     Vec3 normal;
   };
-  template <class Law>
-  SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    return {{true, law.normal_load(pair).exchanged(), EvaluateEnergy{}(law, pair), {}, {}},
-            pair.geometry.normal()};
-  }
-  template <class Law, class Pair, class History>
-  requires Law::kNeedsMotion SCREE_HD LoadWithHistory<Found, History>
-  operator()(const Law& law, const Pair& pair, const History& old) const {
-    const auto outcome = law.load(pair, old);
-    const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
-    return {{{true, outcome.load.exchanged(), energy_of(law, pair, old, now), {}, {}, outcome.losses()},
-             pair.geometry.normal()},
-            outcome.history};
+  template <class Law, class Pair>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    const auto outcome = law.respond(pair, old);
+    const SurfaceLoad contact{true, outcome.load.exchanged(), energy_of(law, pair, old, outcome.history), {},
+                              {},   outcome.losses()};
+    return LoadWithHistory<Found, decltype(outcome.history)>{{contact, pair.geometry.normal()},
+                                                             outcome.history};
   }
   // A contact with a surface that was evaluated before, from the surface's side.
   template <class Views>
@@ -96,11 +84,14 @@ struct EvaluateBodyLoad {
  private:
   // A contact that has opened in the step has losses only.
   template <class Law, class Pair, class History>
-  SCREE_HD static ContactEnergy energy_of(const Law& law, const Pair& pair, const History& old,
+  SCREE_HD static ContactEnergy energy_of(const Law& law, const Pair& pair, const typename Law::History& old,
                                           const History& now) {
     if constexpr (kHasRange<Law>)
       if (!law.closed(pair, old)) return {};
-    return EvaluateEnergy{}(law, pair, now);
+    if constexpr (std::is_same_v<Pair, MovingPair>)
+      return EvaluateEnergy{}(law, pair, now);
+    else
+      return EvaluateEnergy{}(law, pair, old);
   }
 };
 
@@ -147,7 +138,7 @@ struct BodyLoadItem {
       sum.cohesion += share * contact.energy.cohesion;
     if constexpr (!LawOf<Laws>::kNeedsMotion) return;
     sum.springs.add(contact.energy.springs, share);
-    contact.losses.scale(share), sum.losses.add(contact.losses);
+    contact.by_kind.scale(share), sum.losses.add(contact.by_kind);
   }
 };
 
@@ -161,17 +152,17 @@ struct BodyStepItem {
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
-    const auto add = [&](StepContact contact, Index) {
+    const auto add = [&](StepContact contact, Real share) {
+      sum.losses.add(contact.losses, share);
       contact.normal = -contact.normal;
-      sum.sums.add_contact(SurfaceStep{true, contact, {}, arm[i] + self.p.w * contact.normal});
+      sum.sums.add_contact(SurfaceStep{true, contact, arm[i] + self.p.w * contact.normal});
     };
-    const EvaluateStepContact of{walk.kinematics.start.resolve_events};
+    const RespondOverStep<true> of{walk.kinematics.start.resolve_events};
     walk.neighbors(self, of, [&](const StepContact& contact, Index j) {
-      add(contact, j);
+      add(contact, kPairShare);
       to.put(i, sum, {j, slopes_of(contact)});
     });
-    walk.surfaces(self, of, add);
-    sum.losses = step_losses_of(walk, i, kPairShare);
+    walk.surfaces(self, of, [&](const StepContact& contact, Index) { add(contact, 1); });
     out[i] = sum;
   }
 };
@@ -191,31 +182,6 @@ SCREE_HD ContactSlopes slopes_of(const SurfaceFriction& c) {
 }
 SCREE_HD ContactSlopes slopes_of(const SurfaceStep& c) { return slopes_of(c.contact); }
 
-// Friction of a contact over an implicit step, with its energy accounting.
-struct EvaluateBodyFriction {
-  EvaluateFrictionalContact contact;
-
-  template <class Law>
-  struct Found {
-    FrictionalContactOf<Law> contact;
-    FrictionLossesOf<Law> losses;
-    bool lasts;
-    ContactHistory history;
-  };
-  template <class Law>
-  SCREE_HD Found<Law> operator()(const Law& law, const FrictionalPath& path,
-                                 const ContactHistory& old) const {
-    const FrictionalContactOf<Law> found = contact(law, path, old);
-    return {found, friction_losses(law, path, found, contact.start.step.resolve_events), found.lasts,
-            found.history};
-  }
-  template <class Views>
-  SCREE_HD const SurfaceFriction* stored(const Views&, Index entry) const {
-    const SurfaceFriction& at = contact.start.on_bodies[entry];
-    return at.touches ? &at : nullptr;
-  }
-};
-
 template <class Laws, class Rows>
 struct BodyFrictionItem {
   FrictionWalk<Laws, Rows> walk;
@@ -229,23 +195,20 @@ struct BodyFrictionItem {
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
-    const EvaluateBodyFriction of{{walk.kinematics.start, walk.in.spin}};
+    const RespondWithFriction<true> of{walk.kinematics.start, walk.in.spin};
     const auto add = [&](const auto& found, Real share) {
-      if (!found.losses.acts) return;
+      if (!found.acts) return;
       SurfaceFriction contact{};
       contact.touches = true, contact.rolls = kRolls, contact.arm = arm[i], contact.radius = self.p.w;
-      static_cast<Contact&>(contact.contact) = from_surface(found.contact);
+      static_cast<Contact&>(contact.contact) = from_surface(found);
       sum.sums.add_contact(contact);
       sum.losses.add(found.losses, share);
-      sum.tangential.of[kFrictionLoss] += share * found.losses.friction;
-      if constexpr (kRolls) {
-        sum.tangential.of[kRollingLoss] += share * found.losses.rolling;
-        sum.tangential.of[kTwistingLoss] += share * found.losses.twisting;
-      }
+      TangentialLosses by_kind = found.losses.by_kind;
+      by_kind.scale(share), sum.tangential.add(by_kind);
     };
     walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
       add(found, kPairShare);
-      if (found.losses.acts) to.put(i, sum, {j, slopes_of(found.contact)});
+      if (found.acts) to.put(i, sum, {j, slopes_of(found)});
     });
     walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
     out[i] = sum;

@@ -82,15 +82,13 @@ struct SurfaceFrictionItem {
     out.touches = OverFrictionStep::closed(path), out.rolls = Law::Rolling::acts;
     if (!out.touches) return in.template store_no_history<Law>(entry);
     const Law& law = laws.get(in.material[i], surface.material);
-    const bool resolve_events = start.step.resolve_events;
     const ContactHistory old =
         in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
     const Spins spins{path.motion, xyz(start.spin[i]), xyz(in.spin[i]), before.spin, surface.spin};
     static_cast<FrictionalContactOf<Law>&>(out.contact) =
-        frictional_contact(law, path, old, resolve_events, spins);
-    static_cast<FrictionLossesOf<Law>&>(out.losses) = friction_losses(law, path, out.contact, resolve_events);
+        frictional_contact<true>(law, path, old, start.step.resolve_events, spins);
     if (out.contact.acts && surface.turns())
-      out.losses.integrator +=
+      out.contact.losses.integrator +=
           parent_work(law, path, out.contact, parent_excess(kinematics, surface, before)) +
           belt_work(surface, path, out.contact);
     out.arm = kinematics.now.is_sphere ? surface.arm : surface.arm + kinematics.now.pair.contact;

@@ -176,26 +176,20 @@ struct SurfaceLoadItem {
   SCREE_HD void find_load(const Law& law, const PairState& state, const SurfacePose& surface,
                           Index entry) const {
     SurfaceLoad& out = loads[entry];
-    if constexpr (Law::kHistory == 0) {
-      if constexpr (kHasRange<Law>) {
-        out.touches = law.closed(state, {});
-        if (!out.touches) return;
-      }
-      out.load = law.load(state);
-    } else {
-      const auto load = EvaluateLoad{}(law, state, old(surface, entry));
-      out.load = load;
-      in.template store_history<Law>(surface, entry, load.history);
-    }
-    out.energy = EvaluateEnergy{}(law, state);
+    const auto before = old(surface, entry);
+    out.touches = is_closed(law, state, before);
+    if (!out.touches) return;
+    const auto outcome = law.respond(state, before);
+    out.load = outcome.load, out.energy = EvaluateEnergy{}(law, state, before);
+    if constexpr (Law::kHistory > 0) in.template store_history<Law>(surface, entry, outcome.history);
   }
   SCREE_HD auto old(const SurfacePose& surface, Index entry) const {
     return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
   }
 
   // Whether a pair within the interaction range is in contact.
-  template <class History>
-  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const History& before) {
+  SCREE_HD static bool is_closed(const Law& law, const PairState& state,
+                                 const typename Law::History& before) {
     if constexpr (kHasRange<Law>)
       return law.closed(state, before);
     else
@@ -215,7 +209,7 @@ struct SurfaceLoadItem {
     if (in.h > 0) {
       if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
         add_surface_velocity(pair.motion, in.frames[surface.frame].middle_surface_velocity());
-      const auto outcome = law.load(pair, before);
+      const auto outcome = law.respond(pair, before);
       take(outcome, entry);
       loads[entry].energy = closed ? EvaluateEnergy{}(law, pair, outcome.history) : ContactEnergy{};
       if (closed) in.template store_history<Law>(surface, entry, outcome.history);
@@ -223,7 +217,7 @@ struct SurfaceLoadItem {
       InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
       if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
         at.slip_rate -= pair.motion.lever_arm_ratio * conveyor_velocity(touch, surface);
-      take(law.load(at, before), entry);
+      take(law.respond(at, before), entry);
       loads[entry].energy = EvaluateEnergy{}(law, at, before);
     }
   }
@@ -270,7 +264,7 @@ struct SurfaceLoadItem {
   }
   template <class Outcome>
   SCREE_HD void take(const Outcome& outcome, Index entry) const {
-    loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
+    loads[entry].load = outcome.load, loads[entry].by_kind = outcome.losses();
   }
 };
 
@@ -348,13 +342,12 @@ struct SurfaceStepItem {
         surface_size<LawOf<Laws>>(in, entry, path.now, p, u));
     over.step.change = path.change;
     const auto& law = laws.get(in.material[i], surface.material);
-    const EvaluateStepContact of{start.resolve_events};
-    out.contact = of(law, over);
-    out.losses = EvaluateStepLosses{of}(law, over);
+    out.contact = RespondOverStep<true>{start.resolve_events}(law, over, {});
     if (surface.turns()) {
       const Real force0 = start_force(law.normal.of_pair(over.size), over.step);
-      out.losses.integrator += parent_excess(path, surface, before)
-                                   .work(force0 * over.normal0, out.contact.step.force * over.normal1);
+      out.contact.losses.integrator +=
+          parent_excess(path, surface, before)
+              .work(force0 * over.normal0, out.contact.step.force * over.normal1);
     }
     out.arm = surface.arm + pair.contact;
     out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;

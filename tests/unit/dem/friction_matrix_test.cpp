@@ -70,7 +70,7 @@ struct Pair {
         end, displacement, begin, displacement, displacement, size);
     path.motion = sphere_motion(end, displacement, {spin + by.turn, 1, Real(0.4)}, {{}, 1, Real(0.4)}, 1);
     path.lever_arm_ratio0 = 2 / begin.distance, path.curvature = end.scale;
-    return frictional_contact(law, path, before, true, NoSpins{});
+    return frictional_contact<false>(law, path, before, true, NoSpins{});
   }
   // Force and torque on i.
   Twist load(const Twist& by) const {

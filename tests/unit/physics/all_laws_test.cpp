@@ -98,9 +98,9 @@ typename Law::History history_of(const Law&, const RandomContact& c) {
 template <class Law>
 typename Law::Outcome outcome_of(const Law& law, const RandomContact& c) {
   if constexpr (Law::kNeedsMotion)
-    return law.load(c.pair, history_of(law, c));
+    return law.respond(c.pair, history_of(law, c));
   else
-    return {law.load(c.pair), {}, {}, {}, {}};
+    return {law.respond(c.pair, {}).load, {}, {}, {}, {}};
 }
 
 }  // namespace

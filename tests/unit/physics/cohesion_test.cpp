@@ -68,7 +68,7 @@ TEST_CASE("JKR: the contact forms at touch and persists under tension until it b
   const auto at = [&](Real overlap, bool touched) {
     const ContactGeometry geometry{overlap, size.radius_i - overlap, {0, 0, 1}, 1};
     const ContactMotion rest = face_motion(geometry, {0, 0, 1}, {}, {{}, size.radius_i, 1}, {}, 1);
-    return law.load({{geometry, {}, size}, rest}, {{}, {}, touched});
+    return law.respond({{geometry, {}, size}, rest}, {{}, {}, touched});
   };
   CHECK(at(-0.1 * reach, false).load.force == Vec3{});
   CHECK_FALSE(at(-0.1 * reach, false).history.touched);
@@ -101,7 +101,7 @@ TEST_CASE("an attractive force on top of another law, with and without range") {
   static_assert(decltype(law)::kHistory == 0);
   const ContactGeometry apart = sphere_pair(Vec3{0, 0, 4.1}, Real(4));
   const ContactMotion rest = sphere_motion(apart, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
-  CHECK(near(law.load({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
+  CHECK(near(law.respond({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
 }
 
 TEST_CASE(
@@ -111,13 +111,13 @@ TEST_CASE(
   static_assert(!decltype(law)::kNeedsMotion);
   const PairSize size{2, 2, 1, 1};
   const PairState pair{sphere_pair(Vec3{0, 3.9, 0}, Real(4)), {0.1, -0.3, 0}, size};
-  const auto load = law.load(pair);
+  const auto load = law.respond(pair, {}).load;
   const ContactMotion rest = sphere_motion(pair.geometry, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
-  CHECK(load.force == law.load({pair, rest}, {}).load.force);
-  CHECK(load.loss == law.load({pair, rest}, {}).load.loss);
+  CHECK(load.force == law.respond({pair, rest}, {}).load.force);
+  CHECK(load.loss == law.respond({pair, rest}, {}).load.loss);
   const PairStateOf<float, Vec3f> single{
       {0.1f, 3.9f, {0, 3.9f, 0}, 1 / 3.9f}, {0.1f, -0.3f, 0}, {2, 2, 1, 1}};
-  CHECK(near(in_double(law.load(single).force), load.force, {.relative = 1e-5}));
+  CHECK(near(in_double(law.respond(single, {}).load.force), load.force, {.relative = 1e-5}));
   // Undamped, touching on a straight path: the impulse's work is the energy.
   const auto undamped = CohesiveLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
   const Real touching = step_contact_force(undamped, {-0.01, 1, 0.02, 1, 0.03}).force;

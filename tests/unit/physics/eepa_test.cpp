@@ -197,13 +197,13 @@ TEST_CASE(
   const ContactGeometry geometry = sphere_pair(Vec3{0, 0, 9.95e-3}, Real(1e-2));
   const ContactMotion rest = sphere_motion(geometry, {}, {{}, 5e-3, 1}, {{}, 5e-3, 1}, 1);
   const MovingPair pair{{geometry, {}, kSpheres}, rest};
-  const auto first = law.load(pair, {});
+  const auto first = law.respond(pair, {});
   CHECK(first.load.loss > 0);  // in a step of 1 s
   const Real before = law.energy_of(pair, {}).sum, after = law.energy_of(pair, first.history).sum;
   CHECK(near(before - after, first.load.loss, {.relative = 1e-13}));
   CHECK(near(before, 0.4 * Real(4) / 3 * kModulus * std::sqrt(2.5e-3) * std::pow(geometry.overlap, 2.5),
              {.relative = 1e-12}));
-  CHECK(std::abs(law.load(pair, first.history).load.loss) <= 1e-12 * first.load.loss);
+  CHECK(std::abs(law.respond(pair, first.history).load.loss) <= 1e-12 * first.load.loss);
 }
 
 TEST_CASE("EEPA: pairs without plasticity are elastic, with a constant attraction or without") {

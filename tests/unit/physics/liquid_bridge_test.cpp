@@ -85,7 +85,7 @@ TEST_CASE("a bridge forms at touch, acts in the gap that opens, and breaks at it
   const auto pair = law.normal.of_pair(kGrains);
   const Real reach = pair.range;
   const auto at = [&](Real share, const ContactHistory& old) {
-    return law.load(at_rest(share * reach, share * reach), old);
+    return law.respond(at_rest(share * reach, share * reach), old);
   };
   const ContactHistory touched{{}, {}, true};
   CHECK(at(-0.1, {}).load.force == Vec3{});
@@ -105,13 +105,13 @@ TEST_CASE("in a gap a bridge holds no friction: the spring's energy is dissipate
   const auto check = [&](const auto& law) {
     const Real d0 = 1e-7, before = law.springs_at(d0, {0, 0, 1}, kGrains, {spring, {}, true}).friction;
     REQUIRE(before > 0);
-    const ContactOutcome out = law.load(at_rest(-1e-7, d0), {spring, {}, true});
+    const ContactOutcome out = law.respond(at_rest(-1e-7, d0), {spring, {}, true});
     CHECK(out.history.spring == Vec3{});
     CHECK((out.history.touched && out.load.force.x == 0 && out.load.force.z < 0));
     CHECK(near(out.friction.sum(), before, {.relative = kRoundOff}));
     CHECK(near(out.load.loss, before, {.relative = kRoundOff}));
-    CHECK(law.load(at_rest(-2e-7, -1e-7), out.history).load.loss == 0);
-    CHECK(law.load(at_rest(-1, -1e-7), out.history).load.loss == 0);
+    CHECK(law.respond(at_rest(-2e-7, -1e-7), out.history).load.loss == 0);
+    CHECK(law.respond(at_rest(-1, -1e-7), out.history).load.loss == 0);
   };
   check(ContactLaw<WetSpring, LinearSlider>{WetSpring(kSpring, kWater), {1e3, 0.5, 0.3}});
   check(ContactLaw<BridgeLaw<HertzLaw>, MindlinSlider>{{HertzLaw(1e8, 0, false), kWater}, {1e8, 0.5, 0.3}});
@@ -153,7 +153,7 @@ TEST_CASE("pairs without liquid follow the law beside which bridges act") {
     MovingPair pair = at_rest(1e-6, 1e-6);
     pair.velocity = {0, 0, -rate};
     pair.motion.slip = {1e-7, 0, 0};
-    const ContactOutcome a = none.load(pair, {}), b = dry.load(pair, {});
+    const ContactOutcome a = none.respond(pair, {}), b = dry.respond(pair, {});
     CHECK((a.load.force == b.load.force && a.load.loss == b.load.loss));
     CHECK(a.history.spring == b.history.spring);
     CHECK(none.energy_of(pair, a.history).sum == dry.energy_of(pair, b.history).sum);

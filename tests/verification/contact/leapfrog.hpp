@@ -60,7 +60,7 @@ struct PlaneRun {
     const PairState state = pair();
     const ContactMotion rest =
         face_motion(state.geometry, state.geometry.normal(), {}, {{}, grain.radius, grain.inertia}, {}, h);
-    kick(law.load({state, rest}, outcome.history), h / 2);
+    kick(law.respond({state, rest}, outcome.history), h / 2);
   }
   void step() {
     const Vec3 displacement = h * grain.velocity;
@@ -69,7 +69,7 @@ struct PlaneRun {
     const ContactMotion motion =
         face_motion(state.geometry, state.geometry.normal(), displacement, grain.partner(), {}, h);
     closed = law.closed(state, outcome.history);
-    outcome = law.load({state, motion}, outcome.history);
+    outcome = law.respond({state, motion}, outcome.history);
     sums.add(outcome, h);
     kick(outcome, h);
   }
@@ -112,7 +112,7 @@ struct PairRun {
     const PairState state = pair();
     const ContactMotion motion = sphere_motion(state.geometry, displacement, i.partner(), j.partner(), h);
     closed = law.closed(state, outcome.history);
-    outcome = law.load({state, motion}, outcome.history);
+    outcome = law.respond({state, motion}, outcome.history);
     sums.add(outcome, h);
     kick(i, rates_i, outcome.load.force, outcome.load.torque_i);
     kick(j, rates_j, -outcome.load.force, outcome.load.torque_j);
