@@ -262,6 +262,15 @@ class SearchTest(unittest.TestCase):
         self.assertNotEqual(found.best.shares, by_chance)
         self.assertAlmostEqual(self.angle(*found.best.shares), 25.0, delta=1.5)
 
+    def test_a_set_with_a_wide_spread_does_not_meet(self):
+        def measure(shares):
+            wide = shares == (0.0, 1.0)  # a mean on the target, of runs that are far from it
+            return search.Point(shares, (40.0 if wide else self.angle(*shares),), (6.0 if wide else 0.4,))
+
+        found = search.search([search.Target("repose", "angle", 40.0)], measure, lambda point: None, 4)
+        self.assertNotEqual(found.best.shares, (0.0, 1.0))
+        self.assertAlmostEqual(self.angle(*found.best.shares), 40.0, delta=1.5)
+
     def test_a_target_out_of_reach(self):
         found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), self.told.append, 3)
         self.assertFalse(found.met)

@@ -20,6 +20,7 @@ FINE = 101  # points along each parameter at which the polynomials are evaluated
 NEAR = 0.35  # distance, in parts of the ranges, at which the weight of a point has fallen to 61 %
 CENTERING = 1e-3  # weight of the distance from the middle of the ranges, which decides where many sets meet the targets
 LEAST = 0.02  # smallest tolerance, as a part of the target
+WIDEST = 2  # spread of a set that meets the targets, in tolerances
 
 
 @dataclass(frozen=True)
@@ -137,12 +138,15 @@ def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], P
             tell(point)
             points.append(point)
 
+    # The mean square distance of the runs from the targets: a mean that is near by chance has a wide spread.
     def cost(point: Point) -> float:
-        return float(misfit(np.array(point.means), targets, tolerances_of(points, targets)))
+        tolerances = np.array(tolerances_of(points, targets))
+        return float(misfit(np.array(point.means), targets, tolerances) + np.sum((point.spreads / tolerances) ** 2))
 
     def meets(point: Point) -> bool:
-        wished = zip(point.means, targets, tolerances_of(points, targets))
-        return all(abs(value - each.value) <= tolerance for value, each, tolerance in wished)
+        wished = zip(point.means, point.spreads, targets, tolerances_of(points, targets))
+        return all(abs(value - each.value) <= tolerance and spread <= WIDEST * tolerance
+                   for value, spread, each, tolerance in wished)
 
     center: np.ndarray | None = None
     for _ in range(rounds):
@@ -154,7 +158,7 @@ def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], P
         center = np.array(shares)
         if meets(points[-1]):
             break
-    # A point of the grid may meet the targets by chance, with a wide spread; the last one does where the others lead.
+    # A point of the grid may meet the targets by chance; the last one does where the others lead.
     best = points[-1] if len(points) > GRID**2 and meets(points[-1]) else min(points, key=cost)
     around = np.array(best.shares)
     curve = curve_through(points, targets, around) if len(targets) == 1 else []
