@@ -17,12 +17,11 @@ std::vector<Key> keys() {
           .at_least(0)
           .left_out("no adhesion")
           .combined(Combining::other)
-          .about(
-              "w, for Hertz's law: energy per area to separate the two surfaces. The normal force may then "
-              "be tensile with either value of limit_damping, and the friction limit includes the adhesive "
-              "force. JKR and plastic contacts need explicit steps, and all adhesion double precision. "
-              "Adhesion acts on particles and on the discs and spheres on bodies, not on the corners of a "
-              "body's mesh on a plane."),
+          .about("w, for Hertz's law: energy per area to separate the two surfaces. The normal force "
+                 "may then be tensile with either value of limit_damping, and the friction limit "
+                 "includes the adhesive force. JKR and plastic contacts need explicit steps; with any "
+                 "adhesion the run is in double precision. Adhesion acts on particles and on the discs "
+                 "and spheres on bodies, not on the corners of a body's mesh on a plane."),
       real("surface_energy", "J/m^2")
           .at_least(0)
           .left_out("work_of_adhesion is given, or no adhesion")
@@ -50,21 +49,22 @@ std::vector<Key> keys() {
           .within(0, 0.999)
           .left_out("the contact is elastic, as with 0")
           .combined(Combining::mean)
-          .about(
-              "l = 1 - k1/k2: elasto-plastic adhesion (Edinburgh elasto-plastic adhesion model, EEPA) with "
-              "the stiffness k1 of loading, K or Hertz's, and k2 of unloading; d_p: plastic overlap. "
-              "Without adhesion and damping the restitution is sqrt(1 - l) with a linear stiffness. Beside "
-              "it work_of_adhesion is the g of the pull-off force 3/2 pi g a, a = sqrt(2 R* d_p - d_p^2) "
-              "(what other programs call surface energy), but at most half of k2 d_p^n; attraction is a "
-              "constant force, -f0; restitution is that of the damper alone. Explicit steps in double "
-              "precision only. A pair without it, or with 0, may have an attraction, but no other "
-              "adhesion."),
+          .about("l = 1 - k1/k2: plastic contacts by the Edinburgh elasto-plastic adhesion model "
+                 "(EEPA), k1: stiffness of loading, K or Hertz's, k2: stiffness of unloading. The "
+                 "pull-off force is 3/2 pi g a, and at most k2 d_p^n / 2; g: work_of_adhesion (the "
+                 "surface energy of other programs), d_p: plastic overlap, a = sqrt(2 R* d_p - d_p^2): "
+                 "contact radius, R*: reduced radius, n: exponent of the stiffness. A constant "
+                 "attraction may be added. restitution is that of the damper alone: without adhesion "
+                 "and damping, a linear contact has the restitution sqrt(1 - l). Plastic contacts need "
+                 "explicit steps, and the run is in double precision. Pairs without plasticity_ratio, "
+                 "or with 0, may then have an attraction, but no other adhesion."),
       real("adhesion_exponent", "")
           .within(1, 5)
           .left_out("the exponent of the stiffness: 1, or 1.5 with Hertz's law")
           .combined(Combining::same)
-          .about("chi, with plasticity_ratio: the adhesive force falls with d^chi when the contact is drawn "
-                 "off. A multiple of 0.5, and at least the exponent of the stiffness.")};
+          .about("chi, with plasticity_ratio: after the pull-off force the adhesive force decreases "
+                 "with the overlap d as d^chi. It is a multiple of 0.5, and at least the exponent of "
+                 "the stiffness.")};
 }
 
 // Elasto-plastic adhesion (physics/eepa.hpp), all but the attraction.

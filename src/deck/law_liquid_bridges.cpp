@@ -20,41 +20,42 @@ std::vector<Key> keys() {
           .within(0, 0.1)
           .left_out("no liquid bridges")
           .combined(Combining::mean)
-          .about("Volume of each liquid bridge over the cube of the smaller radius, constant. A bridge forms "
-                 "when the surfaces touch, pulls with 2 pi R gamma cos(theta), R = 2 R*, and acts across a "
-                 "gap up to (1 + theta/2) V^(1/3), where it breaks. Beside a linear law or Hertz's, in "
-                 "explicit steps in "
-                 "double precision. 0: none."),
+          .about("Volume V of each liquid bridge over the cube of the smaller radius; it is constant. A "
+                 "bridge forms when the surfaces touch, and attracts them while they do with the force "
+                 "2 pi R gamma cos(theta), R = 2 R*, gamma: surface_tension, theta: contact_angle. It "
+                 "breaks at the gap (1 + theta/2) V^(1/3). Bridges are added to a linear or Hertz's "
+                 "law. They need explicit steps, and the run is in double precision. 0: no bridges."),
       real("surface_tension", "N/m")
           .at_least(0)
           .left_out("no liquid bridges")
           .combined(Combining::same)
-          .about("gamma of the liquid; of water in air 0.0728 N/m at 20 C. Needs bridge_volume."),
+          .about("gamma of the liquid: 0.0728 N/m for water in air at 20 C. Required with bridge_volume."),
       real("contact_angle", "rad")
           .within(0, 1.5)
           .left_out("0")
           .combined(Combining::mean)
-          .about("theta between liquid and surfaces, the same on both."),
+          .about("theta, between the liquid and the surfaces; it is the same on both."),
       choice<BridgeForce>("bridge_force")
           .left_out("willett")
           .combined(Combining::same)
-          .about(
-              "Force of a bridge over its gap S. willett: 1 / (1 + 1.05 s + 2.5 s^2) of that at touch, s = "
-              "S sqrt(R / V) (Willett et al., 2000). soulie: exponential, fitted to spheres of unequal "
-              "radii (Soulie et al., 2006); against surfaces of walls and meshes as willett."),
+          .about("How the force of a bridge depends on the gap S. willett: the force at touch divided "
+                 "by 1 + 1.05 s + 2.5 s^2, s = S sqrt(R / V) (Willett et al., 2000). soulie: an "
+                 "exponential function that was fitted to spheres of unequal radii (Soulie et al., "
+                 "2006); on walls and meshes it is replaced by willett."),
       real("bridge_viscosity", "Pa s")
           .at_least(0)
           .left_out("no viscous force")
           .combined(Combining::same)
-          .about("mu of the liquid, for the normal viscous force 6 pi mu R* v / max(s_min, S/R*) while "
-                 "there is a bridge; of water 1e-3 Pa s. It adds to the damping of the contact."),
+          .about("mu of the liquid: 1e-3 Pa s for water. While there is a bridge, a normal viscous "
+                 "force 6 pi mu R* v / max(s_min, S/R*) is added to the damping of the contact; S: gap, "
+                 "v: its rate, s_min: bridge_least_gap."),
       real("bridge_least_gap", "")
           .within(0, 1)
           .above(0)
           .left_out("0.01")
           .combined(Combining::same)
-          .about("s_min: the gap over R* below which the viscous force does not grow, for example the "
-                 "roughness of the surfaces.")};
+          .about("s_min: gap over R* below which the viscous force no longer grows, for example the "
+                 "roughness of the surfaces over R*.")};
 }
 
 constexpr std::array kLiquidKeys{"surface_tension", "contact_angle", "bridge_force", "bridge_viscosity",
