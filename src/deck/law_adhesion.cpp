@@ -78,9 +78,10 @@ void take_plasticity(const DeckTable& table, NormalLawParameters& law) {
     table.fail("surface_energy", out +
                                      ": give work_of_adhesion, the g of the pull-off force 3/2 pi g a, "
                                      "which other programs call surface energy");
-  if (table.has("adhesion")) table.fail("adhesion", out + ", which has an adhesion of its own");
+  if (table.has("adhesion"))
+    table.fail("adhesion", out + ": plastic contacts are neither JKR nor DMT contacts");
   if (table.has("attraction_range"))
-    table.fail("attraction_range", out + ": its contacts end where the surfaces part");
+    table.fail("attraction_range", out + ": plastic contacts have no range beyond touch");
   if (table.has("work_of_adhesion")) law.adhesion_work = table.real("work_of_adhesion");
   const Real least = law.effective_modulus > 0 ? Real(1.5) : 1;
   const Real exponent = table.has("adhesion_exponent") ? table.real("adhesion_exponent") : least;

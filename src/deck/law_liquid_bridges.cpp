@@ -93,7 +93,7 @@ void take(const PairInDeck& pair, PairParameters& parameters) {
     table.fail("bridge_volume", "needs a pair with exponent = 1, or Hertz's law");
   if (law.own)
     table.fail("bridge_volume",
-               "a deck has liquid bridges for all pairs that attract, or adhesion and attraction");
+               "in a deck with liquid bridges no pair has adhesion, an attraction or a plasticity_ratio");
   law.own = BridgeParameters(liquid);
 }
 

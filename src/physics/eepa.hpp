@@ -37,7 +37,8 @@ struct Plasticity final : OwnParameters {
     return {{"plasticity ratio", ratio}, {"adhesion exponent", adhesion_exponent}};
   }
   std::string explicit_only() const override {
-    return "the force of a plastic contact depends on its path within the step";
+    return "the force of a plastic contact depends on its path within a step, which implicit steps do not "
+           "resolve";
   }
   // Plastic pairs count as cohesive without adhesion, too: they are laws of the same kind.
   bool attracts() const override { return true; }

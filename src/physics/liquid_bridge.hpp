@@ -41,7 +41,7 @@ struct BridgeParameters final : OwnParameters {
     return std::string("liquid bridges after ") + (liquid.soulie ? "Soulie" : "Willett");
   }
   std::string explicit_only() const override {
-    return "liquid bridges form and break at different distances";
+    return "liquid bridges break at a distance beyond touch, which implicit steps do not resolve";
   }
   bool attracts() const override { return true; }
   bool depends_on_size() const override { return liquid.viscosity > 0; }
@@ -51,7 +51,8 @@ struct BridgeParameters final : OwnParameters {
   inline Real sticking_speed(const PairSize& size, Real mass) const override;
   inline Real longest_step(const PairSize& size, Real mass) const override;
   std::string step_reason(const std::string& pair) const override {
-    return "0.05 of the time in which liquid bridges of " + pair + " stretch at the speed that they stop";
+    return "0.05 of the time in which liquid bridges of " + pair +
+           " stretch, at the speed below which impacts stick, by the length over which their force decreases";
   }
 };
 

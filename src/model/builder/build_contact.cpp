@@ -72,20 +72,22 @@ void check_mixing(const DeckTable& table, const GivenPairs& before, const Normal
 // forces, or plastic contacts, or liquid bridges.
 void check_adhesion_kinds(const DeckTable& table, const GivenPairs& before, const NormalLawParameters& law) {
   if ((is_plastic(law) && before.elastic_adhesion) || (adheres_elastically(law) && before.plastic))
-    table.fail(is_plastic(law)               ? "plasticity_ratio"
-               : table.has("surface_energy") ? "surface_energy"
-               : law.adhesion_work > 0       ? "work_of_adhesion"
-                                             : "attraction_range",
-               "a deck has plasticity_ratio for all pairs with a work of adhesion, or for none, and no "
-               "attraction_range beside it");
+    table.fail(
+        is_plastic(law)               ? "plasticity_ratio"
+        : table.has("surface_energy") ? "surface_energy"
+        : law.adhesion_work > 0       ? "work_of_adhesion"
+                                      : "attraction_range",
+        "in a deck with a plasticity_ratio, all pairs with a work of adhesion have one, and no pair has an "
+        "attraction_range");
   if (!law.is_cohesive()) return;
   const bool jkr = is_jkr(law) || before.jkr, adhesion = pulls(law) || before.adhesion;
   if ((has_bridges(law) || before.bridges) && (jkr || adhesion || is_plastic(law) || before.plastic))
-    table.fail(has_bridges(law)          ? "bridge_volume"
-               : is_plastic(law)         ? "plasticity_ratio"
-               : table.has("attraction") ? "attraction"
-                                         : "adhesion",
-               "a deck has liquid bridges for all pairs that attract, or adhesion and attraction");
+    table.fail(has_bridges(law)              ? "bridge_volume"
+               : is_plastic(law)             ? "plasticity_ratio"
+               : law.attraction > 0          ? "attraction"
+               : table.has("surface_energy") ? "surface_energy"
+                                             : "work_of_adhesion",
+               "in a deck with liquid bridges no pair has adhesion, an attraction or a plasticity_ratio");
   if (!jkr || !adhesion) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
@@ -130,9 +132,11 @@ void check_served(const DeckTable& table, const Contact& contact, const PairPara
   const AnyParameters& own = of_pair.normal.own     ? of_pair.normal.own
                              : of_pair.friction.own ? of_pair.friction.own
                                                     : of_pair.rolling.own;
-  table.fail(own ? own->key() : "stiffness",
-             "no contact law has all that this pair and the pairs before it ask for; a deck has one law for "
-             "all pairs");
+  table.fail(
+      own ? own->key() : "stiffness",
+      "no contact law has the features of this pair and of the pairs before it; a deck has one law for all "
+      "pairs. With adhesion, an attraction, a plasticity_ratio or liquid bridges, all pairs need exponent = "
+      "1, or Hertz's law");
 }
 
 void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,

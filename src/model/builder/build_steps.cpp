@@ -80,8 +80,9 @@ IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
     return {ParticleIntegrator::velocity_verlet,
             "contacts have rolling or twisting resistance, for which explicit steps are the default"};
   if (model.is_cohesive())
-    return {ParticleIntegrator::velocity_verlet,
-            "contacts have adhesion, for which explicit steps are the default"};
+    return {
+        ParticleIntegrator::velocity_verlet,
+        "contacts have adhesion, an attraction or liquid bridges, for which explicit steps are the default"};
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
@@ -165,10 +166,11 @@ void check_attraction(const DeckTable& deck, const Contact& contact, const std::
                                    "do not resolve; {} is possible with them",
                                    needs, setting("adhesion", Adhesion::dmt)));
     if (pair.has("attraction_range") && pair.real("attraction_range") > 0 && pair.real("attraction") > 0)
-      pair.fail("attraction_range",
-                fmt::format("{}: implicit steps do not resolve an attraction beyond touch; without "
-                            "attraction_range the attraction ends where the contact opens, as they need it",
-                            needs));
+      pair.fail(
+          "attraction_range",
+          fmt::format("{}: implicit steps do not resolve an attraction beyond touch; without "
+                      "attraction_range the attraction ends where the contact opens, which they resolve",
+                      needs));
   }
 }
 

@@ -118,7 +118,7 @@ TEST_CASE("unsupported liquid bridges are refused with a remedy") {
   CHECK(contains(model_error(kBare + grains_in(3) + pair_of("stiffness = 0.0\n" + kWater)),
                  "bridge_volume = 1e-3: must be left out where the stiffness is 0"));
   const std::string kinds =
-      "a deck has liquid bridges for all pairs that attract, or adhesion and attraction";
+      "in a deck with liquid bridges no pair has adhesion, an attraction or a plasticity_ratio";
   for (const std::string other :
        {"work_of_adhesion = 0.1\n", "work_of_adhesion = 0.1\nadhesion = \"dmt\"\n", "attraction = 0.1\n"})
     CHECK(contains(model_error(hertz(kWater + other)), kinds));
