@@ -21,10 +21,10 @@ std::vector<Key> keys() {
           .left_out("no liquid bridges")
           .combined(Combining::mean)
           .about("Volume V of each liquid bridge over the cube of the smaller radius; it is constant. A "
-                 "bridge forms when the surfaces touch, and attracts them while they do with the force "
-                 "2 pi R gamma cos(theta), R = 2 R*, gamma: surface_tension, theta: contact_angle. It "
-                 "breaks at the gap (1 + theta/2) V^(1/3). Bridges are added to a linear or Hertz's "
-                 "law. They need explicit steps, and the run is in double precision. 0: no bridges."),
+                 "bridge forms when the surfaces touch. Its attraction is constant while they do, "
+                 "decreases over the gap that opens (bridge_force), and ends at the gap (1 + theta/2) "
+                 "V^(1/3), where the bridge breaks. Bridges are added to a linear or Hertz's law. They "
+                 "need explicit steps, and the run is in double precision. 0: no bridges."),
       real("surface_tension", "N/m")
           .at_least(0)
           .left_out("no liquid bridges")
@@ -38,10 +38,10 @@ std::vector<Key> keys() {
       choice<BridgeForce>("bridge_force")
           .left_out("willett")
           .combined(Combining::same)
-          .about("How the force of a bridge depends on the gap S. willett: the force at touch divided "
-                 "by 1 + 1.05 s + 2.5 s^2, s = S sqrt(R / V) (Willett et al., 2000). soulie: an "
-                 "exponential function that was fitted to spheres of unequal radii (Soulie et al., "
-                 "2006); on walls and meshes it is replaced by willett."),
+          .about("Force of a bridge at the gap S. willett: 2 pi R gamma cos(theta) / (1 + 1.05 s + 2.5 "
+                 "s^2), s = S sqrt(R / V), R = 2 R* (Willett et al., 2000). soulie: an exponential "
+                 "function that was fitted to spheres of unequal radii (Soulie et al., 2006); on walls "
+                 "and meshes it is replaced by willett. While the surfaces touch, S is 0."),
       real("bridge_viscosity", "Pa s")
           .at_least(0)
           .left_out("no viscous force")
