@@ -314,8 +314,9 @@ struct ContactLaw {
   }
 };
 
-// Whether a law with `kNeedsMotion` has implicit steps: all laws with friction but those of JKR contacts,
-// which form and break at different distances, and those whose normal force depends on the path.
+// Whether a law with `kNeedsMotion` has implicit steps: all laws with friction but those of JKR contacts and
+// liquid bridges, which form and break at different distances, and those whose normal force depends on the
+// path.
 template <class Law>
 inline constexpr bool kHasFrictionSteps = false;
 template <class Law>
