@@ -17,7 +17,7 @@ import numpy as np
 import scree
 
 PULLED = (0.1, 0.2)  # displacements of the carriage between which forces are averaged [m]
-TRACK, BESIDE = 0.012, 0.03  # distances from the middle of the track: end of the furrow, begin of the bed [m]
+TRACK, BESIDE = 0.012, 0.03  # distances from the middle of the track: edge of the furrow, edge of the bed [m]
 MARGIN = 0.04  # distance from the front of the bed and from the tine within which the furrow does not count [m]
 CELL = 0.004  # of the grid on which heights of the surface are found [m]
 OPENING = 0.05  # half the inner width, depth and height of a bucket [m]
@@ -32,7 +32,7 @@ def heights(particles, x, y):
 
 
 def furrow(run):
-    """Mean heights of the bed beside the track and of the bottom of the furrow behind the tine at the end [m]."""
+    """Mean heights of the bed beside the track, and of the bottom of the furrow behind the tine at the end [m]."""
     low, high = run.deck["space"]["min"][1], run.deck["space"]["max"][1]
     begin = np.array(run.snapshots[0].particles["position"])[:, 0].min() + MARGIN
     end = float(run.history["bodies/tine/x"][-1]) - MARGIN
@@ -54,7 +54,7 @@ def tine(run):
 
 
 def bucket(run):
-    """The mass in each bucket at the end, as a part of what was put into it."""
+    """The mass in each bucket at the end, as a share of the mass that was put into it."""
     first, last, found = run.snapshots[0].particles, run.snapshots[-1].particles, []
     for number, name in enumerate(run.group_names):
         center = np.array(run.deck["bodies"][0]["position"]) + number * np.array(run.deck["bodies"][0]["spacing"])
@@ -66,5 +66,8 @@ def bucket(run):
 
 
 if __name__ == "__main__":
+    measures = {"tine": tine, "bucket": bucket}
+    if len(sys.argv) < 3 or sys.argv[1] not in measures:
+        sys.exit("usage: soil.py tine|bucket FOLDER ...")
     for folder in sys.argv[2:]:
-        print(f"{folder}: {dict(tine=tine, bucket=bucket)[sys.argv[1]](scree.open(folder))}")
+        print(f"{folder}: {measures[sys.argv[1]](scree.open(folder))}")
