@@ -20,7 +20,7 @@ inline constexpr bool kHasOtherFormulas = requires {
 };
 
 // Laws with friction, without adhesion and without a state of the normal law. Those without friction have
-// `ContactLaw::load`.
+// `ContactLaw::respond`.
 template <class Law>
 inline constexpr bool kHasSingleForm = false;
 template <class Law>
