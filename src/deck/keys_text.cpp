@@ -33,7 +33,7 @@ effect on them. Bodies with `kind = "spatial"` move freely in space, with spheri
 common joints (`input/README.md`). Joints have motors, servos, springs, stops and dry friction, but no
 clearance. Cylinders have no mass.
 
-There is no fluid and no heat transfer.
+There is no fluid but liquid bridges, and no heat transfer.
 )";
 
 void describe_key(std::string& out, const Key& key, const std::string& selector) {

@@ -170,7 +170,7 @@ inline constexpr auto kAbsent = std::to_array<Synonym>({
     {"fluid", "there is no fluid"},
     {"cfd", "there is no fluid"},
     {"drag", "there is no fluid and no drag; only contacts and gravity act on particles"},
-    {"liquid", "there is no fluid; for dry attraction see contact.pairs.attraction"},
+    {"liquid", "there is no fluid but liquid bridges (contact.pairs.bridge_volume)"},
     {"heat", "there is no heat transfer"},
     {"temperature", "there is no heat transfer"},
     {"thermal", "there is no heat transfer"},

@@ -118,11 +118,11 @@ struct InstantOutcomeOf {
   SCREE_HD TangentialLosses losses() const { return {}; }
 };
 
-// The law of a contact: `respond(pair, history)`. Without friction, rolling resistance, JKR adhesion and a
-// state of the normal law (`kNeedsMotion` is false) it is a function of the instant, a `PairState`. Otherwise
-// it needs the contact history and the motion of the partners over the step that ends at the instant, a
-// `MovingPair`, or that they do not move, an `InstantPair`. It is pure: the new history is returned, and only
-// the item that accepts the step stores it.
+// The law of a contact: `respond(pair, history)`. Without friction, rolling resistance, JKR adhesion,
+// liquid bridges and a state of the normal law (`kNeedsMotion` is false) it is a function of the instant, a
+// `PairState`. Otherwise it needs the contact history and the motion of the partners over the step that ends
+// at the instant (a `MovingPair`), or partners that do not move (an `InstantPair`). It is pure: the new
+// history is returned, and only the item that accepts the step stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
