@@ -1,6 +1,6 @@
-// Parameters that one contact law alone has, beside those of contact_parameters.hpp, and what estimates of
-// steps and overlaps, checks and messages ask of them. The model holds them without their type: a law's
-// header declares it, and the law's file in the room deck makes it from the deck.
+// Parameters that one contact law alone has, beside those of contact_parameters.hpp, with the functions that
+// estimates of steps and overlaps, checks and messages use. The model stores them without their type: a law's
+// header declares the type, and the law's file in the room deck makes the parameters from the deck.
 #pragma once
 
 #include <memory>
@@ -57,7 +57,7 @@ class OwnParameters {
   virtual Real rolling_stiffness(const PairSize&, Real) const { return 0; }
 };
 
-// Parameters of a type that only the law knows; or none.
+// Parameters of a type that the law alone declares; or none.
 class AnyParameters {
  public:
   AnyParameters() = default;

@@ -159,7 +159,7 @@ void with_requested_item(const ContactViews<Rows>& in, const Laws& laws, const R
   std::visit(WithRequestedItem<Laws, Rows, Run>{in, laws, run}, request);
 }
 
-// What a backend asks about the law of a run.
+// What a backend needs to know about the law of a run.
 struct LawTraits {
   int history;     // numbers of history per contact
   bool rolls;      // whether its type has rolling resistance
