@@ -14,9 +14,11 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
 
 // Why a run is in double precision although the deck asks for mixed.
 std::string CudaBackend::double_reason() const {
-  return bodies_.have_surfaces()              ? "bodies have shapes or meshes, or walls are meshes or move"
-         : items_.kernels->traits().has_range ? "particles attract each other"
-                                              : "";
+  const LawTraits law = items_.kernels->traits();
+  return bodies_.have_surfaces() ? "bodies have shapes or meshes, or walls are meshes or move"
+         : law.has_range         ? "particles attract each other"
+         : !law.is_mixed         ? "this contact law has no form in single precision"
+                                 : "";
 }
 
 std::string CudaBackend::description() const {

@@ -113,7 +113,7 @@ using ContactOutcome = ContactOutcomeOf<ContactHistory>;
 template <class T, class Vector>
 struct InstantOutcomeOf {
   ContactLoadOf<T, Vector> load;
-  [[no_unique_address]] NoState history{};
+  NoState history{};
 
   SCREE_HD TangentialLosses losses() const { return {}; }
 };
@@ -181,7 +181,7 @@ struct ContactLaw {
     const ContactForce f = contact_force(law, g.overlap, rate);
     Real loss = f.loss;  // before all that follows, where it costs a GPU the fewest registers
     if constexpr (std::is_same_v<Pair, MovingPair>)
-      loss = mean_damper_power(power_at_start(law, pair, rate, old), f.loss,
+      loss = mean_damper_power(power_at_start(partners, pair, rate, old), f.loss,
                                g.overlap + step.h * rate <= -interaction_range_of(law));
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
@@ -286,13 +286,14 @@ struct ContactLaw {
   SCREE_HD static bool closed(const Pair& of, Real overlap, const History& old) {
     return overlap > 0 || ((!kHysteretic || old.touched) && overlap > -interaction_range_of(of));
   }
-  // Power of the damper at the overlap at the start of the step [W]; of: the normal law of these partners.
+  // Power of the damper at the overlap and in the state at the start of the step [W]; of: the normal law of
+  // these partners in the state of new contacts.
   template <class Of>
   SCREE_HD static Real power_at_start(const Of& of, const MovingPair& pair, Real rate, const History& old) {
     const Real d = pair.motion.overlap0;
-    return closed(of, d, old)
-               ? damper_power(of, d, contact_radius(of, effective_radius(of, pair.size), d), rate)
-               : 0;
+    if (!closed(of, d, old)) return 0;
+    const auto& law = after_step(of, old.normal, d);
+    return damper_power(law, d, contact_radius(law, effective_radius(law, pair.size), d), rate);
   }
   SCREE_HD static void add_friction(const SpringStep& step, const ContactMotion& motion, Outcome& out) {
     out.load.force = fused(-motion.lever_arm_ratio, step.acting, out.load.force);

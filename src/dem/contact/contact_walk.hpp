@@ -119,7 +119,7 @@ struct ContactWalk {
     count_bodies(pair, self.i, j);
     return pair;
   }
-  // Where the items are shapes, adds the rotation of their bodies to the effective mass of the contact; their
+  // Where the items are shapes, adds the motion of their bodies to the effective mass of the contact; their
   // masses are those of the items.
   SCREE_HD static Vec3 normal_of(const PairState& pair) { return pair.geometry.normal(); }
   SCREE_HD static Vec3 normal_of(const ContactPath& path) { return path.normal1; }
@@ -127,7 +127,7 @@ struct ContactWalk {
   SCREE_HD void count_bodies([[maybe_unused]] Pair& pair, [[maybe_unused]] Item... item) const {
     if constexpr (std::is_same_v<Rows, PackedRows> && kUsesMass<Law>)
       if (in.free_shapes != nullptr)
-        pair.size.of_bodies = (in.free_shapes[item].rotation(normal_of(pair)) + ...);
+        pair.size.of_bodies = (in.free_shapes[item].beside_mass(normal_of(pair)) + ...);
   }
 
   // The test, extended by the interaction range of the law.

@@ -12,6 +12,7 @@
 #include "dem/reports/escape_items.hpp"
 #include "dem/reports/output_fields.hpp"
 #include "dem/surface_contact/body_items.hpp"
+#include "physics/single_contact.hpp"
 
 namespace scree {
 
@@ -164,10 +165,12 @@ struct LawTraits {
   int history;     // numbers of history per contact
   bool rolls;      // whether its type has rolling resistance
   bool has_range;  // whether contacts may exist beyond touch
+  bool is_mixed;   // whether it has explicit steps in mixed precision
 
   template <class Law>
   static LawTraits of() {
-    return {Law::kHistory, Law::Rolling::acts, Law::kHasRange};
+    return {Law::kHistory, Law::Rolling::acts, Law::kHasRange,
+            Law::kNeedsMotion ? kHasSingleForm<Law> : !Law::kHasRange};
   }
 };
 

@@ -101,9 +101,9 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, const Surfac
     const FreeBody& body = in.free_bodies[surface];
     const Vec3 normal = touch.pair.geometry.normal(), arm = in.placed[surface].arm;
     size.of_bodies = body.rotation(touch.is_sphere ? arm : arm + touch.pair.contact, normal);
-    if (in.masses == nullptr) size.of_bodies += body.translation(normal);
+    size.of_bodies += in.masses == nullptr ? body.translation(normal) : body.held(normal);
     if (in.free_shapes != nullptr)
-      size.of_bodies += in.free_shapes[in.entries.particles[entry]].rotation(normal);
+      size.of_bodies += in.free_shapes[in.entries.particles[entry]].beside_mass(normal);
   }
   return size;
 }

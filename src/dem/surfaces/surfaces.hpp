@@ -121,6 +121,12 @@ struct FreeBody {
     const Vec3 moment = cross(arm, n);
     return dot(moment, inverse_inertia * moment);
   }
+  // `translation()` less that of the whole mass, for laws that have the mass: zero but for planar bodies. Two
+  // partners that cannot move along n keep a finite effective mass.
+  SCREE_HD Real held(Vec3 n) const {
+    constexpr Real kMost = 1 - 1e-9;
+    return kMost * (inverse_mass.z - inverse_mass.x) * n.z * n.z;
+  }
 };
 
 // A shape of a body, or a corner of its mesh, as an item. arm: of its centre from the body's [m].
@@ -128,7 +134,8 @@ struct FreeShape {
   Vec3 arm;
   FreeBody body;
 
-  SCREE_HD Real rotation(Vec3 n) const { return body.rotation(arm, n); }
+  // What the body's motion adds to its inverse mass for a force through the centre of the shape [1/kg].
+  SCREE_HD Real beside_mass(Vec3 n) const { return body.rotation(arm, n) + body.held(n); }
 };
 
 // Orientation of a placed plane or mesh. Spheres have none.

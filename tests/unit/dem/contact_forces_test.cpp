@@ -55,9 +55,13 @@ void add_contact(BruteContacts& sum, const NormalLawParameters& law, const Brute
 PairSize size_of(const BruteItem& a, const BruteItem& b, Vec3 normal) {
   PairSize out{a.radius, b.radius, a.body >= 0 && b.body < 0 ? kInfinity : a.mass,
                b.body >= 0 && a.body < 0 ? kInfinity : b.mass};
-  for (const BruteItem* item : {&a, &b}) out.of_bodies += item->free.rotation(normal);
-  if (a.body >= 0 && b.body < 0) out.of_bodies += a.free.body.translation(normal);
-  if (b.body >= 0 && a.body < 0) out.of_bodies += b.free.body.translation(normal);
+  const auto free = [&](const BruteItem& item, const BruteItem& other) {
+    return item.body < 0 ? 0
+           : other.body < 0
+               ? item.free.body.rotation(item.free.arm, normal) + item.free.body.translation(normal)
+               : item.free.beside_mass(normal);
+  };
+  out.of_bodies = free(a, b) + free(b, a);
   return out;
 }
 
@@ -89,7 +93,7 @@ BruteContacts brute_contacts(const LoadedBox& box) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
       const NormalLawParameters& law = box.model.contact.law(a.material, wall.material);
-      const PairSize size{a.radius, kInfinity, a.mass, kInfinity, a.free.rotation(wall.normal)};
+      const PairSize size{a.radius, kInfinity, a.mass, kInfinity, a.free.beside_mass(wall.normal)};
       add_contact(sum, law,
                   {overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, size, 1}, i);
       pairs += 1;

@@ -206,6 +206,45 @@ TEST_CASE(
   CHECK(std::abs(law.respond(pair, first.history).load.loss) <= 1e-12 * first.load.loss);
 }
 
+// Error of the accounting over a head-on impact of two spheres with a damper and without adhesion, over the
+// energy of the impact; steps: per period at the stiffness k1.
+template <class Law>
+Real impact_balance(const Law& law, Real stiffness, int steps) {
+  constexpr Real kSpeed = 0.3;
+  const Real mass = kSpheres.effective_mass(), sum = kSpheres.radius_i + kSpheres.radius_j,
+             h = 2 * std::numbers::pi_v<Real> * std::sqrt(mass / stiffness) / steps;
+  typename Law::History history{};
+  Real distance = sum + 0.4 * kSpeed * h, rate = -kSpeed, loss = 0;
+  for (int k = 0; k < 10 * steps; ++k) {
+    distance += h * rate;
+    const ContactGeometry geometry = sphere_pair(Vec3{0, 0, distance}, sum);
+    const Vec3 velocity{0, 0, rate};
+    const ContactMotion motion =
+        sphere_motion(geometry, h * velocity, {{}, kSpheres.radius_i, 1}, {{}, kSpheres.radius_j, 1}, h);
+    const auto out = law.respond(MovingPair{{geometry, velocity, kSpheres}, motion}, history);
+    rate += h / mass * out.load.force.z, loss += h * out.load.loss, history = out.history;
+    if (rate > 0 && distance > sum) break;
+  }
+  return (mass / 2 * (rate * rate - kSpeed * kSpeed) + loss) / (mass / 2 * kSpeed * kSpeed);
+}
+
+TEST_CASE("EEPA: without adhesion a limited damper that is drawn off dissipates nothing") {
+  for_both_curves([](bool hertzian, const auto& law_of) {
+    for (const Real l : {0.35, 0.8})
+      for (const Real damping_ratio : {0.05, 0.3}) {
+        CAPTURE(hertzian, l, damping_ratio);
+        NormalLawParameters p = parameters(hertzian, l, 0);
+        p.damping_ratio = damping_ratio;
+        const ContactLaw law{law_of(p)};
+        const Real stiffness =
+            law.normal.of_pair(kSpheres).unloading_stiffness * (hertzian ? std::sqrt(Real(1e-4)) : 1);
+        const Real coarse = impact_balance(law, stiffness, 400), fine = impact_balance(law, stiffness, 1600);
+        CHECK(std::abs(coarse) < 5e-5);
+        CHECK(std::abs(fine) < 5e-6);
+      }
+  });
+}
+
 TEST_CASE("EEPA: pairs without plasticity are elastic, with a constant attraction or without") {
   const auto pair = Linear(parameters(false, 0, 0, 0.5)).of_pair(kSpheres);
   for (const Real d : {1e-6, 1e-4}) {

@@ -188,4 +188,32 @@ TEST_CASE("so it does by a power law, and by Hertz's law") {
       }
 }
 
+// It cannot move along z: for a surface with the normal n its effective mass is M / (n_x^2 + n_y^2).
+TEST_CASE("a planar body in space rebounds so from walls and bodies across its plane") {
+  const Vec3 normal{0.6, 0, 0.8};
+  for (const bool meets_body : {false, true}) {
+    CAPTURE(meets_body);
+    const auto body = [&](const std::string& name, Vec3 at, Real speed) {
+      return fmt::format(
+          "[[bodies]]\nname = \"{}\"\nkind = \"planar\"\nposition = {}\nvelocity = [{}, 0.0, 0.0]\nmass = "
+          "1.0\ninertia = 0.002\nshapes = [{{ radius = {} }}]\n",
+          name, text(at), speed, kSize);
+    };
+    SimulationRun run(model_of(
+        "[space]\ndimension = 3\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\n[time]\nend = 0.04\nstep = "
+        "2e-6\ncontrol = \"fixed\"\n[integrator]\nparticles = \"velocity-verlet\"\n[[contact.pairs]]\n"
+        "stiffness = 1e6\nrestitution = 0.5\nlimit_damping = false\n[output]\nhistory_interval = 0.04\n" +
+        body("light", (meets_body ? 2 * kSize + 1e-5 : kSize + 1e-5) * normal, -kSpeed) +
+        (meets_body
+             ? body("other", {}, 0)
+             : fmt::format("[[walls]]\nname = \"wall\"\npoint = [0, 0, 0]\nnormal = {}\n", text(normal)))));
+    run.run();
+    REQUIRE(run.particle_ledger().contacts == 0);
+    const std::vector<BodyMotion> bodies = run.multibody().motion(run.bodies());
+    const Real left = point_motion(bodies[0], {}).velocity.x,
+               right = meets_body ? point_motion(bodies[1], {}).velocity.x : 0;
+    CHECK(std::abs((left - right) / kSpeed - kRestitution) < 2e-3);
+  }
+}
+
 }  // namespace scree
