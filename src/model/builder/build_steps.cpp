@@ -72,17 +72,18 @@ std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Mod
 }
 
 IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
-  if (model.particles.totals.count == 0) return {};  // without particles there is no reason
+  const IntegratorChoice cohesive{
+      ParticleIntegrator::velocity_verlet,
+      "contacts have adhesion, an attraction or liquid bridges, for which explicit steps are the default"};
+  if (model.particles.totals.count == 0)  // without particles there is no other reason
+    return model.is_cohesive() ? cohesive : IntegratorChoice{};
   if (const auto named = named_otherwise(deck, model)) return *named;
   const std::int64_t touching = touching_particles(model);
-  if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
+  if (touching == 0 && !model.is_cohesive()) return {ParticleIntegrator::hht, "no particle touches anything"};
   if (model.rolls())
     return {ParticleIntegrator::velocity_verlet,
             "contacts have rolling or twisting resistance, for which explicit steps are the default"};
-  if (model.is_cohesive())
-    return {
-        ParticleIntegrator::velocity_verlet,
-        "contacts have adhesion, an attraction or liquid bridges, for which explicit steps are the default"};
+  if (model.is_cohesive()) return cohesive;
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
