@@ -109,12 +109,12 @@ TEST_CASE("incompatible keys beside a plasticity ratio are refused with a remedy
   CHECK(contains(model_error(linear("plasticity_ratio = 1.0\n")), "plasticity_ratio = 1.0: must be"));
   CHECK(contains(model_error(linear(plastic), {"integrator.particles=hht"}),
                  "plasticity_ratio = 0.6: needs integrator.particles = \"velocity-verlet\""));
-  CHECK(
-      contains(model_error(beside_steel(plastic, "work_of_adhesion = 0.1\n")),
-               "work_of_adhesion = 0.1: a deck has plasticity_ratio for all pairs with a work of adhesion"));
-  CHECK(
-      contains(model_error(beside_steel("work_of_adhesion = 0.1\nadhesion = \"dmt\"\n", plastic)),
-               "plasticity_ratio = 0.6: a deck has plasticity_ratio for all pairs with a work of adhesion"));
+  CHECK(contains(model_error(beside_steel(plastic, "work_of_adhesion = 0.1\n")),
+                 "work_of_adhesion = 0.1: in a deck with a plasticity_ratio, all pairs with a work of "
+                 "adhesion have one"));
+  CHECK(contains(model_error(beside_steel("work_of_adhesion = 0.1\nadhesion = \"dmt\"\n", plastic)),
+                 "plasticity_ratio = 0.6: in a deck with a plasticity_ratio, all pairs with a work of "
+                 "adhesion have one"));
 }
 
 }  // namespace scree
