@@ -48,27 +48,15 @@ __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const DeviceViews& in
   return with_rows(in, WarpRows<Word, kWords>{{in.rows, nullptr, nullptr, RowUse::all, 0}, shared, idle});
 }
 
-// Force, Newton matrix and residual of the particles first ... end - 1.
-struct SystemRequest {
+// Forces and Newton matrix of the particles first ... end - 1 over an implicit step. Where particles do not
+// rotate, the same kernel computes residual and norms.
+struct DeviceStepSystem {
   DeviceViews in;
   Index first, end;
-  Vec3 gravity;
-  NewtonWeights weights;
-  StepStart start;
-  StepForces forces;
-  ContactMatrix matrix;
-  StepViews step;
-  Vec3* residual;
-  Real* stiffness_ratio;
-  Sym3* inverse_block;
+  StepSystem of;
+  ResidualItem residual;
+  StepNormsItem norms;
   StepNorms* largest;  // maxima over all particles so far
-};
-
-// The same for laws with friction: forces and torques only, of the particles first ... end - 1.
-struct DeviceFrictionRequest {
-  DeviceViews in;
-  Index first, end;
-  FrictionRequest of;
 };
 
 // Progress of a run of explicit steps, kept on the device: kernels that were queued past the end of the run
@@ -270,26 +258,16 @@ struct LoadSumOutputs {
 
 // State at the start of an implicit step: particles and surfaces on bodies.
 struct SurfaceStart {
-  StepStart particles;
-  const SurfacePose* placed;
-};
-
-// The same for laws with friction, with the output per entry.
-struct SurfaceFrictionRequest {
   FrictionStart particles;
   const SurfacePose* placed;
-  SurfaceFriction* friction_steps;  // per entry
 };
 
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
-  virtual int history() const = 0;  // number of history values of a contact of this law
-  // Why explicit steps cannot be in mixed precision with this law; empty if they can.
-  virtual const char* mixed_trouble() const = 0;
-  virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
-                      Real* loss_power, Vec3* angular_acceleration) const = 0;
-  virtual void system(Device device, const SystemRequest& request) const = 0;
+  virtual LawTraits traits() const = 0;
+  // Applies the item of the request to n particles.
+  virtual void run(Device device, const DeviceViews& in, Index n, const ContactRequest& request) const = 0;
   // Contacts of particles with surfaces on bodies at an instant or over an explicit step, and their sums over
   // each surface that has chunks.
   virtual void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
@@ -300,36 +278,16 @@ class DeviceContactKernels {
                                     const OpenStepQuery& query, Index n, SurfaceLoad* loads) const = 0;
   // Over an implicit step, and their sums over each chunk.
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                             const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
+                             const SurfaceStart& start, const SurfaceStepsTo& to, StepSums* sums) const = 0;
   // Queues the sums of `WallContactItem` over the first n particles; share: the reduction over the ranks that
   // `exact_sums` calls.
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
-  virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
-  // A field of the output that depends on contacts.
-  virtual void output(Device device, const DeviceViews& in, const OutputRequest& request) const = 0;
-  // As in `ContactKernels`; for the particles first ... end - 1.
+  // As in `ContactKernels`.
   virtual void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                               ShownContact* shown) const = 0;
-  virtual void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
-                             const LineRequest& request) const = 0;
-  // What the contacts of the particles add to the energy balance over an accepted implicit step.
-  virtual void step_losses(Device device, const DeviceViews& in, Index n, const StepStart& start,
-                           Real* contact_loss, Real* integrator_loss) const = 0;
-  // The same for laws with friction, as in `ContactKernels`.
-  virtual void surface_friction_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                                      const SurfaceFrictionRequest& request, StepSums* sums) const = 0;
-  virtual void friction_system(Device device, const DeviceFrictionRequest& request) const = 0;
-  virtual void friction_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                               const FrictionLossOutputs& to) const = 0;
-  virtual void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                                   const LaggedLimits& to) const = 0;
-  // Energy that n escaped particles take along, and what their contacts leave with the remaining particles:
-  // `EscapeEnergyItem` and `EscapedContactsItem`.
-  virtual void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-                                 EscapedParticle* escaped_particles) const = 0;
-  virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
-                          const StartViews& start) const = 0;
+  // Forces and Newton matrix of an implicit step.
+  virtual void system(Device device, const DeviceStepSystem& request) const = 0;
   // Closes one explicit step and opens the next; does nothing once the control block says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
   virtual void mixed_advance(Device device, const MixedRequest& request) const = 0;
@@ -337,8 +295,8 @@ class DeviceContactKernels {
   virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };
 
-// Kernels of one type of law. Each type is compiled in a source file of its own, contact_kernels_*.cu,
-// because compilation takes long.
+// Kernels of one type of law. Each type is compiled in a source file of its own, which is generated from
+// law.cu.in, because compilation takes long.
 template <class Law>
 std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials);
 

@@ -31,7 +31,7 @@ using SystemStage = WarpStage<sizeof(Sym3), kSystemThreads>;
 
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
-    system_kernel(const __grid_constant__ SystemRequest r, const Laws laws) {
+    system_kernel(const __grid_constant__ DeviceStepSystem r, const Laws laws) {
   __shared__ SystemStage::Shared shared;
   const Index i = r.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const SystemStage stage(shared, first, min(static_cast<Index>(warpSize), r.end - first));
@@ -40,9 +40,9 @@ __global__ void __launch_bounds__(kSystemThreads)
   StepNorms norms{};
   if (i < r.end) {
     SystemItem<Laws> item{
-        {{r.in, laws, {r.start}}, r.gravity, r.weights, r.forces, r.matrix},
-        {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffness_ratio},
-        {r.step, r.residual, r.forces.magnitude, r.stiffness_ratio}};
+        {{r.in, laws, {r.of.start.step}}, r.of.gravity, r.of.weights, r.of.forces, r.of.matrix},
+        r.residual,
+        r.norms};
     item.system.out.step_force = only(step_force, i), item.residual.force = only(step_force, i);
     item.system.out.end_force = only(end_force, i);
     item.system.matrix.diagonal = item.residual.matrix.diagonal = only(diagonal, i);
@@ -50,9 +50,9 @@ __global__ void __launch_bounds__(kSystemThreads)
     item.residual.inverse_block = only(inverse_block, i);
     norms = item(i);
   }
-  stage.put(step_force, r.forces.step_force), stage.put(end_force, r.forces.end_force);
-  stage.put(diagonal, r.matrix.diagonal);
-  stage.put(residual, r.residual), stage.put(inverse_block, r.inverse_block);
+  stage.put(step_force, r.of.forces.step_force), stage.put(end_force, r.of.forces.end_force);
+  stage.put(diagonal, r.of.matrix.diagonal);
+  stage.put(residual, r.residual.residual), stage.put(inverse_block, r.residual.inverse_block);
   block_max(norms.residual, &r.largest->residual);
   block_max(norms.correction_bound, &r.largest->correction_bound);
   block_max(norms.force, &r.largest->force);
@@ -66,16 +66,17 @@ inline constexpr int kFrictionSystemBlocks = 3;
 // by items of their own, because the contact loop needs all registers. r.first: a multiple of `kSlice`.
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads, kFrictionSystemBlocks)
-    friction_system_kernel(const __grid_constant__ DeviceFrictionRequest r, const Laws laws) {
+    friction_system_kernel(const __grid_constant__ DeviceStepSystem r, const Laws laws) {
   constexpr int kWords = sizeof(FrictionSums) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = r.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   if (first >= r.end) return;
   const bool idle = i >= r.end;
-  const FrictionRequest& of = r.of;
+  const StepSystem& of = r.of;
   const auto views = warp_views(r.in, &contacts[threadIdx.x / kSlice], idle);
   const FrictionSystemItem<Laws, WarpRows<double, kWords>> item{
-      {views, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.phase_squared};
+      {views, laws, {of.start}}, of.gravity,      of.weights, of.forces, of.torques,
+      of.friction_matrix,        of.phase_squared};
   auto self = item.walk.self(idle ? r.end - 1 : i);
   auto total = item.weight(self);
   self.i = i;
@@ -89,7 +90,7 @@ __global__ void __launch_bounds__(kSystemThreads)
     friction_losses_kernel(Index n, const __grid_constant__ DeviceViews in,
                            const __grid_constant__ FrictionStart start, const FrictionLossOutputs to,
                            const Laws laws) {
-  constexpr int kWords = sizeof(FrictionLossSums) / sizeof(double);
+  constexpr int kWords = sizeof(FrictionLossSums<kLossKindsOf<LawOf<Laws>>>) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
   const Index i = thread_index();
   if (i - static_cast<Index>(threadIdx.x) % warpSize >= n) return;
@@ -97,19 +98,11 @@ __global__ void __launch_bounds__(kSystemThreads)
   const auto views = warp_views(in, &contacts[threadIdx.x / kSlice], idle);
   const FrictionLossesItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
   auto self = item.walk.self(idle ? n - 1 : i);
-  FrictionLossSums sum;
+  FrictionLossSums<kLossKindsOf<LawOf<Laws>>> sum;
   self.i = i;
   item.add_neighbors(self, sum);
   if (!idle) item.finish(self, sum);
 }
-
-// Applies the item to the particles from `first` on.
-template <class Item>
-struct FromItem {
-  Item item;
-  Index first;
-  SCREE_HD void operator()(Index i) const { item(first + i); }
-};
 
 template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
@@ -125,21 +118,9 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
 
-  int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
-  const char* mixed_trouble() const override {
-    return kHasRange<LawOf<Laws>> ? "particles attract each other" : "";
-  }
-  void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
-              Vec3* angular_acceleration) const override {
-    for_each(
-        device, n,
-        ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
-  }
-  void system(Device device, const SystemRequest& r) const override {
-    if (r.end == r.first) return;
-    system_kernel<Laws>
-        <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
-    require_cuda(cudaGetLastError(), "system");
+  LawTraits traits() const override { return LawTraits::of<LawOf<Laws>>(); }
+  void run(Device device, const DeviceViews& in, Index n, const ContactRequest& request) const override {
+    with_requested_item(in, laws_, request, [&](const auto& item) { queue(device, n, item); });
   }
   void surface_loads(Device device, Follows follows, const SurfaceViews& in, const LoadChunks& chunks,
                      SurfaceLoad* loads, const LoadSumOutputs& sums) const override {
@@ -154,79 +135,36 @@ class ContactKernelsOf : public DeviceContactKernels {
                      query, laws_, loads);
   }
   void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                     const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const override {
-    launch_surfaces(device, chunks, SurfaceStepItem<Laws>{in, start.particles, start.placed, laws_, steps},
-                    steps, sums);
+                     const SurfaceStart& start, const SurfaceStepsTo& to, StepSums* sums) const override {
+    if constexpr (kFreedoms == 6)
+      launch_surfaces(device, chunks,
+                      SurfaceFrictionItem<Laws>{in, start.particles, start.placed, laws_, to.friction_steps},
+                      to.friction_steps, sums);
+    else if constexpr (kFreedoms == 3)
+      launch_surfaces(device, chunks,
+                      SurfaceStepItem<Laws>{in, start.particles.step, start.placed, laws_, to.steps},
+                      to.steps, sums);
+    else
+      refuse_implicit();
   }
   void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                  ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const override {
     exact_sums(device, n, WallContactItem<Laws, SlicedRows>{{in, laws_}, choice}, sums, share);
   }
-  void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
-    for_each(device, n, ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out});
-  }
-  void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
-    with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},
-                        [&](const auto& item) { for_each(device, request.n, item); });
-  }
   void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                       ShownContact* shown) const override {
     for_each(device, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
   }
-  void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
-                     const LineRequest& request) const override {
-    using Item = ContactLineItem<Laws, SlicedRows>;
-    for_each(device, end - first, FromItem<Item>{{{in, laws_}, request}, first});
-  }
-  void step_losses(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
-                   Real* integrator_loss) const override {
-    for_each(device, n,
-             ContactLossesItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
-  }
-  void surface_friction_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
-                              const SurfaceFrictionRequest& r, StepSums* sums) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      launch_surfaces(device, chunks,
-                      SurfaceFrictionItem<Laws>{in, r.particles, r.placed, laws_, r.friction_steps},
-                      r.friction_steps, sums);
+  void system(Device device, const DeviceStepSystem& r) const override {
+    if (r.end == r.first) return;
+    const unsigned blocks = blocks_for(r.end - r.first, kSystemThreads);
+    if constexpr (kFreedoms == 6)
+      friction_system_kernel<Laws><<<blocks, kSystemThreads, 0, device.stream>>>(r, laws_);
+    else if constexpr (kFreedoms == 3)
+      system_kernel<Laws><<<blocks, kSystemThreads, 0, device.stream>>>(r, laws_);
     else
-      refuse_friction();
-  }
-  void friction_system(Device device, const DeviceFrictionRequest& r) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>) {
-      if (r.end == r.first) return;
-      friction_system_kernel<Laws>
-          <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
-      require_cuda(cudaGetLastError(), "system with friction");
-    } else {
-      refuse_friction();
-    }
-  }
-  void friction_losses(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                       const FrictionLossOutputs& to) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>) {
-      if (n == 0) return;
-      friction_losses_kernel<Laws>
-          <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
-      require_cuda(cudaGetLastError(), "losses with friction");
-    } else {
-      refuse_friction();
-    }
-  }
-  void store_lagged_limits(Device device, const DeviceViews& in, Index n, const FrictionStart& start,
-                           const LaggedLimits& to) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      for_each(device, n, LaggedLimitItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
-    else
-      refuse_friction();
-  }
-  void escaped_particles(Device device, const DeviceViews& in, const OpenBox& box, Index n,
-                         EscapedParticle* escaped_particles) const override {
-    for_each(device, n, EscapeEnergyItem<Laws, SlicedRows>{{in, laws_}, box, escaped_particles});
-  }
-  void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
-                  const StartViews& start) const override {
-    for_each(device, n, EscapedContactsItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
+      refuse_implicit();
+    require_cuda(cudaGetLastError(), "system");
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     if constexpr (LawOf<Laws>::kNeedsMotion) {
@@ -258,8 +196,19 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
  private:
-  [[noreturn]] static void refuse_friction() {
-    throw std::logic_error("ContactKernelsOf: the law has no implicit steps with friction");
+  static constexpr int kFreedoms = kStepFreedoms<LawOf<Laws>>;
+  template <class Item>
+  static void queue(Device device, Index n, const Item& item) {
+    for_each(device, n, item);
+  }
+  static void queue(Device device, Index n, const FrictionLossesItem<Laws, SlicedRows>& item) {
+    if (n == 0) return;
+    friction_losses_kernel<Laws><<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(
+        n, item.walk.in, item.walk.kinematics.start, item.to, item.walk.laws);
+    require_cuda(cudaGetLastError(), "losses over a step");
+  }
+  [[noreturn]] static void refuse_implicit() {
+    throw std::logic_error("ContactKernelsOf: the law has no such implicit steps");
   }
   // Whether all particles of the step fit on the GPU at once, with this number of blocks per multiprocessor.
   bool several_at_once(const StepRows& rows, int blocks) const {

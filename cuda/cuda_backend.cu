@@ -14,8 +14,11 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
 
 // Why a run is in double precision although the deck asks for mixed.
 std::string CudaBackend::double_reason() const {
+  const LawTraits law = items_.kernels->traits();
   return bodies_.have_surfaces() ? "bodies have shapes or meshes, or walls are meshes or move"
-                                 : items_.kernels->mixed_trouble();
+         : law.has_range         ? "particles attract each other"
+         : !law.is_mixed         ? "this contact law has no form in single precision"
+                                 : "";
 }
 
 std::string CudaBackend::description() const {
@@ -31,8 +34,7 @@ std::string CudaBackend::description() const {
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
-  if (items_.model.rotates()) return std::make_unique<CudaFrictionStep>(items_, bodies_, implicit_arrays_, h);
-  return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
+  return open_cuda_step(items_, bodies_, implicit_arrays_, h);
 }
 
 std::unique_ptr<ExplicitRun> CudaBackend::start_run(Real h) {

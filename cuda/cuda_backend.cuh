@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cuda_explicit.cuh"
-#include "cuda_friction.cuh"
 #include "cuda_implicit.cuh"
 #include "cuda_particles.cuh"
 #include "cuda_reports.cuh"

@@ -27,18 +27,11 @@ const ShownContact* CudaBodies::find_shown() {
                                      items_.now.angular_velocity.data(), items_.history.views().only_read()});
 }
 
-void CudaBodies::find_steps(const StepStart& start) {
+void CudaBodies::find_steps(const FrictionStart& start) {
   if (!have_surfaces()) return;
-  items_.surfaces.find_steps(
-      items_.device(), *items_.kernels, start,
-      {items_.now.position.data(), items_.now.velocity.data(), nullptr, items_.history.views()});
-}
-
-void CudaBodies::find_friction_steps(const FrictionStart& start) {
-  if (!have_surfaces()) return;
-  items_.surfaces.find_friction_steps(items_.device(), *items_.kernels, start,
-                                      {items_.now.position.data(), items_.now.velocity.data(),
-                                       items_.now.angular_velocity.data(), items_.history.views()});
+  items_.surfaces.find_steps(items_.device(), *items_.kernels, start,
+                             {items_.now.position.data(), items_.now.velocity.data(),
+                              items_.now.angular_velocity.data(), items_.history.views()});
 }
 
 void CudaBodies::take_steps(Real h) {

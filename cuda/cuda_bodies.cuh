@@ -30,8 +30,7 @@ class CudaBodies {
   const ShownContact* find_shown();
   // Over an implicit step: queues the contacts, which the particles' system reads; then takes their sums on
   // the host, and waits.
-  void find_steps(const StepStart& start);
-  void find_friction_steps(const FrictionStart& start);  // for laws with friction
+  void find_steps(const FrictionStart& start);
   void take_steps(Real h);
 
   // Queues the poses of the surfaces and the contacts of particles in the state of `query`, in the order of

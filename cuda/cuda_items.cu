@@ -21,8 +21,8 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       kernels(std::move(law)),
       surfaces(of, subdomain.period(), stream),
       halo_stream(on, of.parallel.transport),
-      list(kernels->history() > 0, slots_per_particle(of)),
-      history(packed_content(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
+      list(kernels->traits().history > 0, slots_per_particle(of)),
+      history(packed_content(of, kernels->traits().history), {of.space.min, subdomain.period()}, stream,
               {other, arena}),
       results(on, stream) {
   static_cast<FieldsThere&>(now) = fields_there(of);

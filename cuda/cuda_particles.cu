@@ -122,8 +122,9 @@ void CudaParticles::initial_forces() {
   ParticleArrays& now = items_.now;
   items_.refresh_ghosts();
   bodies_.find_loads();
-  items_.kernels->forces(items_.device(), items_.views(), items_.model.gravity, items_.owned,
-                         now.force.data(), now.loss_power.data(), now.angular_acceleration.data());
+  items_.kernels->run(items_.device(), items_.views(), items_.owned,
+                      ForceRequest{items_.model.gravity, now.force.data(), now.loss_power.data(),
+                                   now.angular_acceleration.data()});
   for_each(items_.device(), items_.owned,
            StartAccelerationItem{now.force.data(), now.velocity.data(), now.acceleration.data()});
   if (is_verlet(items_.model))
@@ -154,8 +155,8 @@ std::vector<EscapedParticle> CudaParticles::outside() {
     find_escaped_particles();
   }
   bodies_.find_loads();
-  items_.kernels->escaped_particles(items_.device(), items_.views(), items_.subdomain.box(),
-                                    static_cast<Index>(escaped.size()), escaped_particles_.data());
+  items_.kernels->run(items_.device(), items_.views(), static_cast<Index>(escaped.size()),
+                      EscapeRequest{items_.subdomain.box(), escaped_particles_.data()});
   copy_async(escaped.data(), escaped_particles_.data(), escaped.size(), items_.stream);
   wait_for(items_.stream);
   for (EscapedParticle& particle : escaped)
@@ -209,12 +210,14 @@ void CudaParticles::remove_escaped_contacts() {
   const bool verlet = is_verlet(items_.model);
   const Vec4* law_velocity = items_.law_velocity != nullptr ? items_.law_velocity : now.velocity.data();
   const Vec4* law_spin = items_.law_spin != nullptr ? items_.law_spin : now.angular_velocity.data();
-  items_.kernels->departures(
-      items_.device(), items_.views(now.position.data(), law_velocity, law_spin), items_.model.gravity,
-      items_.subdomain.box(), items_.owned,
+  const DepartureRequest request{
+      items_.model.gravity,
+      items_.subdomain.box(),
       {now.force.data(), now.acceleration.data(), verlet ? now.loss_power.data() : nullptr,
        now.integrator_loss.data(), now.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
-       verlet_step(items_.model), now.angular_acceleration.data()});
+       verlet_step(items_.model), now.angular_acceleration.data()}};
+  items_.kernels->run(items_.device(), items_.views(now.position.data(), law_velocity, law_spin),
+                      items_.owned, request);
 }
 
 }  // namespace scree

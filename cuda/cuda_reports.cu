@@ -42,9 +42,10 @@ void CudaReports::queue_energies() {
   const bool is_cohesive = items_.model.is_cohesive();
   cohesion_.resize(is_cohesive ? n : 0);
   elastic_.resize(n), pairs_.resize(n), contacts_.resize(n), springs_.resize(rotates ? n : 0);
-  items_.kernels->energies(items_.device(), items_.views(), items_.owned,
-                           {elastic_.data(), contacts_.data(), pairs_.data(),
-                            rotates ? springs_.data() : nullptr, is_cohesive ? cohesion_.data() : nullptr});
+  items_.kernels->run(
+      items_.device(), items_.views(), items_.owned,
+      EnergyOutputs{elastic_.data(), contacts_.data(), pairs_.data(), rotates ? springs_.data() : nullptr,
+                    is_cohesive ? cohesion_.data() : nullptr});
 }
 
 ParticleLedger CudaReports::ledger(Real verlet_step) {
@@ -68,7 +69,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   if (now.rotates)
     out.rotation =
         make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data(), bodies_.side());
-  if (items_.model.is_cohesive()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
+  if (items_.model.is_cohesive()) out.cohesion += results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
 }
@@ -124,7 +125,7 @@ void CudaReports::queue_values() {
   for (FieldColumn& column : o.columns) {
     const OutputRequest request{source, order, items_.owned, column.field.head.name, column.values.data()};
     if (column.field.reads_contacts)
-      items_.kernels->output(items_.device(), items_.views(), request);
+      items_.kernels->run(items_.device(), items_.views(), items_.owned, request);
     else
       with_own_output(request, [&](const auto& item) { for_each(items_.device(), items_.owned, item); });
   }
@@ -159,7 +160,7 @@ LineRequest CudaReports::count_lines() {
   LineRequest request{items_.now.row_key.data(), bodies_.find_shown(), items_.model.space.min,
                       items_.subdomain.period()};
   request.counts = contacts_.data();
-  items_.kernels->contact_lines(items_.device(), items_.views(), 0, items_.owned, request);
+  items_.kernels->run(items_.device(), items_.views(), items_.owned, request);
   with_space(items_.space, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, contacts_.data(), line_offsets_.data(),
                                                items_.owned + 1, items_.stream),
@@ -185,8 +186,8 @@ ContactLines CudaReports::contact_lines() {
     const Index end = std::max(first + 1, static_cast<Index>(next_offset - offsets.begin()) - 1);
     const auto count = static_cast<std::size_t>(offsets[end] - offsets[first]);
     lines_.resize_with_spare(count);
-    request.lines = lines_.data(), request.first_line = offsets[first];
-    if (count > 0) items_.kernels->contact_lines(items_.device(), items_.views(), first, end, request);
+    request.lines = lines_.data(), request.first_line = offsets[first], request.first = first;
+    if (count > 0) items_.kernels->run(items_.device(), items_.views(), end - first, request);
     copy_async(out.lines.data() + offsets[first], lines_.data(), count, items_.stream);
     first = end;
   }

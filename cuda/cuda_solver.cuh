@@ -1,5 +1,4 @@
-// The schedule of the linear solves of implicit steps: `iterate_chebyshev` of dem/implicit/block_solver.hpp
-// on the device.
+// The loop of the linear solves of implicit steps on the device; dem/cpu/cpu_solver.hpp is the CPU's.
 #pragma once
 
 #include <algorithm>
@@ -48,29 +47,31 @@ __global__ void __launch_bounds__(256, 3)
   if (c->alone && is_last_block(&c->finished_blocks, gridDim.x)) decide(c);
 }
 
-// begin(weights) queues the first directions. For every product, ghosts(on, product) queues the ghosts of its
-// directions, and item(product, weights), with the weights of the next directions, computes a particle's part
-// and returns the square of its residual. Returns the number of products.
-template <class Begin, class Ghosts, class MakeItem>
-int solve_on_device(CudaItems& items, SolverProgress& progress, Real largest_stiffness_ratio, Real tolerance,
-                    const Begin& begin, const Ghosts& ghosts, const MakeItem& item) {
+// of: the system, see `solve_on_host`; a product returns the square of a particle's residual. The products
+// are queued in batches, so that the host seldom waits. Returns their number.
+template <class System>
+int solve_on_device(CudaItems& items, SolverProgress& progress, System& of, Real largest_stiffness_ratio,
+                    Real tolerance) {
   constexpr int kBatch = 8;
   SolverControl* control = progress.device.data();
   SolverControl& h_control = progress.host[0];
   h_control = {tolerance, 0, 0, 0, 0, items.ranks.alone()};
   copy_async(control, &h_control, 1, items.stream);
   ChebyshevWeights weights = solver_weights(largest_stiffness_ratio);
-  begin(weights);
+  for_each(items.device(), items.owned, of.first(weights));
   items.halo_after_rows();
   for (int product = 0; product < kMostProducts; ++product) {
     weights.advance();
-    const auto of_product = item(product, weights);
+    const auto of_product = of.product(product, weights);
     using Item = std::remove_const_t<decltype(of_product)>;
+    const auto queue_ghosts = [&](Device on) {
+      items.halo_stream.halo.update(on, of.direction(product).data(), items.owned);
+    };
     const auto queue_rows = [&](Device on, Index first, Index end) {
       const unsigned blocks = std::max(1u, blocks_for(end - first));
       solver_kernel<Item><<<blocks, launches().block, 0, on.stream>>>(first, end, of_product, control);
     };
-    items.queue_overlapping_halo([&](Device on) { ghosts(on, product); }, queue_rows, nullptr);
+    items.queue_overlapping_halo(queue_ghosts, queue_rows, nullptr);
     if (!items.ranks.alone()) {
       items.halo_stream.halo.max({items.halo_stream.stream}, &control->largest, 1);
       decide_kernel<Item><<<1, 1, 0, items.halo_stream.stream>>>(control);

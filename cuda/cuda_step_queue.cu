@@ -137,7 +137,7 @@ VerletRequest StepQueue::request() {
              now.angular_velocity.data(),
              now.angular_acceleration.data(),
              now.orientation.data(),
-             {now.friction_loss.data(), now.rolling_loss.data(), now.twisting_loss.data()}};
+             {SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, now)}};
   r.force = now.force.data();
   r.box = items_.subdomain.box();
   r.drifting = now.drifting.data();

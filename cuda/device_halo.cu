@@ -81,9 +81,9 @@ void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, st
   const MotionGhostItem item{ghosts(), field(0, position, first_ghost), field(1, velocity, first_ghost)};
   for_each(device, entries(), item);
   if (!spin) return exchange(device, item.position, item.velocity);
-  const SpinGhostItem spins{ghosts(), field(2, *spin, first_ghost)};
+  const GhostCopyItem<Vec4> spins{ghosts(), field(2, *spin, first_ghost)};
   for_each(device, entries(), spins);
-  exchange(device, item.position, item.velocity, spins.spin);
+  exchange(device, item.position, item.velocity, spins.of);
 }
 
 }  // namespace scree

@@ -40,10 +40,12 @@ struct MotionGhostItem {
   }
 };
 
-struct SpinGhostItem {
+// A field that ghosts have unchanged.
+template <class T>
+struct GhostCopyItem {
   const Ghost* ghosts;
-  GhostField<Vec4> spin;
-  SCREE_HD void operator()(Index entry) const { spin.put(entry, spin.field[ghosts[entry].source]); }
+  GhostField<T> of;
+  SCREE_HD void operator()(Index entry) const { of.put(entry, of.field[ghosts[entry].source]); }
 };
 
 // Times a sample of the halo exchanges of positions and velocities: one per batch of explicit steps, and
@@ -110,6 +112,14 @@ class DeviceHalo {
   // spin or none; it may be null on a rank without items.
   void update_motion(Device device, Vec4* position, Vec4* velocity, std::optional<Vec4*> spin,
                      Index first_ghost);
+
+  // Copies another field of the originals to the ghosts.
+  template <class T>
+  void update(Device device, T* of, Index first_ghost) {
+    const GhostCopyItem<T> item{ghosts(), field(0, of, first_ghost)};
+    for_each(device, entries(), item);
+    exchange(device, item.of);
+  }
 
   // Queues the maxima over all ranks of n values >= 0 in device memory. Collective.
   void max(Device device, Real* values, Index n) {

@@ -28,14 +28,17 @@ std::size_t rounded_up(std::size_t bytes, std::size_t to) { return (bytes + to -
 
 }  // namespace
 
-// One array for both: a transfer takes longer to begin than to move these bytes.
+// One array for all: a transfer takes longer to begin than to move these bytes.
 void DevicePoses::write(const SurfacePoses& poses, Bytes& to) {
-  const std::size_t of_poses = poses.placed.size_bytes(), of_frames = poses.frames.size_bytes();
+  const std::size_t of_poses = poses.placed.size_bytes(), of_frames = poses.frames.size_bytes(),
+                    of_bodies = poses.free_bodies.size_bytes();
   count_ = poses.placed.size();
   frames_at_ = rounded_up(of_poses, alignof(SurfaceFrame));
-  to.resize(rounded_up(frames_at_ + of_frames, kWord)), posed_.resize(to.size());
+  free_bodies_at_ = rounded_up(frames_at_ + of_frames, alignof(FreeBody)), has_free_bodies_ = of_bodies > 0;
+  to.resize(rounded_up(free_bodies_at_ + of_bodies, kWord)), posed_.resize(to.size());
   std::memcpy(to.data(), poses.placed.data(), of_poses);
   if (of_frames > 0) std::memcpy(to.data() + frames_at_, poses.frames.data(), of_frames);
+  if (of_bodies > 0) std::memcpy(to.data() + free_bodies_at_, poses.free_bodies.data(), of_bodies);
 }
 
 // Until the last copy has read the pinned memory, and written what another stream will overwrite.

@@ -20,6 +20,10 @@ class DevicePoses {
   const SurfaceFrame* frames() const {
     return reinterpret_cast<const SurfaceFrame*>(posed_.data() + frames_at_);
   }
+  // Null where there are none.
+  const FreeBody* free_bodies() const {
+    return has_free_bodies_ ? reinterpret_cast<const FreeBody*>(posed_.data() + free_bodies_at_) : nullptr;
+  }
   const SurfacePose* start() const { return start_.data(); }
 
  private:
@@ -28,10 +32,11 @@ class DevicePoses {
   void await_upload();
   void write(const SurfacePoses& poses, Bytes& to);
 
-  // Poses of the surfaces, and their frames from byte frames_at_ on.
+  // Poses of the surfaces, their frames from byte frames_at_ on, and their bodies from free_bodies_at_ on.
   Bytes h_uploaded_, h_sent_;
   DeviceArray<unsigned char> posed_;
-  std::size_t frames_at_ = 0, count_ = 0;
+  std::size_t frames_at_ = 0, free_bodies_at_ = 0, count_ = 0;
+  bool has_free_bodies_ = false;
   Event uploaded_;
   bool uploading_ = false;  // whether the last copy may be under way
   DeviceArray<SurfacePose> start_;

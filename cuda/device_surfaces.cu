@@ -266,10 +266,13 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels,
           meshes_.before(),
           box_,
           query.history,
-          records_of(kernels.history()),
+          records_of(kernels.traits().history),
           query.spin,
           query.h,
-          interaction_range_};
+          interaction_range_,
+          nullptr,
+          nullptr,
+          poses_.free_bodies()};
 }
 
 void DeviceSurfaces::find_loads(Device device, Follows follows, const DeviceContactKernels& kernels,
@@ -299,25 +302,15 @@ std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, co
          key_of(meshes_.groups()) + key_of(placed_entries_);
 }
 
-void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
-                                const SurfaceQuery& query) {
-  h_step_sums_.resize_with_spare(h_chunks_.size());
-  meshes_.reserve_over_step(entries_);
-  const SurfaceViews views = entry_views(kernels, query);
-  meshes_.touch_over_step(device, views, start.position, poses_.start());
-  kernels.surface_steps(device, views, chunk_list(), {start, poses_.start()}, steps_.data(),
-                        h_step_sums_.data());
-}
-
-void DeviceSurfaces::find_friction_steps(Device device, const DeviceContactKernels& kernels,
-                                         const FrictionStart& start, const SurfaceQuery& query) {
-  friction_steps_.resize_with_spare(static_cast<std::size_t>(entries_));
+void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels,
+                                const FrictionStart& start, const SurfaceQuery& query) {
+  if (moves_) friction_steps_.resize_with_spare(static_cast<std::size_t>(entries_));
   h_step_sums_.resize_with_spare(h_chunks_.size());
   meshes_.reserve_over_step(entries_);
   const SurfaceViews views = entry_views(kernels, query);
   meshes_.touch_over_step(device, views, start.step.position, poses_.start());
-  kernels.surface_friction_steps(device, views, chunk_list(), {start, poses_.start(), friction_steps_.data()},
-                                 h_step_sums_.data());
+  kernels.surface_steps(device, views, chunk_list(), {start, poses_.start()},
+                        {steps_.data(), friction_steps_.data()}, h_step_sums_.data());
 }
 
 const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
@@ -337,13 +330,11 @@ void DeviceSurfaces::accumulate_load_works(Device device, const DeviceContactKer
 
 void DeviceSurfaces::accumulate_step_works(Device device, const DeviceContactKernels& kernels) {
   works_.reserve_entries(device, placed_entries_);
-  works_.accumulate(device, entry_views(kernels, {}), meshes_.groups(), ImplicitWorks{steps_.data()});
-}
-
-void DeviceSurfaces::accumulate_friction_works(Device device, const DeviceContactKernels& kernels) {
-  works_.reserve_entries(device, placed_entries_);
-  works_.accumulate(device, entry_views(kernels, {}), meshes_.groups(),
-                    ImplicitFrictionWorks{friction_steps_.data()});
+  const SurfaceViews views = entry_views(kernels, {});
+  if (moves_)
+    works_.accumulate(device, views, meshes_.groups(), ImplicitFrictionWorks{friction_steps_.data()});
+  else
+    works_.accumulate(device, views, meshes_.groups(), ImplicitWorks{steps_.data()});
 }
 
 std::vector<StepSums> DeviceSurfaces::step_sums() const {

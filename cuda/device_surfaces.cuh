@@ -78,24 +78,19 @@ class DeviceSurfaces {
   const Index* by_surface() const { return by_surface_.order(); }
   const SurfaceLoad* loads() const { return loads_[0].data(); }
   // Over an implicit step; `query` is its end, with the history that results if the step is accepted.
-  void find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
+  void find_steps(Device device, const DeviceContactKernels& kernels, const FrictionStart& start,
                   const SurfaceQuery& query);
-  // The same for laws with friction.
-  void find_friction_steps(Device device, const DeviceContactKernels& kernels, const FrictionStart& start,
-                           const SurfaceQuery& query);
   // Queues output values per entry from the loads of the step, which were evaluated at an instant for
   // particles in the state of `query`.
   const ShownContact* find_shown(Device device, const DeviceContactKernels& kernels,
                                  const SurfaceQuery& query);
   // Queues the losses at triangles over a closed step from the contacts evaluated last: over the explicit
-  // step of length h, over the implicit step, and the same with friction.
+  // step of length h, or over the implicit step.
   void accumulate_load_works(Device device, const DeviceContactKernels& kernels, Real h);
   void accumulate_step_works(Device device, const DeviceContactKernels& kernels);
-  void accumulate_friction_works(Device device, const DeviceContactKernels& kernels);
   DeviceTriangleWorks& works() { return works_; }
-  const SurfaceFriction* friction_steps() const {
-    return friction_steps_.data();
-  }  // per entry, from the last find_friction_steps()
+  // Per entry, from the last find_steps() where particles rotate.
+  const SurfaceFriction* friction_steps() const { return friction_steps_.data(); }
   // Of the contacts of the last find_loads(); waiting for them does not wait for the stream.
   const SurfaceLoadSums& load_sums() const { return load_sums_; }
   // Sums of the contacts evaluated last over an implicit step, once the stream is done: a surface may appear

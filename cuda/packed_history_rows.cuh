@@ -158,7 +158,7 @@ struct UnpackHistoryItem {
     const Index* const neighbors = rows.rows.neighbors + rows.rows.first(i);
     const Index entries = rows.rows.count(i);
     for (Index entry = RowLanes::own(); entry < entries; entry += RowLanes::kCount) {
-      Vec4 record[2]{};
+      Vec4 record[kMostRecords]{};
       if (first < end) find(rows.neighbor_key(neighbors[entry * kSlice], p), first, end, record);
       for (int r = 0; r < rows.records; ++r) records[entry * rows.records + r] = record[r];
     }

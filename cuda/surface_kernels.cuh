@@ -169,6 +169,7 @@ __global__ void __launch_bounds__(kLoadLanes, kLoadBlocks)
   admit_next_kernel();
   await_kernel_before();
   SurfaceViews now = in;
+  now.free_bodies = nullptr;  // surfaces at rest or driven: the compiler leaves out what moves bodies
   if (!query.open(now)) return;
   const LoadRecords records(shared);
   const Index k = thread_index();

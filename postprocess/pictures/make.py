@@ -8,7 +8,8 @@ Runs the decks into the folder RESULTS unless the run exists already, and writes
 runs on a GPU are made if they are named; their results may have been thinned there (scree-post thin). All others
 take one core a quarter of an hour. Needs postprocess/requirements.txt and, for paraview.png, the packages of
 jobs/setup.sh --paraview. The plots in this folder are made by tests/performance/table4.py,
-tests/performance/scaling_model.py and tests/verification/bulk/plots.py.
+tests/performance/scaling_model.py and tests/verification/bulk/plots.py; calibration_soil.png is the measured.png of
+`postprocess/scree-post calibrate uniaxial input/materials/soil.toml`.
 """
 
 import argparse
@@ -47,6 +48,8 @@ PICTURES = {
     "tutorial_heap.png": Picture("tutorial/2_heap", "picture"),
     "tutorial_digging.png": Picture("tutorial/4_digging", "picture"),
     "calibration_repose.png": Picture("calibration/angle_of_repose", "picture"),
+    "tine_in_soil.png": Picture("examples/tine_in_soil", "picture", ("--colors", "128")),
+    "bucket_of_soil.png": Picture("examples/bucket_of_soil", "picture", ("--opacity", "0.3", "--colors", "256")),
     "net_400.png": Picture("paper/net_400", "picture", settings=("time.end=0.62",)),
     "paraview.png": Picture(EXCAVATOR[0], "paraview", ("--time", "2.2", "--size", "1400", "1050"), EXCAVATOR[1]),
     "drum_lifters.webp": Picture("examples/drum_lifters", "animate", (*FILM, "--quality", "50")),

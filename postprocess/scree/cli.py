@@ -11,10 +11,12 @@ from collections.abc import Sequence
 from scree.commands import COMMANDS
 from scree.errors import ScreeError
 
+INTERRUPTED = 130  # as shells report a program that SIGINT ends
+
 
 def main(words: Sequence[str] | None = None) -> int:
     """Returns the exit code: 0 done, 1 if `compare` finds differences or a search fails, 2 if the command cannot be
-    carried out."""
+    carried out, 130 if it is interrupted."""
     parser = argparse.ArgumentParser(prog="scree-post", description="Evaluates the results of a run of Scree.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, (describe, run) in COMMANDS.items():
@@ -31,6 +33,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of the output has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
     except (ScreeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -56,6 +56,11 @@ Key& Key::left_out(const std::string& meaning) {
   return *this;
 }
 
+Key& Key::combined(Combining how) {
+  combining = how;
+  return *this;
+}
+
 Key& Key::about(const std::string& text) {
   sentence = text;
   return *this;

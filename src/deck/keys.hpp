@@ -43,6 +43,16 @@ struct FormerName {
   FormerSense sense = FormerSense::same;
 };
 
+// How the value of a key of [[contact.pairs]] follows from the pairs of two materials with themselves, where
+// contact.mixing makes their pair.
+enum class Combining {
+  none,    // no key of a pair of materials
+  same,    // it must be the same
+  mean,    // by the rule of contact.mixing
+  series,  // springs in series
+  other    // by a function of its own (model/builder/mixing.cpp)
+};
+
 constexpr std::size_t kLongestName = 200;  // [B]
 // The word of a choice that leaves the decision to the program.
 inline const std::string kAutomatic = "auto";
@@ -71,6 +81,7 @@ struct Key {
   std::vector<std::string> required_kinds;  // those for which the key is required; is_required: for all
   std::string sentence;
   const TableKeys* table = nullptr;  // keys of a table, of tables, or of a quantity
+  Combining combining = Combining::none;
 
   Key& formerly(const std::string& former, FormerSense sense = FormerSense::same);
   Key& above(Real limit);     // numbers > limit
@@ -103,6 +114,7 @@ struct Key {
     for (const Value value : selector_values) kinds.push_back(word_of(value));
     return *this;
   }
+  Key& combined(Combining how);
   Key& about(const std::string& text);
 };
 

@@ -1,121 +1,59 @@
 // Keys of contact laws, contact detection and materials.
 #include "deck/choices.hpp"
 #include "deck/keys.hpp"
+#include "deck/pair_laws.hpp"
 
 namespace scree {
 
 namespace {
 
-// Attraction of the two surfaces, in addition to the other keys of their pair.
-std::vector<Key> attraction_keys() {
+// Normal force of a pair. The keys of laws that add to it, and of friction and rolling resistance, are in
+// their files (deck/pair_laws.hpp).
+std::vector<Key> normal_keys() {
   return {
-      real("work_of_adhesion", "J/m^2")
-          .at_least(0)
-          .left_out("no adhesion")
-          .about(
-              "w, for Hertz's law: energy per area to separate the two surfaces. The normal force may then "
-              "be tensile with either value of limit_damping, and the friction limit includes the adhesive "
-              "force. Explicit steps in double precision only. Adhesion acts between particles and on "
-              "particles that touch walls or bodies, not between bodies or between bodies and walls."),
-      real("surface_energy", "J/m^2")
-          .at_least(0)
-          .left_out("work_of_adhesion is given, or no adhesion")
-          .about("In place of work_of_adhesion: w/2, of each of two equal surfaces."),
-      choice<Adhesion>("adhesion")
-          .left_out("jkr")
-          .about("With work_of_adhesion. jkr: the contact forms at touch, persists under tension and breaks "
-                 "at the pull-off force 3/2 pi w R* (Johnson, Kendall, Roberts, 1971; soft, sticky, large). "
-                 "dmt: a constant adhesive force 2 pi w R* while the surfaces touch (Derjaguin, Muller, "
-                 "Toporov, 1975; hard, small). All pairs of a deck have the same model."),
-      real("attraction", "N")
-          .at_least(0)
-          .left_out("none")
-          .about("A constant attractive force in addition to a linear or Hertz's law, while the two touch."),
-      real("attraction_range", "m")
-          .above(0)
-          .left_out("the attraction ends where the contact opens")
-          .about("Distance between the surfaces over which the attraction falls linearly to zero.")};
-}
-
-// Normal force, friction, rolling resistance and wear of a pair.
-std::vector<Key> law_keys() {
-  return {
-      texts("materials").entries(2).left_out("the only material").about("The two materials, in any order."),
+      texts("materials")
+          .entries(2)
+          .left_out("the only material")
+          .combined(Combining::other)
+          .about("The two materials, in any order."),
       real("stiffness", "N/m^n")
           .at_least(0)
           .left_out("from the materials' moduli, or from largest_overlap")
+          .combined(Combining::other)
           .about("K. 0 with damping 0: the two materials do not interact."),
       real("largest_overlap", "")
           .above(0)
           .within(0, 1)
           .left_out("the stiffness is given")
+          .combined(Combining::same)
           .about("In place of stiffness: overlap over radius that an undamped impact at impact_speed "
                  "reaches, for the heaviest particle of the deck and the pair's smallest radius. K = "
                  "(n+1)/2 m* v^2 / d^(n+1), d: that overlap, m*: mass of the heaviest particle, or half of "
                  "it where only particles meet particles."),
-      real("impact_speed", "m/s").above(0).left_out("none").about("Impact speed for largest_overlap."),
-      real("damping", "N s/m").at_least(0).otherwise("0.0").about("C."),
-      real("exponent", "").within(0.5, 4).otherwise("1.0").about("n."),
+      real("impact_speed", "m/s")
+          .above(0)
+          .left_out("none")
+          .combined(Combining::same)
+          .about("Impact speed for largest_overlap."),
+      real("damping", "N s/m").at_least(0).otherwise("0.0").combined(Combining::mean).about("C."),
+      real("exponent", "").within(0.5, 4).otherwise("1.0").combined(Combining::same).about("n."),
       real("restitution", "")
           .within(0, 1)
           .above(0)
           .left_out("no damping, as with 1")
+          .combined(Combining::other)
           .about("In place of damping: ratio of the speeds after and before a head-on impact, equal at all "
                  "speeds and masses, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact with limit_damping "
                  "and without; needs n >= 1. For surfaces with adhesion or attraction it holds for the law "
-                 "without these and with limit_damping = false. In m* a body counts as infinitely heavy in "
-                 "contacts with particles."),
+                 "without these and with limit_damping = false. m* includes the mass and the rotation of "
+                 "bodies at the contact, as if they had no joints."),
       boolean("limit_damping")
           .formerly("tension", FormerSense::negated)
           .otherwise("true")
-          .about("Whether the damping force is limited so that the total normal force never becomes tensile. "
-                 "false: the force F = K d^n + C d' may be tensile just before separation, as in the paper."),
-      real("friction", "")
-          .at_least(0)
-          .left_out("no friction")
-          .about("Coulomb's coefficient of friction: between particles, of particles on walls and bodies, "
-                 "and of bodies on each other and on walls. If any pair has friction, particles rotate."),
-      real("tangential_stiffness", "N/m")
-          .above(0)
-          .left_out("2/7 of a linear stiffness; for Hertz's law Mindlin's, from the shear moduli")
-          .about("Stiffness of the tangential spring, which acts until the contact slides."),
-      real("tangential_damping_ratio", "")
-          .at_least(0)
-          .otherwise("0.0")
-          .about("Damping ratio of the dashpot in parallel with the tangential spring, relative to critical "
-                 "damping of the tangential motion. It acts while the contact sticks, and the sum of both "
-                 "forces is limited by friction; it does not act while the contact slides."),
-      real("rolling_friction", "")
-          .at_least(0)
-          .left_out("no rolling resistance")
-          .about("mu_r: rolling resistance by a spring up to the moment mu_r R* F (Ai, Chen, Rotter, Ooi, "
-                 "2011, model C), R*: reduced radius. mu_r is the tangent of the slope on which a sphere "
-                 "begins to roll. Needs friction; 0: none."),
-      real("rolling_stiffness", "N m")
-          .above(0)
-          .left_out("2.25 K mu_r^2 R*^2, in 2D 3 K mu_r^2 R*^2, K: dF/dd")
-          .about("Stiffness of the rolling spring."),
-      real("rolling_damping_ratio", "")
-          .at_least(0)
-          .otherwise("0.0")
-          .about("Damping ratio of the dashpot in parallel with the rolling spring, within the same limit, "
-                 "relative to critical damping."),
-      real("rolling_damping", "N m s")
-          .at_least(0)
-          .left_out("none")
-          .about("Coefficient C of a viscous rolling moment C w, w: rolling rate; with the rolling spring "
-                 "or without. It holds nothing at rest. Needs friction."),
-      real("twisting_friction", "")
-          .at_least(0)
-          .left_out("friction, where there is rolling resistance in 3D; otherwise no twisting resistance")
-          .about("mu of the spring that resists twisting (relative rotation about the normal); it slides at "
-                 "the moment 2/3 a mu F, a: contact radius sqrt(R* d) (Marshall, 2009)."),
-      real("wear_coefficient", "1/Pa")
-          .within(0, 1)
-          .left_out("no wear")
-          .about("k/H of Archard's law (1953) for the field wear_depth: a mesh loses the volume k/H F s, F: "
-                 "normal force, s: sliding distance, computed as the dissipation of friction over the "
-                 "coefficient of friction. Shapes do not change. Needs friction above 0.")};
+          .combined(Combining::same)
+          .about(
+              "Whether the damping force is limited so that the total normal force never becomes tensile. "
+              "false: the force F = K d^n + C d' may be tensile just before separation, as in the paper.")};
 }
 
 const TableKeys& pair_keys() {
@@ -125,9 +63,11 @@ const TableKeys& pair_keys() {
         "and "
         "both materials have a Young's modulus: Hertz's law of spheres, or in 2D a linear law of discs of "
         "thickness L with K = pi/4 E* L.",
-        law_keys(), ""};
-    const std::vector<Key> attraction = attraction_keys();
-    pairs.keys.insert(pairs.keys.end(), attraction.begin(), attraction.end());
+        normal_keys(), ""};
+    for (const PairLaw& law : pair_laws()) {
+      const std::vector<Key> more = law.keys();
+      pairs.keys.insert(pairs.keys.end(), more.begin(), more.end());
+    }
     return pairs;
   }();
   return keys;
@@ -159,7 +99,8 @@ const TableKeys& contact_keys() {
                   "material with itself. none: it must be given. Otherwise stiffnesses act in series (K = 2 "
                   "K_a K_b / (K_a + K_b) for two linear laws; Hertz's law uses the materials' moduli: 1/E* = "
                   "sum (1 - nu^2)/E), and damping, damping ratios, restitution, coefficients of friction, "
-                  "adhesion and attraction are the geometric, arithmetic or harmonic mean, or the smaller or "
+                  "adhesion, plasticity ratios and attraction are the geometric, arithmetic or harmonic "
+                  "mean, or the smaller or "
                   "larger value. `scree check` prints the resulting pairs."),
        tables("pairs", pair_keys())},
       ""};

@@ -20,9 +20,10 @@ constexpr const char* kModelLimits = R"(The model has these limits today.
 Particles are discs (2D) or spheres (3D); there are no polygons. All particles exist from the start: none are
 inserted, bonded or broken.
 
-Friction acts between particles, bodies and walls. Rolling and twisting resistance and adhesion are available
-in explicit steps (velocity-verlet) only. Adhesion acts on particles only: bodies are attracted neither by
-each other nor by walls.
+Friction and rolling and twisting resistance act between particles, bodies and walls. JKR contacts, plastic
+contacts, liquid bridges and an attraction with a range beyond touch are available in explicit steps
+(velocity-verlet) only. Adhesion acts on particles and on the discs and spheres on bodies; a body's mesh does
+not adhere to planes. Liquid bridges have a constant volume each and exist between spheres and surfaces in 3D.
 
 Particles, and the discs and spheres on bodies, touch each other, planes and meshes. A mesh of a body touches
 planes with the corners of its convex hull. Meshes do not touch each other.
@@ -32,7 +33,7 @@ effect on them. Bodies with `kind = "spatial"` move freely in space, with spheri
 common joints (`input/README.md`). Joints have motors, servos, springs, stops and dry friction, but no
 clearance. Cylinders have no mass.
 
-There is no fluid and no heat transfer.
+There is no fluid but liquid bridges, and no heat transfer.
 )";
 
 void describe_key(std::string& out, const Key& key, const std::string& selector) {

@@ -1,30 +1,19 @@
 // Normal laws with adhesion: the theory of Johnson, Kendall and Roberts (JKR), and a cohesive force added to
-// another law, constant or after Derjaguin, Muller and Toporov (DMT). The force is not cut at zero, but for
-// pairs without adhesion, which follow the law without it. w is the work of adhesion [J/m^2]: twice the
-// surface energy where both surfaces are alike.
+// another law, constant or after Derjaguin, Muller and Toporov (DMT); liquid bridges: liquid_bridge.hpp. The
+// force is not cut at zero, but for pairs without adhesion, which follow the law without it. w is the work of
+// adhesion [J/m^2]: twice the surface energy where both surfaces are alike.
 #pragma once
 
 #include <cmath>
 #include <numbers>
 #include <type_traits>
 
+#include "base/elementary.hpp"
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
 #include "physics/normal_laws.hpp"
 
 namespace scree {
-
-// Cube root of x > 0 by Newton's method, whose iterates decrease after the first one. It uses + x / and
-// square roots only, which have the same bits on CPU and GPU.
-SCREE_HD Real cube_root(Real x) {
-  const Real fourth = std::sqrt(std::sqrt(x));
-  Real y = fourth * std::sqrt(std::sqrt(fourth));  // x^(5/16)
-  y = (2 * y + x / (y * y)) / 3;
-  for (Real next = y;; y = next) {
-    next = (2 * y + x / (y * y)) / 3;
-    if (!(next < y)) return y;
-  }
-}
 
 // JKR contact of two partners; Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971):
 //   F = 4 E* a^3 / (3 R*) - sqrt(8 pi w E* a^3),  d = a^2 / R* - sqrt(2 pi w a / E*)
@@ -119,7 +108,8 @@ struct JkrLaw {
       : JkrLaw(4 * p.effective_modulus / 3, std::sqrt(Real(5)) * p.damping_ratio, p.adhesion_work,
                p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr);
+    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.jkr) &&
+           !p.own;
   }
 
   SCREE_HD JkrPair of_pair(const PairSize& size) const {
@@ -190,7 +180,7 @@ struct CohesiveLaw {
                     static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
                     static_cast<Scalar>(p.range)) {}
   static bool accepts(const NormalLawParameters& p) {
-    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0);
+    return NormalLaw::accepts(p.without_cohesion()) && !(p.jkr && p.adhesion_work > 0) && !p.own;
   }
 
   SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {
@@ -210,17 +200,19 @@ struct CohesiveLaw {
 // Largest interaction range beyond touch of a pair of materials [m], for particles of at most this radius.
 inline Real largest_interaction_range(const NormalLawParameters& law, Real largest_radius) {
   if (law.range > 0) return law.range;
+  constexpr Real kRoundOff = 1e-9;
+  if (law.own) return law.own->interaction_range(largest_radius);
   if (!law.jkr || law.adhesion_work == 0) return 0;
   // The pull-off distance grows with both radii: the bound is that of a sphere on a plane, plus a margin for
   // round-off.
-  return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).interaction_range() * (1 + Real(1e-9));
+  return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).interaction_range() * (1 + kRoundOff);
 }
 
 // Range of the contact search beyond touch [m]. The step in which a JKR contact breaks must still find the
-// pair, to count the dissipated energy.
+// pair, to count the dissipated energy; a bridge that breaks has no springs.
 inline Real contact_search_range(const NormalLawParameters& law, Real largest_radius) {
   constexpr Real kPastPullOff = 1.25;
-  return (law.range > 0 ? 1 : kPastPullOff) * largest_interaction_range(law, largest_radius);
+  return (law.jkr ? kPastPullOff : 1) * largest_interaction_range(law, largest_radius);
 }
 
 }  // namespace scree

@@ -38,15 +38,19 @@ SCREE_HD ContactGeometry plane_pair(Vec3 center, Real radius, Vec3 point, Vec3 n
   return {radius - distance, distance, normal, 1};
 }
 
-// Radii and masses of the two partners. Planes have no curvature; walls, and bodies in contact with
-// particles, count as infinitely heavy.
+// Radii and masses of the two partners. Planes have no curvature; walls are infinitely heavy, and so are
+// bodies in contact with particles where a law reads their mass alone.
 template <class T>
 struct PairSizeOf {
   T radius_i, radius_j;  // [m]; infinite for a plane
   T mass_i, mass_j;      // [kg]; infinite for immovable partners
+  // What the motion of bodies adds to 1/m* [1/kg]: their inverse masses, unless mass_i and mass_j have them,
+  // and the part (r x n).J^-1 (r x n) of their rotation.
+  T of_bodies = 0;
 
   SCREE_HD T effective_radius() const { return inverse(inverse(radius_i) + inverse(radius_j)); }
-  SCREE_HD T effective_mass() const { return inverse(inverse(mass_i) + inverse(mass_j)); }
+  // m*, the effective mass of a motion along the normal.
+  SCREE_HD T effective_mass() const { return inverse(inverse(mass_i) + inverse(mass_j) + of_bodies); }
 };
 using PairSize = PairSizeOf<Real>;
 

@@ -2,7 +2,10 @@
 // of a law recompiles only what evaluates it.
 #pragma once
 
+#include <vector>
+
 #include "base/types.hpp"
+#include "physics/own_parameters.hpp"
 
 namespace scree {
 
@@ -22,15 +25,32 @@ struct NormalLawParameters {
   bool jkr = false;        // true: JKR (Johnson, Kendall, Roberts); false: DMT (Derjaguin, Muller, Toporov)
   Real attraction = 0;     // constant cohesive force [N]
   Real range = 0;          // distance beyond touch over which it decreases to zero [m]
+  AnyParameters own{};     // of one law alone
 
   // Whether particles of these materials interact.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
-  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0; }
+  bool is_cohesive() const { return adhesion_work > 0 || attraction > 0 || own->attracts(); }
+  // Whether F = K d.
+  bool is_linear() const { return exponent == 1 && own->is_linear(); }
   NormalLawParameters without_cohesion() const {
-    return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
+    NormalLawParameters law{normal_stiffness, normal_damping,    exponent,
+                            tension,          effective_modulus, damping_ratio};
+    if (!own->attracts()) law.own = own;
+    return law;
+  }
+  // All numbers on which trial impacts depend. The structured bindings name every member, so that a new
+  // member does not compile until it is added here.
+  std::vector<Real> numbers() const {
+    const auto& [k, c, n, tensile, e, zeta, work, is_jkr, pull, reach, of_law] = *this;
+    std::vector<Real> all{k, c, n, Real(tensile), e, zeta, work, Real(is_jkr), pull, reach};
+    const std::vector<Real> more = of_law->numbers();
+    all.push_back(of_law ? 1 : 0), all.insert(all.end(), more.begin(), more.end());
+    return all;
   }
   // Whether law_of_size() depends on the partners' sizes.
-  bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
+  bool depends_on_size() const {
+    return effective_modulus > 0 || damping_ratio > 0 || own->depends_on_size();
+  }
 };
 
 // Friction parameters.
@@ -39,6 +59,15 @@ struct Friction {
   Real stiffness = 0;      // k_t of `LinearSlider` [N/m]
   Real shear_modulus = 0;  // G* of `MindlinSlider` [Pa]
   Real damping_ratio = 0;  // zeta of the tangential dashpot [-]
+  AnyParameters own{};     // of one law alone
+
+  std::vector<Real> numbers() const {  // as NormalLawParameters::numbers()
+    const auto& [mu, k_t, g, zeta, of_law] = *this;
+    std::vector<Real> all{mu, k_t, g, zeta, Real(of_law ? 1 : 0)};
+    const std::vector<Real> more = of_law->numbers();
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 };
 
 // Parameters of the rolling and twisting resistance.
@@ -49,6 +78,16 @@ struct RollingParameters {
   Real damping_ratio = 0;      // zeta of its dashpot [-]
   Real damping = 0;            // C of `ViscousRolling` [N m s]
   Real twisting_friction = 0;  // mu of `MarshallTwisting` [-]
+  AnyParameters own{};         // of one law alone
+
+  bool act() const { return friction > 0 || damping > 0 || twisting_friction > 0 || own; }
+  std::vector<Real> numbers() const {  // as NormalLawParameters::numbers()
+    const auto& [mu, factor, k_r, zeta, c, twisting, of_law] = *this;
+    std::vector<Real> all{mu, factor, k_r, zeta, c, twisting, Real(of_law ? 1 : 0)};
+    const std::vector<Real> more = of_law->numbers();
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 };
 
 }  // namespace scree

@@ -19,14 +19,56 @@ struct NormalContact {
 
 // Optional members of a normal law's pair type, beside the functions of the overlap in normal_laws.hpp:
 //   interaction_range()    beyond touch [m]; default: none
-//   kHysteretic = true     JKR: contacts form at touch, d = 0, and break at d = -interaction_range()
+//   kHysteretic = true     JKR, bridges: contacts form at touch, d = 0, and break at d = -interaction_range()
 //   formation_loss()       with kHysteretic: energy that the formation of a contact dissipates [J]
 //   contact_radius(d)      [m]; default: sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m]; default: slope(d)
 //   slope_of(radius)       slope(d) from contact_radius(d), which is a root less; default: slope(d)
+//   elastic_of(radius, d), damping_of(radius)   likewise
 //   radius                 R*, where the law uses it itself
 //   adhesion(d)            adhesive part of the load that limits friction [N]; default: 0
+//   friction_load(F, d)    that load where it is not the normal force F plus adhesion(d) [N]
 //   cohesion(d)            adhesive part of energy(d) [J]; default: 0
+// A law whose force depends on more than the overlap has a type `State` with the numbers that a contact keeps
+// from step to step, all even under exchange of the partners, and zero for new contacts: `NoState` below has
+// its members. Its pair type has
+//   after(old, d)          the pair at the end of a step along a straight path from the state `old` to the
+//                          overlap d, with the new `state`; the functions above hold for that state
+//   dissipated             by this step, beside the damper; never negative [J]
+
+struct NoState {
+  static constexpr int kNumbers = 0;
+
+  // As `ContactLaw::read_history()` and `write_history()`.
+  template <class Number>
+  SCREE_HD static NoState read(const Number&) {
+    return {};
+  }
+  template <class Store>
+  SCREE_HD void write(const Store&) const {}
+  friend bool operator==(const NoState&, const NoState&) = default;
+};
+
+template <class NormalLaw>
+struct NormalStateOf {
+  using State = NoState;
+};
+template <class NormalLaw>
+requires requires { typename NormalLaw::State; }
+struct NormalStateOf<NormalLaw> {
+  using State = typename NormalLaw::State;
+};
+template <class NormalLaw>
+inline constexpr bool kHasState = NormalStateOf<NormalLaw>::State::kNumbers > 0;
+
+// The law of a pair after a step; `pair` itself without a state.
+template <class Pair, class State>
+SCREE_HD decltype(auto) after_step(const Pair& pair, const State& old, Real d) {
+  if constexpr (State::kNumbers > 0)
+    return pair.after(old, d);
+  else
+    return (pair);
+}
 
 template <class NormalLaw>
 inline constexpr bool kIsHysteretic = false;
@@ -99,7 +141,10 @@ template <class NormalLaw>
 SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size, Real force, Real d,
                                       Real d0) {
   Real load = force;
-  if constexpr (requires { law.adhesion(d); }) load += law.adhesion(d);
+  if constexpr (requires { law.friction_load(force, d); })
+    load = law.friction_load(force, d);
+  else if constexpr (requires { law.adhesion(d); })
+    load += law.adhesion(d);
   const Real r = effective_radius(law, size), radius = contact_radius(law, r, d),
              radius0 = contact_radius(law, r, d0);
   return {load > 0 ? load : 0,

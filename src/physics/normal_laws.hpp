@@ -14,6 +14,7 @@ namespace scree {
 // Every law below has
 //   Law(parameters)           its parameters from those of the deck; accepts() says whether it applies
 //   tension                   as in NormalLawParameters
+//   kUsesMass = false         if no number depends on the partners' masses; default: some may
 //   as<T>()                   the law with numbers of type T
 //   of_pair(size)             the law for partners of these sizes, with functions of the overlap d > 0:
 //   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
@@ -28,6 +29,7 @@ namespace scree {
 template <class T>
 struct LinearLawOf {
   using Scalar = T;
+  static constexpr bool kUsesMass = false;
   T normal_stiffness = 0;  // K [N/m]
   T normal_damping = 0;    // C [N s/m]
   bool tension = false;
@@ -38,7 +40,7 @@ struct LinearLawOf {
   explicit LinearLawOf(const NormalLawParameters& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.is_cohesive();
+    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.is_cohesive() && !p.own;
   }
 
   // Member by member: gcc treats a copy of the whole object as one memory access and does not vectorize it.
@@ -75,7 +77,7 @@ struct LinearRestitutionLawOf {
       : LinearRestitutionLawOf(T(p.normal_stiffness), T(p.normal_damping),
                                T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
   static bool accepts(const NormalLawParameters& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && !p.is_cohesive();
+    return p.exponent == 1 && p.effective_modulus == 0 && !p.is_cohesive() && !p.own;
   }
 
   SCREE_HD LinearLawOf<T> of_pair(const PairSizeOf<T>& size) const {
@@ -110,7 +112,9 @@ struct PowerLawOf {
   explicit PowerLawOf(const NormalLawParameters& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
                    T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness * (p.exponent + 1) / 2))) {}
-  static bool accepts(const NormalLawParameters& p) { return p.effective_modulus == 0 && !p.is_cohesive(); }
+  static bool accepts(const NormalLawParameters& p) {
+    return p.effective_modulus == 0 && !p.is_cohesive() && !p.own;
+  }
 
   SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>& size) const {
     PowerLawOf pair = *this;
@@ -155,11 +159,15 @@ struct HertzPairOf {
 
   // Radius of the contact area [m].
   SCREE_HD T contact_radius(T d) const { return root(radius * d); }
-  SCREE_HD T elastic(T d) const { return modulus * contact_radius(d) * d; }
+  SCREE_HD T elastic(T d) const { return elastic_of(contact_radius(d), d); }
+  SCREE_HD T elastic_of(T contact_radius, T d) const { return modulus * contact_radius * d; }
   SCREE_HD T slope(T d) const { return slope_of(contact_radius(d)); }
   SCREE_HD T slope_of(T contact_radius) const { return T(1.5) * modulus * contact_radius; }
   SCREE_HD T energy(T d) const { return T(0.4) * modulus * contact_radius(d) * d * d; }
-  SCREE_HD T damping(T d) const { return damping_factor * root(mass * modulus * contact_radius(d)); }
+  SCREE_HD T damping(T d) const { return damping_of(contact_radius(d)); }
+  SCREE_HD T damping_of(T contact_radius) const {
+    return damping_factor * root(mass * modulus * contact_radius);
+  }
   // 4/5 c (q^5 - p^5) / (q^4 - p^4) with p, q = d^(1/4), expanded to avoid the cancellation.
   SCREE_HD T mean_damping(T d0, T d1) const {
     const T p2 = std::sqrt(d0), q2 = std::sqrt(d1), p = std::sqrt(p2), q = std::sqrt(q2);
@@ -192,7 +200,7 @@ struct HertzLawOf {
       : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
   // Pairs that do not interact are accepted by any law.
   static bool accepts(const NormalLawParameters& p) {
-    return (p.effective_modulus > 0 || !p.acts()) && !p.is_cohesive();
+    return (p.effective_modulus > 0 || !p.acts()) && !p.is_cohesive() && !p.own;
   }
 
   SCREE_HD HertzPairOf<T> of_pair(const PairSizeOf<T>& size) const {
@@ -205,14 +213,25 @@ struct HertzLawOf {
 };
 using HertzLaw = HertzLawOf<Real>;
 
-// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius; for estimates.
+// Equivalent K, C and n of partners of these sizes at an overlap of 1 % of a radius, with the law's own
+// parameters; for estimates.
 inline NormalLawParameters law_of_size(const NormalLawParameters& law, const PairSize& size) {
-  if (!law.depends_on_size()) return law;
+  if (!law.depends_on_size()) {
+    NormalLawParameters same = law;
+    same.normal_damping += law.own->damping(size);
+    return same;
+  }
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
-  if (law.effective_modulus == 0)
-    return {law.normal_stiffness, PowerLaw(law).of_pair(size).damping(overlap), law.exponent, law.tension};
-  const auto pair = HertzLaw(law).of_pair(size);
-  return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), law.tension};
+  NormalLawParameters out{law.normal_stiffness, 0, law.exponent, law.tension};
+  if (law.effective_modulus == 0) {
+    out.normal_damping = PowerLaw(law).of_pair(size).damping(overlap);
+  } else {
+    const auto pair = HertzLaw(law).of_pair(size);
+    out.normal_stiffness = pair.modulus * std::sqrt(pair.radius), out.exponent = Real(1.5);
+    out.normal_damping = pair.damping(overlap);
+  }
+  out.normal_damping += law.own->damping(size), out.own = law.own;
+  return out;
 }
 
 }  // namespace scree

@@ -16,7 +16,8 @@ namespace scree {
 // Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old), the step of
 // the tangential moment from the previous one, rotated with the contact; and rolling_at(contact, spring,
 // rate), the moment at an instant. Every twisting law has twisting(contact, old) and twisting_at() for the
-// normal moment.
+// normal moment. For implicit steps (step_rolling.hpp) both have slider(contact), and rolling laws
+// viscosity(), the coefficient of a moment without limit. limit_per_load(contact): limit over load [m].
 
 // Effective inertia of rolling about the contact: 1/I_r = sum 1/(I + m R^2) [kg m^2].
 SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
@@ -54,6 +55,8 @@ struct ElasticPlasticRolling {
         damping_ratio > 0 ? dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k) : 0;
     return {k, k0, dashpot, arm * c.normal.friction_load};
   }
+  SCREE_HD Real viscosity() const { return 0; }
+  SCREE_HD Real limit_per_load(const RollingContact& c) const { return friction * c.normal.effective_radius; }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
     return spring_step(slider(c), old, c.motion.rolling, c.motion.h);
   }
@@ -69,6 +72,9 @@ struct ViscousRolling {
   Real damping = 0;  // C [N m s]
 
   SCREE_HD Real stiffness_at(const PairSize&, Real) const { return 0; }
+  SCREE_HD SpringSlider slider(const RollingContact&) const { return {}; }
+  SCREE_HD Real viscosity() const { return damping; }
+  SCREE_HD Real limit_per_load(const RollingContact&) const { return 0; }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3) const {
     SpringStep out{};
     out.acting = (damping / c.motion.h) * c.motion.rolling;
@@ -93,6 +99,9 @@ struct MarshallTwisting {
     return {stiffness_at(a, c.friction.stiffness), stiffness_at(c.normal.radius0, c.friction.stiffness0),
             a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.friction_load};
   }
+  SCREE_HD Real limit_per_load(const RollingContact& c) const {
+    return Real(2) / 3 * c.normal.radius * friction;
+  }
   SCREE_HD SpringStep twisting(const RollingContact& c, Vec3 old) const {
     return spring_step(slider(c), old, c.motion.twisting * c.motion.normal1, c.motion.h);
   }
@@ -111,6 +120,11 @@ struct EitherRolling {
   SCREE_HD Real stiffness_at(const PairSize& size, Real of_contact) const {
     return spring.stiffness_at(size, of_contact);
   }
+  SCREE_HD SpringSlider slider(const RollingContact& c) const {
+    return spring.friction > 0 ? spring.slider(c) : SpringSlider{};
+  }
+  SCREE_HD Real viscosity() const { return viscous.damping; }
+  SCREE_HD Real limit_per_load(const RollingContact& c) const { return spring.limit_per_load(c); }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
     SpringStep out{};
     if (spring.friction > 0) out = spring.rolling(c, old);
@@ -130,6 +144,7 @@ template <class Rolling, class Twisting = FreeRolling>
 struct RollingAndTwisting {
   static constexpr bool acts = true;
   static constexpr int kHistory = Rolling::kHistory > 0 || Twisting::kHistory > 0 ? 3 : 0;
+  static constexpr bool kRolls = Rolling::acts, kTwists = Twisting::acts;
   Rolling rolling{};
   Twisting twisting{};
 

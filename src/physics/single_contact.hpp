@@ -12,12 +12,21 @@
 
 namespace scree {
 
-// Laws with friction and without adhesion. Those without friction have `ContactLaw::load`.
+// A tangential law whose formulas are not those below says kDoubleOnly, as one beside another rolling law
+// than AnyRolling.
+template <class Tangential>
+inline constexpr bool kHasOtherFormulas = requires {
+  Tangential::kDoubleOnly;
+};
+
+// Laws with friction, without adhesion and without a state of the normal law. Those without friction have
+// `ContactLaw::respond`.
 template <class Law>
 inline constexpr bool kHasSingleForm = false;
 template <class Law>
 requires Law::kNeedsMotion inline constexpr bool kHasSingleForm<Law> =
-    Law::Tangential::acts && !Law::kHasRange;
+    Law::Tangential::acts && !Law::kHasRange && !Law::kStateful &&
+    !kHasOtherFormulas<typename Law::Tangential>;
 
 template <int kKinds>
 struct SingleLoad {
@@ -81,7 +90,8 @@ SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair
     }
   }
   if (shrinks)
-    out.loss += single_quotient<kNear>(dot(start, start) / 2 * (1 - retained), p.stiffness0);
+    out.loss += (1 - retained) / 2 *
+                (single_quotient<kNear>(dot(start, start), p.stiffness0) + dot(start, displacement));
   else if (p.stiffness > p.stiffness0) {
     const Vec3f spring = in_single(out.spring);
     const float after = single_quotient<kNear>(dot(spring, spring) * (p.stiffness - step_stiffness),
@@ -106,7 +116,8 @@ SCREE_HD SingleOutcome<kLossKindsOf<Law>> single_load(const Law& law, const Sing
   constexpr bool kNear = Law::Rolling::acts;
   const auto normal = law.normal.template as<float>().of_pair(step.size);
   const auto& g = step.geometry;
-  const ContactForceOf<float> f = contact_force(normal, g.overlap, g.rate(step.velocity));
+  const float rate = g.rate(step.velocity);
+  const ContactForceOf<float> f = contact_force(normal, g.overlap, rate);
   const SinglePair pair =
       step.overlap0 < 0 ? step.over(single_quotient<kNear>(g.overlap, g.overlap - step.overlap0)) : step;
   const float radius = single_contact_radius(step.size, g.overlap),
@@ -128,7 +139,10 @@ SCREE_HD SingleOutcome<kLossKindsOf<Law>> single_load(const Law& law, const Sing
   SingleOutcome<kLossKindsOf<Law>> out;
   out.force = g.along(f.force) - step.lever_arm_ratio * spring.acting;
   out.torque_i = step.size.radius_i * cross(step.normal, spring.acting);
-  out.loss = f.loss + single_quotient<kNear>(spring.loss, step.h), out.losses[kFrictionLoss] = spring.loss;
+  const float at_start = step.overlap0 > 0 ? damper_power(normal, step.overlap0, radius0, rate) : 0;
+  out.loss = mean_damper_power(at_start, f.loss, g.overlap + step.h * rate <= 0) +
+             single_quotient<kNear>(spring.loss, step.h);
+  out.losses[kFrictionLoss] = spring.loss;
   out.history = {spring.spring, {}, false};
   if constexpr (Law::Rolling::acts) {
     const SingleNormal contact{load,

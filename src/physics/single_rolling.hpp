@@ -116,7 +116,7 @@ SCREE_HD SingleStep<Spring> single_slider_step(const SingleSlider& p, Spring sta
         (length > p.limit * p.limit ? (p.limit * root_and_inverse(length).inverse) * sum : sum) - trial;
     out.loss = dot(out.dashpot, displacement);
   }
-  out.loss += single_unloading_loss(p, k, start, start + out.change);
+  out.loss += single_unloading_loss(p, k, start, start + out.change) + k.lost / 2 * dot(start, displacement);
   return out;
 }
 

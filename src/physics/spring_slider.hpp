@@ -22,7 +22,7 @@ SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
 struct SpringLosses {
   Real sliding = 0;    // sliding at the limit
   Real dashpot = 0;    // dashpot; never negative
-  Real unloading = 0;  // change of stiffness under load; never negative
+  Real unloading = 0;  // change of stiffness under load
 
   SCREE_HD Real sum() const { return sliding + dashpot + unloading; }
   SCREE_HD SpringLosses& operator+=(const SpringLosses& part) {
@@ -108,10 +108,11 @@ SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3
 //   k.
 // - Return to the limit along the trial force. While the spring sticks, the dashpot acts, and the sum stays
 //   within the limit; while it slides, the force equals the limit: neither creates energy.
-// The work of the spring's mean force and of the dashpot over the displacement is exactly the change of
-// `spring_energy()` plus the losses. The sliding loss is the mean force times the sliding displacement: it
-// could be negative only if within one step the limit dropped below the old force and the displacement
-// reversed by more than both.
+// The work of the spring's mean force, that of the forces at both ends, and of the dashpot over the
+// displacement is exactly the change of `spring_energy()` plus the losses. The sliding loss is the force
+// times the sliding displacement: it could be negative only if within one step the limit dropped below the
+// old force and the displacement reversed by more than both. So could the loss by unloading if the
+// displacement reversed by more than the elongation.
 SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 displacement, Real h) {
   SpringStep out;
   const StiffnessStep k = stiffness_step(p);
@@ -124,7 +125,9 @@ SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 displaceme
     out.acting = shortened(fused(p.dashpot * reciprocal(h), displacement, trial), p.limit);
     out.losses.dashpot = dot(out.acting - out.spring, displacement);
   }
+  // The step begins with the force `old`: where the stiffness shrinks, its excess over `start` does work.
   out.losses.unloading = unloading_loss(p, k, old, out.spring);
+  if (k.remaining < 1) out.losses.unloading += (1 - k.remaining) / 2 * fused_dot(old, displacement);
   return out;
 }
 

@@ -55,8 +55,9 @@ SCREE_HD Real start_force(const NormalLaw& law, const ContactStep& c) {
 // With that part from linear interpolation of the overlap, the elastic work (F0 + F) / 2 (d1 - d0) is exactly
 // the change of the elastic energy: no step size creates energy at impacts. This is the discrete gradient of
 // LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0, where the
-// law's force may jump by C d_dot, so that Newton's method cannot cycle between open and closed. Negative
-// derivatives are set to 0.
+// law's force may jump by C d_dot, so that Newton's method cannot cycle between open and closed; with an
+// attraction A it falls from 0 to the jump -A within the step that closes the contact. Negative derivatives
+// are set to 0.
 
 // Closing contact, d0 <= 0 < d1: in contact over the fraction d1 / (d1 - d0), at the rate (d1 - d0) / h.
 template <class NormalLaw>
@@ -64,7 +65,7 @@ SCREE_HD StepContactForce touching_force(const NormalLaw& law, const ContactStep
   const Real change = c.overlap1 - c.overlap0;
   const Real elastic = 2 * law.energy(c.overlap1) / change;
   const Real slope = (2 * law.elastic(c.overlap1) - elastic) / change + 2 * law.damping(c.overlap1) / c.h;
-  return {elastic + 2 * law.mean_damping(0, c.overlap1) * c.overlap1 / c.h, slope, 0};
+  return {elastic + 2 * law.mean_damping(0, c.overlap1) * c.overlap1 / c.h, slope > 0 ? slope : 0, 0};
 }
 
 // Opening contact with tension, d1 <= 0 < d0: in contact over the fraction d0 / (d0 - d1).
@@ -74,7 +75,7 @@ SCREE_HD StepContactForce releasing_force(const NormalLaw& law, const ContactSte
   const Real change = c.overlap0 - c.overlap1;
   const Real elastic = 2 * law.energy(c.overlap0) / change;
   const Real damper = 2 * law.mean_damping(0, c.overlap0) * c.overlap0 / c.h;
-  return {elastic - damper - start.force, elastic / change, 0};
+  return {elastic - damper - start.force, elastic > 0 ? elastic / change : 0, 0};
 }
 
 // Opening contact without tension: d0 > 0, and the law's force F1 at the end is negative (end_force,

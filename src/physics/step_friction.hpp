@@ -20,7 +20,8 @@ struct FrictionStep {
   PairSize size;
   Real start_force, end_force;  // of the normal law at both ends [N]
   Real step_force;              // normal force that the step is solved with, see `StepContact` [N]
-  // Lagged limit of the mean force over the step [N]; negative: the limit follows the normal force.
+  // Lagged limit of the mean force over the step [N]; for laws with rolling resistance the lagged load that
+  // all limits are proportional to, see `StepFriction::limit`. Negative: the limits follow the normal force.
   Real lagged_limit;
 };
 
@@ -30,7 +31,9 @@ struct StepFriction {
   // Force at the start, force that the step is solved with, force at the end [N]; tangential at normal0,
   // normal1, normal1.
   Vec3 start, step, end;
-  Real limit;  // of the mean force over the step [N]
+  // Limit of the mean force over the step [N]. For laws with rolling resistance: the load of that limit,
+  // which determines the limits of rolling and twisting too [N].
+  Real limit;
   // Derivatives of `step`: `stiffness` with respect to the slip perpendicular to `direction` [N/m], and
   // `normal_force_slope` along `direction` with respect to step_force. `direction` is the unit vector of
   // sliding, or zero while the contact sticks. `overlap_slope` is the derivative with respect to the overlap
@@ -97,10 +100,13 @@ SCREE_HD StepFriction step_friction(const Law& law, const FrictionStep& c, Vec3 
     out.start = acting_at(first, spring, c.slip_rate0);
   }
   if (!(share > 0)) return out;
-  const NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
-                                               c.step.overlap1, c.step.overlap0);
+  NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
+                                         c.step.overlap1, c.step.overlap0);
+  if constexpr (Law::Rolling::acts)
+    if (is_lagged) contact.friction_load = c.lagged_limit;
   SpringSlider slider = law.tangential.slider(c.size, c.motion, contact), end{};
-  if (is_lagged) slider.limit = c.lagged_limit;
+  if constexpr (!Law::Rolling::acts)
+    if (is_lagged) slider.limit = c.lagged_limit;
   if (ends) end = slider_at(law, c, c.end_force, c.step.overlap1, c.motion.lever_arm_ratio);
   const Real twice = 2 * slider.limit, end_limit = is_lagged           ? slider.limit
                                                    : end.limit < twice ? end.limit
@@ -108,7 +114,7 @@ SCREE_HD StepFriction step_friction(const Law& law, const FrictionStep& c, Vec3 
   if (slider.dashpot > 0 && starts) slider.dashpot *= dashpot_part(first, spring);
   const StepSpring over = step_spring(slider, rotated_tangential(c.motion, spring), share * c.motion.slip,
                                       share * c.motion.h, end_limit);
-  out.limit = share * slider.limit;
+  out.limit = share * (Law::Rolling::acts ? contact.friction_load : slider.limit);
   out.step = (2 * share) * over.mean - rotated_tangential(c.motion, out.start);
   out.stiffness = 2 * share * share * over.stiffness;
   if (!is_lagged)

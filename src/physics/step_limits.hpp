@@ -30,14 +30,20 @@ inline constexpr Real kMostBodyPhase = 0.7, kMostAmongBodies = 2;
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
 // Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
-// radius.
-inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+// radius; for plastic pairs that of the first loading.
+inline Real loading_stiffness(const NormalLawParameters& of, const PairSize& size) {
   const NormalLawParameters law = law_of_size(of, size);
   // The slope of a cohesive force that decreases with distance must be resolved, too.
-  if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
+  const Real own = of.own->stiffness(size);
+  if (law.exponent == 1)
+    return std::max({law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0, own});
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
   if (of.jkr && of.is_cohesive()) return JkrLaw(of).of_pair(size).slope(overlap);
-  return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
+  return std::max(law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1), own);
+}
+// The largest stiffness at this overlap: for plastic pairs that of unloading.
+inline Real typical_stiffness(const NormalLawParameters& of, const PairSize& size) {
+  return of.own->unloading_stiffness(loading_stiffness(of, size));
 }
 
 // Circular frequency of a single undamped contact [1/s].
@@ -83,17 +89,20 @@ SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
 // Tangential stiffness [N/m] for estimates; where it depends on the overlap, at 1 % of the smaller radius.
 inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
   if (of.friction == 0) return 0;
+  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j),
+             radius = std::sqrt(size.effective_radius() * overlap);
+  if (of.own) return of.own->slip_stiffness(radius);
   if (of.shear_modulus == 0) return LinearSlider::of(of).stiffness_at(0);
-  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
-  return MindlinSlider::of(of).stiffness_at(std::sqrt(size.effective_radius() * overlap));
+  return MindlinSlider::of(of).stiffness_at(radius);
 }
 
 // Rolling and twisting stiffness for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of the
 // normal spring [N/m]. Twisting, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
 // neglected.
 inline Real typical_rolling_stiffness(const RollingParameters& of, const PairSize& size, Real stiffness) {
-  if (of.friction == 0) return 0;
   const Real radius = std::min(size.radius_i, size.radius_j);
+  if (of.own) return of.own->rolling_stiffness(size, stiffness) / (radius * radius);
+  if (of.friction == 0) return 0;
   return AnyRolling::of(of).rolling.stiffness_at(size, stiffness) / (radius * radius);
 }
 

@@ -42,6 +42,10 @@ SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const Co
   return friction * normal.friction_load * reciprocal(c.lever_arm_ratio);
 }
 
+// Default tangential stiffness for a linear stiffness [N/m]: two solid spheres in contact then have equal
+// normal and tangential periods.
+inline Real standard_slip_stiffness(Real stiffness) { return Real(2) / 7 * stiffness; }
+
 // T' = k_t c while |T| < mu F_n, c the slip rate; dashpot 2 zeta sqrt(m_t k_t). Cundall and Strack,
 // Geotechnique 29 (1979).
 struct LinearSlider {

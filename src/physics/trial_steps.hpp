@@ -61,7 +61,7 @@ class ExplicitTrial {
     const Vec3 predicted = verlet_predicted_velocity(h, velocity_, acceleration_);
     const PairState state = pair(predicted);
     const bool closed = state.geometry.overlap > 0;
-    const Vec3 a = closed ? (1 / impact_.mass) * law_.load(state).force : Vec3{};
+    const Vec3 a = closed ? (1 / impact_.mass) * law_.respond(state, {}).load.force : Vec3{};
     velocity_ = verlet_velocity(h, predicted, acceleration_, a), acceleration_ = a;
     return closed;
   }
@@ -78,7 +78,7 @@ class ExplicitTrial {
                                        ? face_motion(state.geometry, {0, 0, 1}, displacement, i, j, h)
                                        : sphere_motion(state.geometry, displacement, i, j, h)};
     const bool closed = law_.closed(moving, history_);
-    const ContactOutcome out = law_.load(moving, history_);
+    const auto out = law_.respond(moving, history_);
     history_ = out.history;
     acceleration_ = (1 / impact_.mass) * out.load.force;
     angular_acceleration_i_ = (1 / impact_.inertia_i) * out.load.torque_i;
@@ -93,7 +93,7 @@ class ExplicitTrial {
   TrialImpact impact_;
   Vec3 r_, velocity_, acceleration_{};  // of i relative to j
   Vec3 spin_i_{}, spin_j_{}, angular_acceleration_i_{}, angular_acceleration_j_{};
-  ContactHistory history_{};
+  typename Law::History history_{};
 };
 
 // Parameters of implicit steps.

@@ -85,8 +85,9 @@ class FrictionTest(CommandLineTest):
              "contact.pairs.0.tangential_stiffness: missing", "only where exponent = 1"),
             (hertz.replace(friction, friction + "tangential_stiffness = 2e4\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
-            (FRICTIONAL.replace('"velocity-verlet"', '"hht"').replace(friction, friction + "rolling_friction = 0.1\n"),
-             "rolling_friction", "contact.pairs.0.rolling_friction", "implicit steps support only friction"),
+            (FRICTIONAL.replace('"velocity-verlet"', '"hht"')
+             .replace(friction, friction + "attraction = 0.1\nattraction_range = 1e-4\n"),
+             "attraction_range", "contact.pairs.0.attraction_range", "do not resolve an attraction beyond touch"),
             (FRICTIONAL + BALL.replace("0.005", "1e-7"), "step", "time.step = 1e-4",
              "a body on a contact oscillates with"),
             (FRICTIONAL.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",

@@ -10,11 +10,14 @@ import csv
 import io
 import os
 import pathlib
+import re
 import sys
 import tempfile
+import threading
 import tomllib
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -22,8 +25,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
-from scree.calibration import materials, scaling, search, surface, tests
-from scree.cli import main
+from scree.calibration import materials, runs, scaling, search, surface, tests
+from scree.cli import INTERRUPTED, main
 from scree.commands.calibrate import parameter, setting, target
 from scree.schema import problems
 
@@ -36,7 +39,7 @@ DEGREE, ONE_PERCENT = 1.0, 0.01
 
 def grains_below(slope, rng, depth=5.0, length=20.0):
     """A jittered lattice of spheres of diameter 1 between x = 0 and `length` and below a plane of this slope through
-    the     middle at z = 12."""
+    the middle at z = 12."""
     x, y, z = np.meshgrid(np.arange(-2, length + 2, 0.95), np.arange(0, depth, 0.95), np.arange(0, 26, 0.95),
                           indexing="ij")
     positions = np.column_stack([x.ravel(), y.ravel(), z.ravel()]) + rng.uniform(-0.3, 0.3, (x.size, 3))
@@ -144,6 +147,9 @@ class MaterialsTest(unittest.TestCase):
         soft = materials.softened(grains, 0.01)
         self.assertAlmostEqual(soft.material["young_modulus"], 0.01 * grains.material["young_modulus"])
         self.assertEqual(soft.pair["work_of_adhesion"], grains.pair["work_of_adhesion"])  # the same pull-off force
+        plastic = materials.Grains("soil", grains.material, grains.pair | {"plasticity_ratio": 0.5}, 0.001, 1.0)
+        self.assertAlmostEqual(materials.softened(plastic, 0.001).pair["work_of_adhesion"],
+                               0.1 * grains.pair["work_of_adhesion"])
         self.assertEqual(soft.pair["friction"], grains.pair["friction"])
 
     def test_values_of_a_search(self):
@@ -248,6 +254,23 @@ class SearchTest(unittest.TestCase):
         for shares in found.curve:
             self.assertAlmostEqual(self.angle(*shares), 32.0, delta=2.5)
 
+    def test_a_set_that_meets_by_chance(self):
+        by_chance = (0.0, 1.0)  # 25 in place of 23 degrees
+        found = search.search([search.Target("repose", "angle", 25.0)], self.points_of(
+            lambda x, y: 25.0 if (x, y) == by_chance else self.angle(x, y), noise=0.4), self.told.append, 4)
+        self.assertTrue(found.met)
+        self.assertNotEqual(found.best.shares, by_chance)
+        self.assertAlmostEqual(self.angle(*found.best.shares), 25.0, delta=1.5)
+
+    def test_a_set_with_a_wide_spread_does_not_meet(self):
+        def measure(shares):
+            wide = shares == (0.0, 1.0)  # a mean on the target, of runs that are far from it
+            return search.Point(shares, (40.0 if wide else self.angle(*shares),), (6.0 if wide else 0.4,))
+
+        found = search.search([search.Target("repose", "angle", 40.0)], measure, lambda point: None, 4)
+        self.assertNotEqual(found.best.shares, (0.0, 1.0))
+        self.assertAlmostEqual(self.angle(*found.best.shares), 40.0, delta=1.5)
+
     def test_a_target_out_of_reach(self):
         found = search.search([search.Target("repose", "angle", 60.0)], self.points_of(self.angle), self.told.append, 3)
         self.assertFalse(found.met)
@@ -319,6 +342,22 @@ class CommandTest(unittest.TestCase):
         self.assertIn("nearest to drum.angle = 70", said)
         self.assertIn("the target is not met: measured values go from ", said)
         self.assertTrue((self.folder / "friction=0.5,rolling_friction=0.15/drum/seed_1/run_record.json").exists())
+        with open(self.folder / "sets.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(set(re.findall(r"(?m)^friction = .*drum.angle .*$", said))))
+        self.assertEqual(set(rows[0]), {"friction", "rolling_friction", "drum.angle", "drum.angle spread"})
+
+    def test_nothing_begins_after_a_run_that_failed(self):
+        plan = runs.Plan(pathlib.Path(PROGRAM), threading.Semaphore(1), backend="cpu")
+        for name in ("first", "second"):
+            with self.assertRaisesRegex(scree.ScreeError, "space: missing"):
+                runs.run_deck(scree.Deck(title=name), self.folder / name, plan)
+        self.assertEqual(len(plan.errors), 1)
+        self.assertFalse((self.folder / "second").exists())
+
+    def test_an_interrupted_search(self):
+        with unittest.mock.patch("scree.commands.calibrate.run_search", side_effect=KeyboardInterrupt):
+            self.assertEqual(self.command(INTERRUPTED, "search", SAND, "--vary", "x", "--target", "y"), "interrupted\n")
 
     def test_errors_are_one_line(self):
         sand = [SAND, "--program", PROGRAM, "-o", self.folder]
@@ -337,7 +376,7 @@ class CommandTest(unittest.TestCase):
                 (["search", *sand, *vary, "--target", "drum.cohesion=30"], "drum has no cohesion; it has angle"),
                 (["search", *sand, *vary, "fraction=0:1", "--target", "repose=30"], "fraction")):
             said = self.command(WRONG, *words)
-            self.assertRegex(said, r"^error: [^\n]*\n$")
+            self.assertRegex(said, r"^(9 sets of [^\n]*\n)?error: [^\n]*\n$")
             self.assertIn(message, said)
 
 

@@ -74,7 +74,17 @@ class PictureTest(CommandTest):
         self.assertRegex(said["Color bar"], r"^particle speed \[m/s\]: 0 to [0-9.]+$")
         self.assertRegex(said["Software"], r"^Scree [0-9.]+, commit ")
 
+    def test_few_colors_for_a_small_file(self):
+        whole, small = self.folder / "whole.png", self.folder / "small.png"
+        self.command(DONE, "picture", NET, "-o", whole)
+        self.command(DONE, "picture", NET, "-o", small, "--colors", "16")
+        self.assertLess(small.stat().st_size, 0.5 * whole.stat().st_size)
+        with PIL.Image.open(whole) as all_colors, PIL.Image.open(small) as picture:
+            self.assertLessEqual(len(picture.getcolors()), 16)
+            self.assertEqual((picture.size, picture.text), (all_colors.size, all_colors.text))
+
     def test_what_is_refused(self):
+        self.assertIn("must be at most 256", self.command(WRONG, "picture", NET, "--colors", "300"))
         self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
         self.assertIn("for planar runs", self.command(WRONG, "picture", DRUM, "--axes"))
 

@@ -22,7 +22,7 @@ import make
 
 # Of measurements, by the scripts that draw them.
 PLOTS = {"table4.png": "tests/performance/table4.py", "scaling_model.png": "tests/performance/scaling_model.py",
-         "bulk.png": "tests/verification/bulk/plots.py"}
+         "bulk.png": "tests/verification/bulk/plots.py", "calibration_soil.png": "postprocess/pictures/make.py"}
 LARGEST, NARROWEST = 1_000_000, 1000  # [B], [pixels]
 
 

@@ -15,6 +15,7 @@ FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_l
 FRICTION = [HERE / "friction.toml", "parallel.imbalance=0.05"]
 FRICTION_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
 FIXED = ["time.control=fixed"]
+ROLLING = ["contact.pairs.0.rolling_friction=0.2", "contact.pairs.0.rolling_damping_ratio=0.2"]
 # Motors, gears, a screw, a spring, a stop, friction, a bushing and a loop of hinges, all of them at work.
 ELEMENTS = [HERE / "spatial_elements.toml", "parallel.imbalance=0.0"]
 # Grains on walls of triangles at rest; a run that ends half-way has a snapshot there that the other has, too.
@@ -28,6 +29,13 @@ WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_wo
 LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
+# Wet sand in place of the powder.
+BRIDGES = [HERE / "bridges.toml", "parallel.imbalance=0.0"]
+# Plastic grains in place of the powder, which do not stick to some bodies, and plastic grains with a linear stiffness.
+PLASTIC_MESHES = [*STICKY_MESHES, "contact.pairs.0.plasticity_ratio=0.6", "contact.pairs.0.work_of_adhesion=1.0",
+                  "contact.pairs.0.adhesion_exponent=2.5", "contact.pairs.1.attraction=1e-6"]
+PLASTIC = [HERE / "rolling.toml", "parallel.imbalance=0.05", "contact.pairs.0.plasticity_ratio=0.5",
+           "contact.pairs.0.work_of_adhesion=200.0", "contact.pairs.0.attraction=1e-3"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
 SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
 # On one rank, on these numbers, and with a restart in the middle: three ranks in the first half, two in the second.
@@ -44,7 +52,10 @@ MAIN_CASES = {
                                         (4,)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
+    "meshes with liquid bridges and their works": ([*BRIDGES, *WORKS, *LINES, "time.end=4e-3"], (4,)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
+    "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
+    "meshes with plastic grains and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
     # Bodies among them that turn and go through a side, driven, and some in friction with them.
     "friction on bodies": ([HERE / "frictional_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08",
                            "output.snapshot_interval=0.02"], (4,)),
@@ -61,6 +72,8 @@ MAIN_CASES = {
                                                   (4,)),
     "friction on bodies, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
                                      "parallel.imbalance=0.0", "time.end=0.08"], (4,)),
+    "rolling, implicit": ([HERE / "rolling.toml", *IMPLICIT, *FIXED, "parallel.imbalance=0.05", "time.step=8e-5",
+                           "time.end=0.08"], (2, 4)),
 }
 # On one rank and on these numbers.
 OTHER_CASES = {
@@ -78,6 +91,11 @@ OTHER_CASES = {
     "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (3,)),
     "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                               "contact.pairs.0.friction=0.4", "time.end=0.08"], (4,)),
+    "friction on bodies, rolling, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, *ROLLING,
+                                               "integrator.substeps=1", "parallel.imbalance=0.0", "time.end=0.08"],
+                                              (2, 4)),
+    "sticky, implicit": ([HERE / "sticky.toml", *IMPLICIT, *FIXED, "contact.pairs.0.adhesion=dmt",
+                          "parallel.imbalance=0.05", "time.end=1e-3"], (2, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (3,)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (2,)),
 }
@@ -232,8 +250,8 @@ class FilesTest(RanksTest):
 
     def test_lists_built_often_and_seldom_give_the_bits_of_frictional_particles(self):
         cases = {deck: [] for deck in ("friction", "friction_hertz", "rolling", "frictional_bodies", "spatial_elements",
-                                    "meshes", "mesh_walls", "sticky_meshes")}
-        size = {"sticky_meshes": 0.02}  # of a deck's lengths
+                                    "meshes", "mesh_walls", "sticky_meshes", "bridges")}
+        size = {"sticky_meshes": 0.02, "bridges": 0.02}  # of a deck's lengths
         cases["meshes"] = [*WORKS, "contact.pairs.1.wear_coefficient=3e-12"]
         cases["spatial_bodies"] = [*IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.04"]  # steps begin anew
         for deck, overrides in cases.items():

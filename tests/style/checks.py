@@ -109,6 +109,17 @@ def long_python_lines(root):
     return findings
 
 
+def attributes_without_layout(root):
+    """Uses of an attribute that nvcc 13 lays out by two rules: code of kernels indexes arrays of such a type by another
+    size than sizeof (tests/unit/cuda/layouts_test.cpp)."""
+    findings = []
+    for file in (file for under in ("src", "cuda") for file in files(root, CPP, under)):
+        for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
+            if "[[no_unique_address]]" in line:
+                findings.append(f"{file}:{number}: [[no_unique_address]]")
+    return findings
+
+
 def closing_parenthesis(text, opening):
     """Index of the parenthesis that closes the one at `opening`; the text's length if there is none."""
     depth = 0

@@ -50,6 +50,9 @@ class Project(unittest.TestCase):
     def test_comparisons_state_their_tolerance(self):
         self.assert_none(checks.default_tolerances(ROOT))
 
+    def test_types_have_one_layout(self):
+        self.assert_none(checks.attributes_without_layout(ROOT))
+
     def test_texts_have_an_encoding(self):
         self.assert_none(checks.texts_without_encoding(ROOT))
 
@@ -129,6 +132,11 @@ class Checks(unittest.TestCase):
             with self.subTest(wrong=wrong), tree(tests__a_DOT_hpp=right + wrong) as root:
                 self.assertEqual(checks.default_tolerances(root), [
                     "tests/a.hpp:4: Approx with the default tolerance; state .epsilon() or .margin()"])
+
+    def test_layouts(self):
+        member = "  [[no_unique_address]] B b;\n"
+        with tree(src__a_DOT_hpp="struct A {\n" + member + "};\n", tests__a_DOT_hpp=member) as root:
+            self.assertEqual(checks.attributes_without_layout(root), ["src/a.hpp:2: [[no_unique_address]]"])
 
     def test_encodings(self):
         right = 'open("a", "rb"); open("a", encoding="utf-8"); p.read_text(encoding="utf-8"); run.open("folder")\n'

@@ -143,8 +143,8 @@ inline std::string difference(const PackedHistory& a, const PackedHistory& b) {
 }
 
 // Contacts between particles whose two sides are not mirrored bit for bit; ids: of all particles, in the
-// order of the rows. kEven: the number that does not change its sign.
-template <int kNumbers, int kEven = 3>
+// order of the rows. kEven to kLastEven: the numbers that do not change their signs.
+template <int kNumbers, int kEven = 3, int kLastEven = kEven>
 int unmirrored(const std::vector<Particle>& particles, const PackedHistory& contacts) {
   std::map<std::tuple<GlobalId, GlobalId, int>, std::span<const Real>> sides;
   for (std::int64_t i = 0; i < contacts.particles(); ++i)
@@ -161,7 +161,7 @@ int unmirrored(const std::vector<Particle>& particles, const PackedHistory& cont
     const auto other = sides.find({partner, id, 26 - image});
     bool mirrored = other != sides.end();
     for (std::size_t k = 0; mirrored && k < kNumbers; ++k)
-      mirrored = own[k] == (k == kEven ? other->second[k] : -other->second[k]);
+      mirrored = own[k] == (k >= kEven && k <= kLastEven ? other->second[k] : -other->second[k]);
     count += !mirrored;
   }
   return count;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "physics/cohesion.hpp"
+#include "physics/eepa.hpp"
+#include "physics/liquid_bridge.hpp"
 #include "support/contact_record.hpp"
 #include "support/history_test_box.hpp"
 
@@ -109,6 +111,46 @@ inline Model sticky(Model model) {
   return model;
 }
 
+// Adds all of that and plastic contacts of several strengths and shapes; pairs of different materials are
+// elastic and attract.
+inline Model plastic(Model model) {
+  model = rolling(std::move(model));
+  const int count = model.contact.materials();
+  for (int k = 0; k < count * count; ++k) {
+    const int kind = k / count + k % count;
+    NormalLawParameters& law = model.contact.laws[static_cast<std::size_t>(k)];
+    law.tension = false;
+    if (kind == 1) {
+      law.attraction = 2;
+      continue;
+    }
+    law.adhesion_work = kind == 0 ? 30 : 100;
+    law.own = kind == 0 ? Plasticity(0.4, 1.5) : Plasticity(0.8, 3);
+  }
+  return model;
+}
+
+// Adds all of that and liquid bridges of both forms, with and without viscosity; some pairs are dry.
+inline Model wet(Model model) {
+  model = rolling(std::move(model));
+  const int count = model.contact.materials();
+  for (int k = 0; k < count * count; ++k) {
+    const int kind = k / count + k % count;
+    NormalLawParameters& law = model.contact.laws[static_cast<std::size_t>(k)];
+    law.tension = false;
+    if (count > 1 && kind == 2) continue;
+    law.own = BridgeParameters({.volume = kind == 0 ? 1e-3 : 1e-2,
+                                .surface_tension = 8,
+                                .contact_angle = 0.2,
+                                .viscosity = kind == 0 ? 0.1 : 0,
+                                .least_gap = 0.1,
+                                .soulie = kind == 0});
+    model.contact.interaction_range = std::max(
+        model.contact.interaction_range, contact_search_range(law, model.particles.totals.largest_radius));
+  }
+  return model;
+}
+
 inline int unmirrored_sticky(const std::vector<Particle>& particles, const PackedHistory& contacts) {
   return contacts.content.values == 7 ? unmirrored<7, 6>(particles, contacts)
                                       : unmirrored<6, 6>(particles, contacts);
@@ -132,6 +174,8 @@ struct FrictionalBoxKind {
 inline const FrictionalBoxKind kFrictionalBoxKinds[] = {
     {"friction", [](Model model) { return model; }, unmirrored<3>},
     {"rolling", rolling, unmirrored<6, 6>},
-    {"sticky", sticky, unmirrored_sticky}};
+    {"sticky", sticky, unmirrored_sticky},
+    {"plastic", plastic, unmirrored<8, 6, 7>},
+    {"wet", wet, unmirrored_sticky}};
 
 }  // namespace scree

@@ -16,6 +16,6 @@ std::unique_ptr<Backend> make_history_test_cuda_backend(const Model& model, cons
 }
 
 template std::unique_ptr<Backend> make_history_test_cuda_backend<3>(const Model&, const Ranks&);
-template std::unique_ptr<Backend> make_history_test_cuda_backend<7>(const Model&, const Ranks&);
+template std::unique_ptr<Backend> make_history_test_cuda_backend<8>(const Model&, const Ranks&);
 
 }  // namespace scree

@@ -23,7 +23,7 @@ std::unique_ptr<Backend> make_history_test_cpu_backend(const Model& model, const
                                           history_test_laws<kNumbers>(model), model.contact.materials()));
 }
 
-// Defined in history_test_backend.cu, for 3 numbers and for 7; without CUDA in no_history_test_backend.cpp.
+// Defined in history_test_backend.cu, for 3 numbers and for 8; without CUDA in no_history_test_backend.cpp.
 template <int kNumbers>
 std::unique_ptr<Backend> make_history_test_cuda_backend(const Model& model, const Ranks& ranks);
 

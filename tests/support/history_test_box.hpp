@@ -13,7 +13,7 @@
 
 namespace scree {
 
-inline constexpr int kHistoryNumbers = 7;  // numbers per contact
+inline constexpr int kHistoryNumbers = 8;  // numbers per contact
 inline constexpr Real kMovingStep = 5e-4, kMovingSkin = 0.05;
 
 inline Model moving_box(const BoxCase& c, OutsidePolicy leaving) {

@@ -15,7 +15,7 @@ SCREE_HD void add_force(Vec3f& force, Vec3 more) {
            force.z + static_cast<float>(more.z)};
 }
 
-// kNumbers: 3 to 7.
+// kNumbers: 3 to 8.
 template <int kNumbers>
 struct HistoryTestLaw : ContactLaw<LinearLaw> {
   static constexpr int kHistory = kNumbers;
@@ -27,6 +27,8 @@ struct HistoryTestLaw : ContactLaw<LinearLaw> {
   struct Outcome {
     Load load;
     History history;
+
+    SCREE_HD TangentialLosses losses() const { return {}; }
   };
 
   explicit HistoryTestLaw(const NormalLawParameters& pair) : ContactLaw<LinearLaw>{LinearLaw(pair)} {}
@@ -37,15 +39,17 @@ struct HistoryTestLaw : ContactLaw<LinearLaw> {
     history.overlaps = kFading * history.overlaps + overlap;
     for (int k = 0; k < kNumbers - 3; ++k) history.rest[k] += k == 0 ? Real(1) : k * overlap.x + overlap.y;
   }
-  using ContactLaw<LinearLaw>::load;
   template <class T, class Vector>
-  SCREE_HD Outcome<ContactLoadOf<T, Vector>> load(const PairStateOf<T, Vector>& pair,
-                                                  const History& old) const {
+  SCREE_HD Outcome<ContactLoadOf<T, Vector>> respond(const PairStateOf<T, Vector>& pair,
+                                                     const History& old) const {
     constexpr Real kShare = 0.015625;
-    Outcome<ContactLoadOf<T, Vector>> out{load(pair), old};
+    Outcome<ContactLoadOf<T, Vector>> out{ContactLaw<LinearLaw>::respond(pair, {}).load, old};
     remember(as_double(pair.geometry.along(pair.geometry.overlap)), out.history);
     add_force(out.load.force, (kShare * normal.normal_stiffness) * out.history.overlaps);
     return out;
+  }
+  SCREE_HD ContactEnergy energy_of(const PairState& pair, const History&) const {
+    return ContactLaw<LinearLaw>::energy_of(pair, {});
   }
 
   template <class Number>

@@ -9,6 +9,6 @@ std::unique_ptr<Backend> make_history_test_cuda_backend(const Model&, const Rank
 }
 
 template std::unique_ptr<Backend> make_history_test_cuda_backend<3>(const Model&, const Ranks&);
-template std::unique_ptr<Backend> make_history_test_cuda_backend<7>(const Model&, const Ranks&);
+template std::unique_ptr<Backend> make_history_test_cuda_backend<8>(const Model&, const Ranks&);
 
 }  // namespace scree

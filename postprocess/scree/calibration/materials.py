@@ -87,12 +87,16 @@ def read(path: pathlib.Path, values: Mapping[str, Any] | None = None) -> Grains:
 
 
 def softened(grains: Grains, factor: float) -> Grains:
-    """With moduli or stiffnesses times the factor, and the same pull-off forces: those of JKR and DMT do not depend on
-    the stiffness."""
+    """With moduli or stiffnesses times the factor, and the same pull-off forces. Those of JKR, DMT and liquid bridges
+    do not depend on the stiffness. That of elasto-plastic contacts (plasticity_ratio), 3/2 pi g a, grows with the
+    contact radius a, which a given load makes as factor^(-1/3) with Hertz's law, and factor^(-1/2) with a linear one.
+    """
     material, pair = dict(grains.material), dict(grains.pair)
     for table, key in ((material, "young_modulus"), (pair, "stiffness"), (pair, "tangential_stiffness")):
         if key in table:
             table[key] *= factor
+    if pair.get("plasticity_ratio", 0) > 0 and "work_of_adhesion" in pair:
+        pair["work_of_adhesion"] *= factor ** (1 / 2 if "stiffness" in pair else 1 / 3)
     return Grains(grains.name, material, pair, grains.radius, grains.density)
 
 

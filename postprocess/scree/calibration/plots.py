@@ -13,6 +13,8 @@ from scree.calibration.runs import Measured
 from scree.calibration.tests import column_curve, drum_surface, ledge_surface, shear_curve
 from scree.plots import COLORS
 
+SHOWN = 0.25  # compression of a column up to which its stress is drawn
+
 
 def surfaces(axes: list[Axes], measured: Measured) -> None:
     """Heights of the surface and the line through them, per seed."""
@@ -27,11 +29,15 @@ def surfaces(axes: list[Axes], measured: Measured) -> None:
     axes[0].legend()
 
 
+def rounded(stress: float) -> str:
+    return f"{float(f'{stress:.3g}'):g} Pa"
+
+
 def shear(axes: list[Axes], measured: Measured) -> None:
     """Shear stress over the displacement for the first seed; peak and residual stress over the normal stress."""
     for run in measured.runs[0]:
         moved, stress, normal = shear_curve(run)
-        axes[0].plot(1e3 * moved, stress, linewidth=0.8, label=f"normal stress {normal.mean():.3g} Pa")
+        axes[0].plot(1e3 * moved, stress, linewidth=0.8, label=f"normal stress {rounded(normal.mean())}")
     axes[0].set(xlabel="displacement [mm]", ylabel="shear stress [Pa]")
     lines(axes[1], measured, "normal", {"peak": "o", "residual": "s"})
     for name, color in (("peak", COLORS[0]), ("residual", COLORS[1])):
@@ -44,12 +50,18 @@ def shear(axes: list[Axes], measured: Measured) -> None:
 
 
 def uniaxial(axes: list[Axes], measured: Measured) -> None:
-    """Stress over compression for the first seed; strength over consolidation stress."""
+    """Stress over compression for the first seed; strength over consolidation stress, with the means over the seeds."""
+    highest = 0.0
     for run in measured.runs[0]:
         consolidation, compression, stress = column_curve(run)
-        axes[0].plot(100 * compression, stress, linewidth=0.8, label=f"consolidated at {consolidation:.3g} Pa")
-    axes[0].set(xlabel="compression of the free column [%]", ylabel="stress [Pa]", xlim=(-1, 25))
+        axes[0].plot(100 * compression, stress, linewidth=0.8, label=f"consolidated at {rounded(consolidation)}")
+        highest = max(highest, float(stress[compression < SHOWN].max(initial=0.0)))  # later it is on the base
+    axes[0].set(xlabel="compression of the free column [%]", ylabel="stress [Pa]", xlim=(-1, 100 * SHOWN),
+                ylim=(0, 1.3 * highest or None))
     lines(axes[1], measured, "consolidation", {"strength": "o"})
+    means = [[np.mean([of_seed[k][name] for of_seed in measured.values]) for k in range(len(measured.values[0]))]
+             for name in ("consolidation", "strength")]
+    axes[1].plot(*means, color=COLORS[0], linewidth=0.8, label="mean")
     axes[1].set(xlabel="consolidation stress [Pa]", ylabel="unconfined yield strength [Pa]", xlim=(0, None),
                 ylim=(0, None))
     for each in axes:

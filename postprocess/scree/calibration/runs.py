@@ -6,7 +6,7 @@ import pathlib
 import threading
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from scree.run import Run, open_run
 @dataclass(frozen=True)
 class Plan:
     """What all runs of a command have in common. slots: of the runs that may go on at a time; settings: keys of the
-    decks, as for --set."""
+    decks, as for --set; errors: of runs that failed or were interrupted, after which none begins."""
 
     scree: pathlib.Path
     slots: threading.Semaphore
@@ -31,6 +31,7 @@ class Plan:
     stresses: tuple[float, ...] = ()
     settings: tuple[tuple[str, Any], ...] = ()
     deck: pathlib.Path | None = None
+    errors: list[Exception] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,13 @@ def run_deck(deck: Deck, folder: pathlib.Path, plan: Plan) -> Run:
         return open_run(folder)
     deck.name = str(written)
     with plan.slots:
-        return deck.run(folder, "--overwrite", backend=plan.backend, quiet=True, scree=plan.scree)
+        if plan.errors:
+            raise plan.errors[0]
+        try:
+            return deck.run(folder, "--overwrite", backend=plan.backend, quiet=True, scree=plan.scree)
+        except (ScreeError, OSError) as error:
+            plan.errors.append(error)
+            raise
 
 
 def decks_of(name: str, grains: materials.Grains, plan: Plan) -> list[list[Deck]]:

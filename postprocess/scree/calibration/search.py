@@ -2,8 +2,8 @@
 
 All tests run on a grid of 3 x 3 sets of the parameters. A quadratic polynomial of both parameters is fitted to each
 quantity by least squares. The set at which the polynomials are nearest to the targets is run, and added to the points;
-further fits give points near this set more weight. The search ends if the measured values meet the targets, or after
-some rounds."""
+further fits give points near this set more weight. The search ends if the values measured there meet the targets, or
+after some rounds."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ FINE = 101  # points along each parameter at which the polynomials are evaluated
 NEAR = 0.35  # distance, in parts of the ranges, at which the weight of a point has fallen to 61 %
 CENTERING = 1e-3  # weight of the distance from the middle of the ranges, which decides where many sets meet the targets
 LEAST = 0.02  # smallest tolerance, as a part of the target
+WIDEST = 2  # spread of a set that meets the targets, in tolerances
 
 
 @dataclass(frozen=True)
@@ -125,36 +126,40 @@ def curve_through(points: Sequence[Point], targets: Sequence[Target], center: np
 
 
 def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], Point], tell: Callable[[Point], None],
-           rounds: int) -> Found:
-    """measure: runs the tests with the parameters at these shares of their ranges; called for all points of the grid at
-    once, from several threads. tell: is called for each point, in order."""
+           rounds: int, at_once: int = 1) -> Found:
+    """measure: runs the tests with the parameters at these shares of their ranges; called for this number of points of
+    the grid at once, from several threads. tell: is called for each point, in order."""
     if not 1 <= len(targets) <= 2:
         raise ScreeError("a search for two parameters has one or two targets")
     line = np.linspace(0, 1, GRID)
     points: list[Point] = []
-    with ThreadPoolExecutor(GRID**2) as pool:
+    with ThreadPoolExecutor(at_once) as pool:
         for point in pool.map(measure, [(float(x), float(y)) for x in line for y in line]):
             tell(point)
             points.append(point)
 
+    # The mean square distance of the runs from the targets: a mean that is near by chance has a wide spread.
     def cost(point: Point) -> float:
-        return float(misfit(np.array(point.means), targets, tolerances_of(points, targets)))
+        tolerances = np.array(tolerances_of(points, targets))
+        return float(misfit(np.array(point.means), targets, tolerances) + np.sum((point.spreads / tolerances) ** 2))
 
     def meets(point: Point) -> bool:
-        wished = zip(point.means, targets, tolerances_of(points, targets))
-        return all(abs(value - each.value) <= tolerance for value, each, tolerance in wished)
+        wished = zip(point.means, point.spreads, targets, tolerances_of(points, targets))
+        return all(abs(value - each.value) <= tolerance and spread <= WIDEST * tolerance
+                   for value, spread, each, tolerance in wished)
 
     center: np.ndarray | None = None
     for _ in range(rounds):
-        if meets(min(points, key=cost)):
-            break
         shares = next_shares(points, targets, center)
         if any(np.allclose(shares, each.shares, atol=0.5 / FINE) for each in points):
             break  # the polynomials lead to a set that was run
         points.append(measure(shares))
         tell(points[-1])
         center = np.array(shares)
-    best = min(points, key=cost)
+        if meets(points[-1]):
+            break
+    # A point of the grid may meet the targets by chance; the last one does where the others lead.
+    best = points[-1] if len(points) > GRID**2 and meets(points[-1]) else min(points, key=cost)
     around = np.array(best.shares)
     curve = curve_through(points, targets, around) if len(targets) == 1 else []
     return Found(points, best, meets(best), tolerances_of(points, targets), curve)

@@ -34,7 +34,7 @@ Values = dict[str, float]
 @dataclass(frozen=True)
 class Test:
     """deck: its name. stress: the normal stress of a deck, for tests that run at several stresses. measure: values of
-    one     run. combine: quantities from the values of one seed at all stresses. units: of the quantities."""
+    one run. combine: quantities from the values of one seed at all stresses. units: of the quantities."""
 
     deck: str
     measure: Callable[[Run], Values]

@@ -201,6 +201,17 @@ def print_point(parameters: Sequence[Parameter], targets: Sequence[Target], poin
     print(", ".join(words), flush=True)
 
 
+def write_points(path: pathlib.Path, parameters: Sequence[Parameter], targets: Sequence[Target],
+                 points: Sequence[Point]) -> None:
+    """One row per set, in the order of the runs."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        names = [each.name for each in targets]
+        table.writerow([*(each.key for each in parameters), *names, *(f"{name} spread" for name in names)])
+        table.writerows([*(each.at(share) for each, share in zip(parameters, point.shares)), *point.means,
+                         *point.spreads] for point in points)
+
+
 def print_found(parameters: Sequence[Parameter], targets: Sequence[Target], found: Found, seeds: int) -> None:
     wished = ", ".join(f"{each.name} = {shown(each.value)} +- {shown(tolerance)}"
                        for each, tolerance in zip(targets, found.tolerances))
@@ -239,9 +250,12 @@ def run_search(arguments: argparse.Namespace) -> int:
     def tell(found: Point) -> None:
         print_point(parameters, targets, found, plan.seeds)
 
-    found = search(targets, point, tell, arguments.rounds)
+    print(f"9 sets of {' and '.join(each.key for each in parameters)}, then up to {arguments.rounds} more; "
+          f"each is printed when its runs are done: {folder}", flush=True)
+    found = search(targets, point, tell, arguments.rounds, arguments.at_once)
     print_found(parameters, targets, found, plan.seeds)
-    print(f"runs: {folder}")
+    write_points(folder / "sets.csv", parameters, targets, found.points)
+    print(f"runs and sets.csv: {folder}")
     return MET if found.met else NOT_MET
 
 

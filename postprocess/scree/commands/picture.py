@@ -5,7 +5,7 @@ import pathlib
 
 import numpy as np
 
-from scree.commands.arguments import add_folder
+from scree.commands.arguments import add_folder, count
 from scree.commands.picture_options import add_picture_options, picture_options
 from scree.errors import ScreeError
 from scree.run import open_run
@@ -17,7 +17,16 @@ def describe(parser: argparse.ArgumentParser) -> None:
                         help="time of the snapshot [s], the nearest is taken; default: the last")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .jpg, .pdf or .svg; default RESULT_DIR/picture.png")
+    parser.add_argument("--colors", type=palette, default=0, metavar="COUNT",
+                        help="number of colours of a .png, up to 256, for a smaller file; default: all")
     add_picture_options(parser)
+
+
+def palette(text: str) -> int:
+    value = count(text)
+    if value > 256:
+        raise argparse.ArgumentTypeError("must be at most 256")
+    return value
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -33,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     path = arguments.output or arguments.folder / "picture.png"
     options.fit(drawn, [snapshot])
     try:
-        save_picture(make_picture(drawn, [snapshot], options, fine=True), snapshot, path)
+        save_picture(make_picture(drawn, [snapshot], options, fine=True), snapshot, path, arguments.colors)
     except ValueError as error:  # unknown suffix
         raise ScreeError(f"{path}: {error}") from error
     print(path)

@@ -231,7 +231,8 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], options: PictureOpti
                    coloring(particles, options.color, snapshots, gravity, visible, options.fastest))
 
 
-def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
+def save_picture(picture: Picture, snapshot: int, path: pathlib.Path, colors: int = 0) -> None:
+    """colors: number of those of a PNG, for a smaller file; 0: all."""
     picture.draw(snapshot)
     if path.suffix == ".png":  # without the transparency of matplotlib the file is smaller
         drawn = io.BytesIO()
@@ -239,7 +240,10 @@ def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
         entries = PngInfo()
         for name, text in picture.imprint(snapshot).items():
             entries.add_text(name, text)
-        Image.open(drawn).convert("RGB").save(path, optimize=True, pnginfo=entries)
+        image = Image.open(drawn).convert("RGB")
+        if colors:
+            image = image.quantize(colors, dither=Image.Dither.NONE)
+        image.save(path, optimize=True, pnginfo=entries)
     else:
         picture.figure.savefig(path)
     plt.close(picture.figure)

@@ -34,20 +34,22 @@ constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and offset
 constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
-// CudaFrictionArrays, in place of matrix and solver arrays, for implicit steps with friction.
+// SixFreedomArrays, in place of matrix and solver arrays, for implicit steps with friction.
 constexpr double kFrictionArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
                                    sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
 constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kFrictionArraysPerSlot =
     sizeof(FrictionEntry::Normal) + sizeof(FrictionEntry::SlipDirection) + sizeof(FrictionEntry::Shear) +
-    sizeof(Real);  // the last: lagged limits
+    sizeof(Real);                                               // the last: lagged limits
+constexpr double kRollingArraysPerSlot = sizeof(RollingEntry);  // of laws with rolling resistance
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts have adhesion
 // Bytes per placed surface, and per entry of the surfaces' rows where there are any: DeviceSurfaces.
-constexpr double kSurfaceArrays = 2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+constexpr double kSurfaceArrays =
+    2 * sizeof(SurfacePose) + sizeof(SurfaceFrame) + sizeof(FreeBody) + 2 * sizeof(Vec3);
 // The same for walls with prescribed motion and conveyors, in explicit steps: the rows of DrivenSurfaces.
 constexpr double kDrivenArrays = 128 * (sizeof(SurfacePose) + sizeof(SurfaceFrame));
 constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
@@ -196,13 +198,17 @@ double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   return bytes;
 }
 
+double friction_bytes_per_slot(const Model& model) {
+  return kFrictionArraysPerSlot + (model.rolls() || model.is_cohesive() ? kRollingArraysPerSlot : 0);
+}
+
 // Placed surfaces, their contacts, and the history of these.
 double surface_bytes(const Model& model, const Sizes& n) {
   if (!n.on_bodies) return 0;
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   double per_entry = kSpareCapacity * kEntryArrays;
   if (implicit && model.rotates())
-    per_entry += kSpareCapacity * sizeof(SurfaceFriction) + kFrictionArraysPerSlot;
+    per_entry += kSpareCapacity * sizeof(SurfaceFriction) + friction_bytes_per_slot(model);
   if (model.output.contacts) per_entry += kSpareCapacity * sizeof(ShownContact);
   if (const HistoryContent content = packed_content(model, history_of(model.contact)); content.exists())
     per_entry += kSpareCapacity * (3 * records_of(content.values) * sizeof(Vec4) + 2 * sizeof(Index));
@@ -248,7 +254,7 @@ std::size_t device_memory(const Model& model) {
   double bytes = field_bytes(model, n, explicit_steps) + kSpareCapacity * n.ghosts * kGhostArrays +
                  list_bytes(model, n, explicit_steps);
   if (!explicit_steps)
-    bytes += model.rotates() ? n.items * kFrictionArrays + n.slots * kFrictionArraysPerSlot
+    bytes += model.rotates() ? n.items * kFrictionArrays + n.slots * friction_bytes_per_slot(model)
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   bytes += surface_bytes(model, n) + static_cast<double>(device_memory_of_meshes(model));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +

@@ -11,6 +11,7 @@ ParticleLedger make_particle_ledger(const Real* sums, const HostSurfaces& bodies
   out.kinetic = sums[kKinetic], out.gravitational = sums[kGravitational];
   const BodyContactTotals shapes = bodies.shape_totals();
   out.contact_elastic = sums[kContactElastic] + shapes.elastic_energy;
+  out.cohesion = shapes.cohesion;
   out.contact_loss = sums[kContactLoss] + bodies.losses().contact_loss;
   out.integrator_loss = sums[kIntegratorLoss] + bodies.losses().integrator_loss;
   out.momentum = {sums[kMomentum], sums[kMomentum + 1], sums[kMomentum + 2]};
@@ -25,7 +26,7 @@ RotationEnergies make_rotation_energies(const Real* sums, const HostSurfaces& bo
   RotationEnergies out{sums[kRotational],
                        sums[kFrictionSprings] + shapes.friction,
                        sums[kRollingSprings] + shapes.rolling,
-                       {{losses[kFrictionLoss], losses[kRollingLoss], losses[kTwistingLoss]}}};
+                       {{SCREE_LOSS_KINDS(SCREE_LOSS_VALUE, losses)}}};
   out.losses.add(bodies.losses().tangential);
   return out;
 }

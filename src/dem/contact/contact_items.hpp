@@ -17,39 +17,32 @@ struct LoadWithHistory : Load {
   History history;
 };
 
-// Evaluates the load of a contact.
-struct EvaluateLoad {
+// Response of a contact by its law; contacts with bodies were evaluated before.
+struct Respond {
   template <class Law, class Pair>
-  SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
-    return law.load(pair);
-  }
-  template <class Law, class Pair, class History>
-  SCREE_HD auto operator()(const Law& law, const Pair& pair, const History& old) const {
-    const auto outcome = law.load(pair, old);
-    return LoadWithHistory<std::remove_cvref_t<decltype(outcome.load)>, History>{outcome.load,
-                                                                                 outcome.history};
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    return law.respond(pair, old);
   }
   template <class Views>
-  SCREE_HD const ContactLoadOf<Real, Vec3>* stored(const Views& in, Index entry) const {
-    return in.loads[entry].touches ? &in.loads[entry].load : nullptr;
+  SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry] : nullptr;
   }
 };
 
 // Load of one contact, or of all contacts of a particle.
 template <int kKinds>
 struct TotalForce {
-  Vec3 force;       // [N], gravity included
-  Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
-  Vec3 torque;      // about its centre, for laws with `kNeedsMotion` [N m]
-  [[no_unique_address]] LossesByKind<kKinds> losses;  // parts of the dissipation, over the step [J]
+  Vec3 force;                   // [N], gravity included
+  Real loss_power;              // dissipation of the contacts, or the particle's share of it [W]
+  Vec3 torque;                  // about its centre, for laws with `kNeedsMotion` [N m]
+  LossesByKind<kKinds> losses;  // parts of the dissipation, over the step [J]
 
   SCREE_HD TotalForce& operator+=(const TotalForce& part) {
     force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
     return *this;
   }
-  // Load of one contact; losses: of at least kKinds kinds.
-  template <int kMore>
-  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesByKind<kMore>& losses) {
+  // Of one contact.
+  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const TangentialLosses& losses) {
     TotalForce out{load.force, load.loss, load.torque_i, {}};
     out.losses.add(losses);
     return out;
@@ -65,34 +58,16 @@ struct TotalForce {
   }
 };
 
-// Evaluates the load on one partner, for laws with `kNeedsMotion`.
+// The load on one partner.
 template <int kKinds>
-struct EvaluateRotatingForce {
+struct RespondWithForce {
   using Result = TotalForce<kKinds>;
 
-  template <class Law, class Pair, class History>
-  SCREE_HD LoadWithHistory<Result, History> operator()(const Law& law, const Pair& pair,
-                                                       const History& old) const {
-    const auto outcome = law.load(pair, old);
-    return {Result::of(outcome.load, outcome.losses()), outcome.history};
-  }
-};
-
-// Load of a contact on both partners with its losses; contacts with bodies were evaluated before.
-struct LoadWithLosses {
-  ContactLoadOf<Real, Vec3> load;
-  TangentialLosses losses;
-};
-struct EvaluateLoadWithLosses {
-  template <class Law, class Pair, class History>
-  SCREE_HD LoadWithHistory<LoadWithLosses, History> operator()(const Law& law, const Pair& pair,
-                                                               const History& old) const {
-    const auto outcome = law.load(pair, old);
-    return {{outcome.load, outcome.losses()}, outcome.history};
-  }
-  template <class Views>
-  SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
-    return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  template <class Law, class Pair>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    const auto outcome = law.respond(pair, old);
+    return LoadWithHistory<Result, decltype(outcome.history)>{Result::of(outcome.load, outcome.losses()),
+                                                              outcome.history};
   }
 };
 
@@ -130,28 +105,13 @@ struct ContactForceItem {
   using Self = typename decltype(walk)::Self;
   SCREE_HD Total weight(const Self& self) const { return {self.u.w * gravity, 0, {}, {}}; }
   SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
-    if constexpr (kNeedsMotion)
-      walk.template sum_neighbors<kAccepts>(self, EvaluateRotatingForce<kKinds>{}, sum);
-    else
-      walk.template neighbors<kAccepts>(self, EvaluateLoad{},
-                                        [&](const auto& load, Index) { add(load, sum); });
+    walk.template sum_neighbors<kAccepts>(self, RespondWithForce<kKinds>{}, sum);
     sum.share();
   }
   SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
-    if constexpr (kNeedsMotion)
-      walk.template surfaces<kAccepts>(self, EvaluateLoadWithLosses{}, [&](const auto& contact, Index) {
-        sum += Total::of(contact.load, contact.losses);
-      });
-    else
-      walk.template surfaces<kAccepts>(self, EvaluateLoad{},
-                                       [&](const auto& load, Index) { add(load, sum); });
-  }
-
- private:
-  template <class Load>
-  SCREE_HD static void add(const Load& load, Total& sum) {
-    sum.force += load.force;
-    sum.loss_power += load.loss;
+    walk.template surfaces<kAccepts>(self, Respond{}, [&](const auto& contact, Index) {
+      sum += Total::of(contact.load, contact.losses());
+    });
   }
 };
 
@@ -164,17 +124,11 @@ struct TouchSums {
   Index contacts = 0;
 };
 
-// Elastic energy of a closed contact [J].
+// Elastic energy of a closed contact, including that of the springs in the history [J].
 struct EvaluateEnergy {
   template <class Law>
-  SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair) const {
-    const auto normal = law.normal.of_pair(pair.size);
-    return {normal.energy(pair.geometry.overlap), {}, cohesion_of(normal, pair.geometry.overlap)};
-  }
-  // Elastic energy including that of the springs in the history.
-  template <class Law, class History>
-  requires Law::kNeedsMotion SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
-                                                               const History& history) const {
+  SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
+                                    const typename Law::History& history) const {
     return law.energy_of(pair, history);
   }
   template <class Views>

@@ -90,13 +90,16 @@ struct ContactViews {
   // Radii [m] that laws use at planes instead of the items' own; null: the items' own. Supported by packed
   // rows only.
   const Real* law_radius = nullptr;
+  // Where the items are shapes of bodies, and laws may depend on masses; else null. Packed rows only.
+  const FreeShape* free_shapes = nullptr;
 };
 
 // The views with other rows.
 template <class Rows, class From>
 SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
-  return {in.position, in.velocity, in.material, rows,    in.surface_offsets,   in.surfaces,  in.numbers,
-          in.loads,    in.steps,    in.history,  in.spin, in.interaction_range, in.law_radius};
+  return {in.position, in.velocity,          in.material,   rows,          in.surface_offsets,
+          in.surfaces, in.numbers,           in.loads,      in.steps,      in.history,
+          in.spin,     in.interaction_range, in.law_radius, in.free_shapes};
 }
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -124,6 +127,13 @@ inline constexpr bool kHasRange = false;
 template <class Law>
 requires requires { Law::kHasRange; }
 inline constexpr bool kHasRange<Law> = Law::kHasRange;
+
+// Whether a law may depend on the partners' masses.
+template <class Law>
+inline constexpr bool kUsesMass = true;
+template <class Law>
+requires requires { Law::Normal::kUsesMass; }
+inline constexpr bool kUsesMass<Law> = Law::Normal::kUsesMass;
 
 // Tests whether items are within the interaction range of the law [m], where they may have a contact.
 template <class Test>

@@ -8,13 +8,13 @@
 
 namespace scree {
 
-// Visits the contacts of item i: visit(of(law, pair), j) with the neighbour's item j, or the surface's
-// number. `of` is pure: it may be called for neighbours without contact, and its result for them is
+// Visits the contacts of item i: visit(of(law, pair, history), j) with the neighbour's item j, or the
+// surface's number. `of` is pure: it may be called for neighbours without contact, and its result for them is
 // discarded. Contacts with placed surfaces were evaluated before, once for particle and body: of.stored(in,
 // entry) returns the result, or null without contact.
 //
-// Where the law has a history, an `of` that takes it is called as of(law, pair, history), and its result has
-// the new one as member `history`. It is stored only by a walk with kAccepts, of an item that accepts a step.
+// It is called as of(law, pair, history); of a law with a history its result has the new one as member
+// `history`, which is stored only by a walk with kAccepts, of an item that accepts a step.
 template <class Laws, class Rows, class Kinematics = InstantKinematics<Laws>>
 struct ContactWalk {
   ContactViews<Rows> in;
@@ -44,7 +44,7 @@ struct ContactWalk {
   template <class Of>
   SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
     const Self owner = self(i);
-    auto pair = kinematics.pair(in, owner, j);
+    auto pair = pair_of(owner, j);
     if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
     return of(laws.get(owner.material, in.material[j]), pair,
               in.history.template read<Law>(in.history.neighbors, slot));
@@ -71,21 +71,18 @@ struct ContactWalk {
       }
       const WallPlane& plane = in.numbers.planes[surface];
       auto pair = kinematics.wall(in, self, plane);
+      count_bodies(pair, self.i);
       if constexpr (requires { kinematics.at_entry(pair, entry); }) kinematics.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
-      if constexpr (takes_history<Of, decltype(pair)>()) {
-        const auto history = in.history.template read<Law>(in.history.ground, entry);
-        const bool closed = found_closed(law, pair, history);
-        if (!closed && !found_breaking(pair, history)) continue;
-        const auto contact = of(law, pair, history);
-        if constexpr (kAccepts)
-          if (closed && lasts(contact))
-            in.history.template write<Law>(in.history.ground, entry, contact.history);
-        visit(contact, surface);
-      } else if (found_closed(law, pair, ContactHistory{})) {
-        visit(of(law, pair), surface);
-      }
+      const auto history = in.history.template read<Law>(in.history.ground, entry);
+      const bool closed = found_closed(law, pair, history);
+      if (!closed && !found_breaking(pair, history)) continue;
+      const auto contact = of(law, pair, history);
+      if constexpr (kAccepts && Law::kHistory > 0)
+        if (closed && lasts(contact))
+          in.history.template write<Law>(in.history.ground, entry, contact.history);
+      visit(contact, surface);
     }
   }
 
@@ -101,7 +98,7 @@ struct ContactWalk {
       const Self owner = walk.kinematics.self(in, i);
       const Law& law = walk.laws.get(owner.material, in.material[j]);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-      const auto pair = walk.kinematics.pair(in, owner, j);
+      const auto pair = walk.pair_of(owner, j);
       [[maybe_unused]] const bool closed = found_closed(law, pair, history);
       if constexpr (kHasRange<Law>)
         if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
@@ -116,6 +113,22 @@ struct ContactWalk {
     }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
+
+  SCREE_HD auto pair_of(const Self& self, Index j) const {
+    auto pair = kinematics.pair(in, self, j);
+    count_bodies(pair, self.i, j);
+    return pair;
+  }
+  // Where the items are shapes, adds the motion of their bodies to the effective mass of the contact; their
+  // masses are those of the items.
+  SCREE_HD static Vec3 normal_of(const PairState& pair) { return pair.geometry.normal(); }
+  SCREE_HD static Vec3 normal_of(const ContactPath& path) { return path.normal1; }
+  template <class Pair, class... Item>
+  SCREE_HD void count_bodies([[maybe_unused]] Pair& pair, [[maybe_unused]] Item... item) const {
+    if constexpr (std::is_same_v<Rows, PackedRows> && kUsesMass<Law>)
+      if (in.free_shapes != nullptr)
+        pair.size.of_bodies = (in.free_shapes[item].beside_mass(normal_of(pair)) + ...);
+  }
 
   // The test, extended by the interaction range of the law.
   template <class Test>
@@ -162,13 +175,15 @@ struct ContactWalk {
       return true;
   }
 
-  template <class Of, class Pair>
-  SCREE_HD static constexpr bool takes_history() {
+  // Calls add(evaluate(j, slot)) for the entries of a row, as the rows do. Without a history no slots are
+  // found, which costs a GPU loads.
+  template <class Test, class Evaluate, class Add>
+  SCREE_HD void for_each_entry(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     if constexpr (Law::kHistory > 0)
-      return std::is_invocable_v<const Of&, const Law&, const Pair&,
-                                 decltype(in.history.template read<Law>(nullptr, 0))>;
+      in.rows.for_each_contact(i, test, evaluate, add);
     else
-      return false;
+      in.rows.for_each_contact(
+          i, test, [&](Index j) { return evaluate(j, 0); }, add);
   }
 
   template <bool kAccepts, class Test, class Of, class Visit>
@@ -176,45 +191,28 @@ struct ContactWalk {
     using Pair = decltype(kinematics.pair(in, self, 0));
     if constexpr (kLawCloses<Pair>)
       walk_in_range<kAccepts>(self, test, of, visit);
-    else if constexpr (takes_history<Of, Pair>())
-      walk_with_history<kAccepts>(self, test, of, visit);
     else
-      walk_without(self, test, of, visit);
-  }
-
-  template <class Test, class Of, class Visit>
-  SCREE_HD void walk_without(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
-    struct Found {
-      decltype(of(laws.get(0, 0), kinematics.pair(in, self, 0))) contact;
-      Index j;
-    };
-    in.rows.for_each_contact(
-        self.i, test,
-        [&](Index j) {
-          return Found{of(laws.get(self.material, in.material[j]), kinematics.pair(in, self, j)), j};
-        },
-        [&](const Found& found) { visit(found.contact, found.j); });
+      walk_tested<kAccepts>(self, test, of, visit);
   }
 
   template <bool kAccepts, class Test, class Of, class Visit>
-  SCREE_HD void walk_with_history(const Self& self, const Test& test, const Of& of,
-                                  const Visit& visit) const {
+  SCREE_HD void walk_tested(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     struct Found {
       decltype(of(laws.get(0, 0), kinematics.pair(in, self, 0),
                   in.history.template read<Law>(nullptr, 0))) contact;
       Index j;
       std::int64_t slot;
     };
-    in.rows.for_each_contact(
+    for_each_entry(
         self.i, test,
         [&](Index j, std::int64_t slot) {
           const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-          auto pair = kinematics.pair(in, self, j);
+          auto pair = pair_of(self, j);
           if constexpr (requires { kinematics.at_slot(pair, slot); }) kinematics.at_slot(pair, slot);
           return Found{of(laws.get(self.material, in.material[j]), pair, history), j, slot};
         },
         [&](const Found& found) {
-          if constexpr (kAccepts)
+          if constexpr (kAccepts && Law::kHistory > 0)
             if (lasts(found.contact))
               in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
           visit(found.contact, found.j);
@@ -224,41 +222,26 @@ struct ContactWalk {
   // The law decides whether an accepted entry is a contact: it is evaluated where it is added.
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk_in_range(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
-    using Pair = decltype(kinematics.pair(in, self, 0));
-    constexpr bool kTakesHistory = takes_history<Of, Pair>();
     struct EntryIndex {
       Index j;
       std::int64_t slot;
     };
-    const auto add = [&](const EntryIndex& at) {
-      const Law& law = laws.get(self.material, in.material[at.j]);
-      const auto pair = kinematics.pair(in, self, at.j);
-      if constexpr (kTakesHistory) {
-        const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
-        const bool closed = found_closed(law, pair, history);
-        if (!closed && !found_breaking(pair, history)) return;
-        const auto contact = of(law, pair, history);
-        if constexpr (kAccepts)
-          if (closed) in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
-        visit(contact, at.j);
-      } else if (found_closed(law, pair, ContactHistory{})) {
-        visit(of(law, pair), at.j);
-      }
-    };
-    if constexpr (kTakesHistory)
-      in.rows.for_each_contact(
-          self.i, test,
-          [](Index j, std::int64_t slot) {
-            return EntryIndex{j, slot};
-          },
-          add);
-    else
-      in.rows.for_each_contact(
-          self.i, test,
-          [](Index j) {
-            return EntryIndex{j, 0};
-          },
-          add);
+    for_each_entry(
+        self.i, test,
+        [](Index j, std::int64_t slot) {
+          return EntryIndex{j, slot};
+        },
+        [&](const EntryIndex& at) {
+          const Law& law = laws.get(self.material, in.material[at.j]);
+          const auto pair = pair_of(self, at.j);
+          const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
+          const bool closed = found_closed(law, pair, history);
+          if (!closed && !found_breaking(pair, history)) return;
+          const auto contact = of(law, pair, history);
+          if constexpr (kAccepts && Law::kHistory > 0)
+            if (closed) in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
+          visit(contact, at.j);
+        });
   }
 };
 

@@ -47,11 +47,13 @@ struct NewtonWeights {
   SCREE_HD Real of(const StepContactForce& c) const { return stiffness * c.stiffness + damping * c.damping; }
 };
 
-struct EvaluateStepContact {
+// Response of a contact to an implicit step by the normal law. kLosses: with the energy accounting.
+template <bool kLosses = false>
+struct RespondOverStep {
   bool resolve_events;
 
   template <class Law>
-  SCREE_HD StepContact operator()(const Law& law, const ContactPath& c) const {
+  SCREE_HD StepContact operator()(const Law& law, const ContactPath& c, const typename Law::History&) const {
     return of(law.normal.of_pair(c.size), c);
   }
   template <class Views>
@@ -62,26 +64,14 @@ struct EvaluateStepContact {
   SCREE_HD StepContact of(const NormalLaw& law, const ContactPath& c) const {
     const ContactForce end =
         c.step.acts_at_end() ? contact_force(law, c.step.overlap1, c.step.rate1) : ContactForce{0, 0, 0, 0};
-    if (!resolve_events) return {{end.force, end.stiffness, end.damping}, end.force, c.normal1};
-    return {step_contact_force(law, c.step), end.force, c.normal1};
-  }
-};
-
-// Energy accounting of a contact over the step.
-struct EvaluateStepLosses {
-  EvaluateStepContact step;
-
-  template <class Law>
-  SCREE_HD ContactLosses operator()(const Law& law, const ContactPath& c) const {
-    const auto normal = law.normal.of_pair(c.size);
-    const Real force0 = start_force(normal, c.step);
-    const Real force1 = step.of(normal, c).step.force;
-    return contact_losses(normal, c.step,
-                          Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.displacement));
-  }
-  template <class Views>
-  SCREE_HD const ContactLosses* stored(const Views& in, Index entry) const {
-    return in.steps[entry].touches ? &in.steps[entry].losses : nullptr;
+    StepContact out{{end.force, end.stiffness, end.damping}, end.force, c.normal1, {}};
+    if (resolve_events) out.step = step_contact_force(law, c.step);
+    if constexpr (kLosses) {
+      const Real force0 = start_force(law, c.step);
+      const Real work = Real(0.5) * dot(force0 * c.normal0 + out.step.force * c.normal1, c.displacement);
+      out.losses = contact_losses(law, c.step, work);
+    }
+    return out;
   }
 };
 
@@ -113,7 +103,7 @@ struct ContactSystemItem {
       return s;
     };
     const auto self = walk.self(i);
-    const EvaluateStepContact of{walk.kinematics.start.resolve_events};
+    const RespondOverStep<> of{walk.kinematics.start.resolve_events};
     walk.neighbors(self, of, [&](const StepContact& c, Index j) {
       const Real s = add(c);
       matrix.entries[slot] = contact_entry(std::sqrt(s) * c.normal, j);
@@ -127,18 +117,6 @@ struct ContactSystemItem {
   }
 };
 
-// Energy accounting of item i's contacts over a step; share: of contacts with neighbours. kAccepts: as in
-// `ContactWalk`.
-template <bool kAccepts = false, class Laws, class Rows>
-SCREE_HD ContactLosses step_losses_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
-  ContactLosses sum;
-  const auto self = walk.self(i);
-  const EvaluateStepLosses of{{walk.kinematics.start.resolve_events}};
-  walk.template neighbors<kAccepts>(self, of, [&](const ContactLosses& one, Index) { sum.add(one, share); });
-  walk.template surfaces<kAccepts>(self, of, [&](const ContactLosses& one, Index) { sum.add(one, 1); });
-  return sum;
-}
-
 // Accounts for particle i's share of the energies of its contacts over an accepted step.
 template <class Laws, class Rows>
 struct ContactLossesItem {
@@ -146,7 +124,11 @@ struct ContactLossesItem {
   Real *contact_loss, *integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
-    const ContactLosses sum = step_losses_of<true>(walk, i, kPairShare);
+    ContactLosses sum;
+    const auto self = walk.self(i);
+    const RespondOverStep<true> of{walk.kinematics.start.resolve_events};
+    walk.neighbors(self, of, [&](const StepContact& c, Index) { sum.add(c.losses, kPairShare); });
+    walk.surfaces(self, of, [&](const StepContact& c, Index) { sum.add(c.losses, 1); });
     contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
   }
 };

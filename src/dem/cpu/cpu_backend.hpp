@@ -7,7 +7,6 @@
 
 #include "dem/backend/backend.hpp"
 #include "dem/cpu/cpu_explicit.hpp"
-#include "dem/cpu/cpu_friction.hpp"
 #include "dem/cpu/cpu_implicit.hpp"
 #include "dem/cpu/cpu_particles.hpp"
 #include "dem/cpu/cpu_reports.hpp"
@@ -26,9 +25,7 @@ class CpuBackend : public Backend {
   RankList& list() override { return list_; }
   Reports& reports() override { return reports_; }
   std::unique_ptr<ImplicitStep> open_step(Real h) override {
-    if (items_.store.rotates)
-      return std::make_unique<CpuFrictionStep>(items_, implicit_arrays_, friction_arrays_, h);
-    return std::make_unique<CpuImplicitStep>(items_, implicit_arrays_, h);
+    return open_cpu_step(items_, implicit_arrays_, h);
   }
   std::unique_ptr<ExplicitRun> start_run(Real h) override {
     return std::make_unique<CpuExplicitRun>(items_, list_, h);
@@ -40,7 +37,6 @@ class CpuBackend : public Backend {
   CpuParticles particles_;
   CpuReports reports_;
   CpuImplicitArrays implicit_arrays_;
-  CpuFrictionArrays friction_arrays_;
 };
 
 }  // namespace scree

@@ -28,7 +28,7 @@ VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Ve
           store.rotates ? spin.data() : nullptr,
           store.angular_acceleration.data(),
           store.orientation.data(),
-          {store.friction_loss.data(), store.rolling_loss.data(), store.twisting_loss.data()}};
+          {SCREE_LOSS_KINDS(SCREE_LOSS_POINTER, store)}};
 }
 
 // Shares the properties of the open step that all ranks need.

@@ -1,70 +1,118 @@
-// The implicit step of the serial backend.
+// Implicit steps on the serial backend: memory, loops and communication for `ImplicitSchedule`.
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <vector>
 
+#include "base/for_each.hpp"
+#include "base/reproducible_sum.hpp"
 #include "dem/backend/implicit_step.hpp"
 #include "dem/cpu/cpu_items.hpp"
-#include "dem/implicit/block_solver.hpp"
-#include "dem/implicit/line_search.hpp"
+#include "dem/cpu/cpu_solver.hpp"
+#include "dem/implicit/rotation_items.hpp"
+#include "dem/schedule/step_arrays.hpp"
 
 namespace scree {
 
-// Workspace of implicit steps, reused by the next one.
-struct CpuImplicitArrays {
-  // state at the start of the step
-  std::vector<Vec4> start_position, start_velocity;
-  std::vector<Vec3> start_acceleration, start_force;
-  // used by contact_force
-  std::vector<Vec3> step_force, end_force;
-  std::vector<Real> force_magnitude, stiffness_ratio;
-  std::vector<Index> matrix_count;
-  std::vector<ContactEntry> matrix_entries;
-  std::vector<Sym3> matrix_diagonal, inverse_block;
-  std::vector<Vec3> residual;
-  // used by particle_correct
-  std::vector<Vec3> right_hand_side, correction;
-  std::vector<Vec4> direction;
-
-  void resize(const ItemLayout& layout, std::size_t list_entries);
+// State at the start of a step. Of all items, for contacts with ghosts, but for accelerations.
+struct CpuStepStart {
+  std::vector<Vec4> position, velocity, angular_velocity;
+  std::vector<Vec3> acceleration, angular_acceleration;
 };
 
-class CpuImplicitStep : public ImplicitStep {
+// Workspace of implicit steps, reused by the next one.
+struct CpuImplicitArrays {
+  CpuStepStart start;
+  StepArrays<std::vector> step;
+};
+
+// See `ImplicitSchedule` for the functions.
+class CpuImplicitOperations {
  public:
-  CpuImplicitStep(CpuItems& items, CpuImplicitArrays& arrays, Real h);
+  using Rows = PackedRows;
+  using Arrays = StepArrays<std::vector>;
 
-  void predict() override;
-  Real step_displacement() override;
-  ParticleNorms contact_force() override;
-  GlobalId worst_particle() override;
-  void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) override;
-  ParticleCorrection particle_correct() override;
-  void shorten_correction() override;
-  Real error() override;
-  void accept() override;
-  void undo() override;
+  CpuImplicitOperations(CpuItems& items, CpuImplicitArrays& arrays, Real h);
 
- protected:
-  void move_particles();
-  StepViews step_views();
-  StepForces step_forces();
-  StepStart step_start() const;
-  NewtonWeights newton_weights() const;
+  CpuItems& items() { return items_; }
+  ParticleStore& now() { return items_.store; }
+  CpuStepStart& start() { return arrays_.start; }
+  Arrays& arrays() { return arrays_.step; }
+  Real h() const { return h_; }
+  CpuItems::Views views() { return items_.views(); }
+  PackedRows rows() const { return {items_.list.offsets.data(), items_.list.neighbors.data()}; }
+  const Index* surface_offsets() const { return items_.list.surfaces.offsets.data(); }
+  const Index* surface_entries() const { return items_.list.surfaces.surfaces.data(); }
+  SurfaceMoves surface_moves() { return {side().step().data(), side().step_rotation().data()}; }
+  HostSurfaces& side() { return items_.side; }
+  bool has_surfaces() const { return items_.side.size() > 0; }
+
+  template <class Item>
+  void for_each(const Item& item) {
+    scree::for_each(Serial{}, owned(), item);
+  }
+  template <class Item>
+  Real max(const Item& item) {
+    return items_.ranks.max(max_over(Serial{}, owned(), item));
+  }
+  template <class Item>
+  void queue_max(const Item& item) {
+    max_ = max(item);
+  }
+  Real queued_max() const { return max_; }
+  template <class Item>
+  void queue_sum(const Item& item) {
+    reproducible_sums(owned(), item, sum_, items_.ranks);
+  }
+  Real queued_sum() const { return sum_[0]; }
+  Real largest_displacement();
+  void copy(const std::vector<Vec3>& from, std::vector<Vec3>& to) { to = from; }
+
+  void iterate_changed();
+  void find_surface_steps(const FrictionStart& start);
+  void take_surface_steps();
+  template <class Residual, class Norms>
+  void form_system(const StepSystem& system, const Residual& residual, const Norms& norms) {
+    items_.kernels->run(items_.views(), owned(), system);
+    for_each(residual);
+    largest_ = {};
+    for (Index i = 0; i < owned(); ++i) take_larger(norms(i));
+  }
+  FrictionNorms norms();
+  template <class System>
+  int solve(System& of, Real largest_stiffness_ratio, Real tolerance) {
+    return solve_on_host(items_.halo, items_.ranks, owned(), of, largest_stiffness_ratio, tolerance);
+  }
+  void lag_limits(const FrictionStart& start);
+  void account_contacts(const FrictionStart& start);
+  template <class Item>
+  GlobalId worst(const Item& item);
+  void report_not_finite() { items_.report_not_finite(arrays().residual); }
+  void undo();
+
+ private:
+  Index owned() const { return items_.layout.owned; }
+  void take_larger(const StepNorms& one);
+  void take_larger(const FrictionNorms& one);
 
   CpuItems& items_;
   CpuImplicitArrays& arrays_;
   const Real h_;
-
- private:
-  void find_steps();
-  ContactMatrix matrix();
-  CorrectItem correct_item(Real share);
-  StepNorms largest_norms();
-  void subtract_surface_steps();
-  Real along_correction(const std::vector<Vec3>& residual) const;
-
-  LineSearch line_search_;                              // along arrays_.correction
-  Real largest_stiffness_ratio_ = 0, force_scale_ = 0;  // of the last contact_force
+  FrictionNorms largest_{};  // of form_system, on this rank
+  Real max_ = 0, sum_[1] = {};
 };
+
+template <class Item>
+GlobalId CpuImplicitOperations::worst(const Item& item) {
+  const Real largest = max(item);
+  GlobalId worst = CpuItems::kNone;
+  for (Index i = 0; i < owned(); ++i)
+    if (item(i) == largest) worst = std::min(worst, id_of(now().row_key[i]));
+  worst = items_.ranks.min(worst);
+  return worst == CpuItems::kNone ? -1 : worst;
+}
+
+std::unique_ptr<ImplicitStep> open_cpu_step(CpuItems& items, CpuImplicitArrays& arrays, Real h);
 
 }  // namespace scree

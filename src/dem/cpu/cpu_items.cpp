@@ -15,7 +15,7 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
       side(of, subdomain, on),
       kernels(std::move(law)),
       surfaces(of, subdomain, *kernels, of.contact.interaction_range),
-      history(packed_content(of, kernels->history()), {of.space.min, subdomain.period()}),
+      history(packed_content(of, kernels->traits().history), {of.space.min, subdomain.period()}),
       hht(hht_coefficients(of.integrator.hht_alpha)) {
   static_cast<FieldsThere&>(store) = fields_there(of);
 }

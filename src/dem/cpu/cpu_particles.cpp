@@ -44,8 +44,9 @@ void CpuParticles::initial_forces() {
   ParticleStore& store = items_.store;
   items_.refresh_ghosts();
   items_.find_loads();
-  items_.kernels->forces(items_.views(), items_.model.gravity, items_.layout.owned, store.force.data(),
-                         store.loss_power.data(), store.angular_acceleration.data());
+  items_.kernels->run(items_.views(), items_.layout.owned,
+                      ForceRequest{items_.model.gravity, store.force.data(), store.loss_power.data(),
+                                   store.angular_acceleration.data()});
   for_each(Serial{}, items_.layout.owned,
            StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
   if (is_verlet(items_.model))
@@ -71,8 +72,8 @@ std::vector<EscapedParticle> CpuParticles::outside() {
                                  0, ranks.rank()});
   }
   items_.find_loads();
-  items_.kernels->escaped_particles(items_.views(), items_.subdomain.box(),
-                                    static_cast<Index>(escaped_particles.size()), escaped_particles.data());
+  items_.kernels->run(items_.views(), static_cast<Index>(escaped_particles.size()),
+                      EscapeRequest{items_.subdomain.box(), escaped_particles.data()});
   escaped_particles = ranks.all_gather(std::move(escaped_particles));
   std::sort(escaped_particles.begin(), escaped_particles.end(),
             [](const EscapedParticle& a, const EscapedParticle& b) { return a.global_id < b.global_id; });
@@ -84,13 +85,15 @@ void CpuParticles::remove_escaped_contacts() {
   ParticleStore& store = items_.store;
   const Model& model = items_.model;
   const bool verlet = is_verlet(model);
-  items_.kernels->departures(
-      items_.views(store.position, verlet ? items_.spare_velocity : store.velocity,
-                   verlet ? items_.spare_spin : store.angular_velocity),
-      model.gravity, items_.subdomain.box(), items_.layout.owned,
+  const DepartureRequest request{
+      model.gravity,
+      items_.subdomain.box(),
       {store.force.data(), store.acceleration.data(), verlet ? store.loss_power.data() : nullptr,
        store.integrator_loss.data(), store.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
-       verlet_step(model), store.angular_acceleration.data()});
+       verlet_step(model), store.angular_acceleration.data()}};
+  items_.kernels->run(items_.views(store.position, verlet ? items_.spare_velocity : store.velocity,
+                                   verlet ? items_.spare_spin : store.angular_velocity),
+                      items_.layout.owned, request);
 }
 
 void CpuParticles::remove_escaped(const std::vector<EscapedParticle>& escaped_particles) {

@@ -18,10 +18,10 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   const bool is_cohesive = items_.model.is_cohesive();
   std::vector<Real> cohesion(is_cohesive ? n : 0);
   need_loads();
-  items_.kernels->energies(
+  items_.kernels->run(
       items_.views(), n,
-      {elastic.data(), touching.data(), pairs.data(), store.rotates ? springs.data() : nullptr,
-       is_cohesive ? cohesion.data() : nullptr});
+      EnergyOutputs{elastic.data(), touching.data(), pairs.data(), store.rotates ? springs.data() : nullptr,
+                    is_cohesive ? cohesion.data() : nullptr});
 
   const LedgerItem item{views_of(store),           elastic.data(), pairs.data(), items_.model.gravity,
                         items_.subdomain.period(), verlet_step};
@@ -39,7 +39,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   if (is_cohesive) {
     Real sum[1];
     reproducible_sums(n, CohesionItem{cohesion.data()}, sum, items_.ranks);
-    out.cohesion = sum[0];
+    out.cohesion += sum[0];
   }
   for (Index i = 0; i < n; ++i) out.drifting += store.drifting[i];
   out.drifting = items_.ranks.sum(out.drifting);
@@ -66,7 +66,7 @@ void CpuReports::start_output() {
     void* const to = std::visit([](auto& v) -> void* { return v.data(); }, values);
     const OutputRequest request{source, nullptr, n, field.head.name, to};
     if (field.reads_contacts)
-      items_.kernels->output(items_.views(), request);
+      items_.kernels->run(items_.views(), n, request);
     else
       with_own_output(request, [&](const auto& item) { for_each(Serial{}, n, item); });
   }

@@ -77,8 +77,8 @@ struct MixedFrictionItem {
     sum.share();
   }
   SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
-    walk.template surfaces<true>(self, EvaluateLoadWithLosses{}, [&](const auto& contact, Index) {
-      sum += Total::of(contact.load, contact.losses);
+    walk.template surfaces<true>(self, Respond{}, [&](const auto& contact, Index) {
+      sum += Total::of(contact.load, contact.losses());
     });
   }
   // Returns the square of the displacement.

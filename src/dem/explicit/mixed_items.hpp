@@ -265,6 +265,19 @@ struct AtMixedInstant {
   SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
 };
 
+// The load alone: with all of the response a GPU would spill more registers.
+struct RespondWithLoad {
+  template <class Law, class Pair>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    const auto outcome = law.respond(pair, old);
+    return LoadWithHistory<decltype(outcome.load), decltype(outcome.history)>{outcome.load, outcome.history};
+  }
+  template <class Views>
+  SCREE_HD const ContactLoadOf<Real, Vec3>* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry].load : nullptr;
+  }
+};
+
 // Closes a step and opens the next. Returns the square of the displacement.
 template <class Laws, class Rows>
 struct MixedAdvanceItem {
@@ -283,11 +296,11 @@ struct MixedAdvanceItem {
     const Real mass = self.u.mass;
     Vec3 f = mass * gravity;
     float loss = 0;
-    walk.template neighbors<true>(self, EvaluateLoad{}, [&](const auto& load, Index) {
+    walk.template neighbors<true>(self, RespondWithLoad{}, [&](const auto& load, Index) {
       f += in_double(load.force);
       loss += 0.5f * load.loss;
     });
-    walk.template surfaces<true>(self, EvaluateLoad{}, [&](const auto& load, Index) {
+    walk.template surfaces<true>(self, RespondWithLoad{}, [&](const auto& load, Index) {
       f += load.force;
       loss += static_cast<float>(load.loss);
     });

@@ -35,7 +35,7 @@ class BatchLoads {
       of_j[n]->part[1] = torque_j[n];
     }
     if constexpr (Packed::kParts > 2) {
-      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k)};
+      Real4 more[kGroup] = {losses_at(1, k), losses_at(2, k), losses_at(3, k), losses_at(4, k)};
       transpose(more);
       for (Index n = 0; n < kGroup; ++n) of_i[n]->part[2] = of_j[n]->part[2] = more[n];
     }
@@ -112,7 +112,7 @@ class PairBatch {
   // The compiler leaves out parts of a law that are compile-time constants: a dashpot beside the slider,
   // which most runs do not have, and viscous rolling.
   [[gnu::noinline, gnu::flatten]] void evaluate_by(const Law& of, Index begin, Index end, Real h) {
-    if constexpr (Law::Rolling::acts) {
+    if constexpr (requires { of.rolling.rolling.viscous; }) {
       if (of.rolling.rolling.viscous.damping == 0 && of.rolling.rolling.spring.friction > 0) {
         Law law = of;
         law.rolling.rolling.viscous.damping = 0;
@@ -140,13 +140,13 @@ class PairBatch {
       // Not by a function that returns the pair, which gcc would copy as a whole.
       const MovingPair pair{state, OverExplicitStep{h}.motion(state, OverExplicitStep::partner(p, v),
                                                               OverExplicitStep::partner(q, s))};
-      const ContactHistory old = history_of(k);
+      const auto old = history_of(k);
       if constexpr (kHasRange<Law>) {
         closed_[k] = law.closed(pair, old);
         acts_[k] = closed_[k] || Law::breaks(old);
         if (!acts_[k]) continue;
       }
-      const auto outcome = law.load(pair, old);
+      const auto outcome = law.respond(pair, old);
       loads_.put(k, outcome.load, outcome.losses());
       put_history(k, outcome.history);
     }
@@ -157,16 +157,22 @@ class PairBatch {
 
   // As `HistoryViews::read` and `write`, in the form that gcc vectorizes: without branches around reads, and
   // with all four numbers of a record read.
-  ContactHistory history_of(Index k) const {
+  auto history_of(Index k) const {
     const Vec4* const records = old_records(k);
     return Law::read_history([&](int n) { return number_of(records, n); });
   }
-  void put_history(Index k, const ContactHistory& history) {
+  template <class History>
+  void put_history(Index k, const History& history) {
     for (Index r = 0; r < kRecords; ++r) new_records_[r][3][k] = old_records(k)[r].w;
     Law::write_history(history, [&](int n, Real value) { new_number(n)[k] = value; });
   }
-  // As `number_of()` for one record.
-  Real* new_number(int n) { return n < 3 ? new_records_[0][n] : new_records_[kRecords - 1][n - 3]; }
+  // As `number_of()`; laws of one record have the first three numbers only.
+  Real* new_number(int n) {
+    if constexpr (kRecords > 2)
+      if (n >= 7) return new_records_[2][n - 7];
+    constexpr Index kSecond = kRecords > 1 ? 1 : 0;
+    return n < 3 ? new_records_[0][n] : new_records_[kSecond][n - 3];
+  }
 
   struct Items {
     alignas(64) Vec4 position[kSize]{}, velocity[kSize]{}, spin[kSize]{};

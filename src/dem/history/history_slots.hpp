@@ -12,11 +12,14 @@
 
 namespace scree {
 
-// The history of a contact is one or two Vec4, whole memory sectors, so that sparse contacts cost no more
+// The history of a contact is one to three Vec4, whole memory sectors, so that sparse contacts cost no more
 // than their own traffic. w of the first one is the number of the step that wrote it: a record that the last
 // step did not write belongs to a contact that has ended, and nothing needs to be cleared.
-inline constexpr int kMostNumbers = 7;  // of history per contact
-SCREE_HD constexpr int records_of(int numbers) { return numbers <= 0 ? 0 : numbers <= 3 ? 1 : 2; }
+inline constexpr int kMostNumbers = 8;  // of history per contact
+SCREE_HD constexpr int records_of(int numbers) {
+  return numbers <= 0 ? 0 : numbers <= 3 ? 1 : numbers <= 7 ? 2 : 3;
+}
+inline constexpr int kMostRecords = records_of(kMostNumbers);
 
 // The k-th number of a history record.
 template <class Record>
@@ -27,7 +30,8 @@ SCREE_HD auto& number_of(Record* records, int k) {
          : k == 3 ? records[1].x
          : k == 4 ? records[1].y
          : k == 5 ? records[1].z
-                  : records[1].w;
+         : k == 6 ? records[1].w
+                  : records[2].x;
 }
 
 // Prefetches a record.
@@ -62,11 +66,16 @@ struct HistoryViews {
   template <class Law>
   SCREE_HD auto read(const Vec4* records, std::int64_t slot) const {
     constexpr int kRecords = records_of(Law::kHistory);
-    Vec4 at[2];
-    // The second record is read whether the contact was closed or not, beside the first one and not after it.
-    for (int r = 0; r < kRecords; ++r) at[r] = records[slot * kRecords + r];
-    const bool closed = at[0].w == step;
-    return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
+    if constexpr (kRecords == 0) {
+      return typename Law::History{};
+    } else {
+      Vec4 at[kMostRecords];
+      // Further records are read whether the contact was closed or not, beside the first one and not after
+      // it.
+      for (int r = 0; r < kRecords; ++r) at[r] = records[slot * kRecords + r];
+      const bool closed = at[0].w == step;
+      return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
+    }
   }
   // History of a contact that continues the one at the slot; -1: a new contact.
   template <class Law>
@@ -77,7 +86,7 @@ struct HistoryViews {
   template <class Law, class History>
   SCREE_HD void write(Vec4* records, std::int64_t slot, const History& history) const {
     constexpr int kRecords = records_of(Law::kHistory);
-    Vec4 at[2];
+    Vec4 at[kMostRecords];
     Law::write_history(history, [&](int k, Real value) { number_of(at, k) = value; });
     at[0].w = step + 1;
     for (int r = 0; r < kRecords; ++r) records[slot * kRecords + r] = at[r];

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/countable.hpp"
+#include "base/index.hpp"
 #include "dem/surface_contact/wall_items.hpp"
 #include "model/derived/point_bins.hpp"
 #include "partition/halo_plan.hpp"
@@ -24,29 +25,20 @@ SortedBins bins_of(std::span<const SurfacePose> placed, Real skin) {
     if (s.kind != SurfaceKind::sphere) continue;
     min = {std::min(min.x, s.point.x), std::min(min.y, s.point.y), std::min(min.z, s.point.z)};
     max = {std::max(max.x, s.point.x), std::max(max.y, s.point.y), std::max(max.z, s.point.z)};
-    radius = std::max(radius, s.radius);
-    points.push_back({s.point, s.radius, i});
+    radius = std::max(radius, s.radius), points.push_back({s.point, s.radius, i});
   }
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
 
-// Mass of the body of each placed surface, for the damping of Hertz's law; infinite for walls [kg].
+// Mass of the body of each placed surface; infinite for walls [kg].
 std::vector<Real> masses_of_parents(const Model& model, const SurfaceSet& surfaces) {
   std::vector<Real> masses;
   for (Index s = 0; s < surfaces.placed(); ++s)
-    masses.push_back(surfaces.is_on_body(s)
-                         ? model.bodies[static_cast<std::size_t>(surfaces.at(s).parent)].mass
-                         : kInfinity);
+    masses.push_back(surfaces.is_on_body(s) ? model.bodies[as_size(surfaces.at(s).parent)].mass : kInfinity);
   return masses;
 }
 
 }  // namespace
-
-Contact without_cohesion(Contact contact) {
-  for (NormalLawParameters& law : contact.laws)
-    if (law.is_cohesive()) law = law.without_cohesion(), law.tension = true;
-  return contact;
-}
 
 ContactSum make_wall_contact(const Real* sums) {
   const auto vector = [&](int first) { return Vec3{sums[first], sums[first + 1], sums[first + 2]}; };
@@ -60,10 +52,11 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       corners_(model, surfaces),
       period_(subdomain.period()),
       snap_(subdomain.snap_constant()),
-      kernels_(make_contact_kernels(corners_.with_own_materials(without_cohesion(model.contact)))),
+      kernels_(make_contact_kernels(corners_.with_own_materials(model.contact))),
       planes_(wall_planes(model)),
-      entries_(model, subdomain, *kernels_, 0, masses_of_parents(model, surfaces)),
-      accepted_(packed_content(model, kernels_->history()), {model.space.min, subdomain.period()}),
+      entries_(model, subdomain, *kernels_, model.contact.interaction_range,
+               masses_of_parents(model, surfaces)),
+      accepted_(packed_content(model, kernels_->traits().history), {model.space.min, subdomain.period()}),
       trial_(accepted_) {}
 
 // Possible partners of each placed surface, in order.
@@ -71,14 +64,15 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(std::sp
                                                                          Real skin) const {
   std::vector<std::vector<Item>> partners(placed.size());
   if (!rule_.bodies_may_touch()) return partners;
-  const SortedBins bins = bins_of(placed, skin);
+  const Real beyond_touch = skin + model_.contact.interaction_range;
+  const SortedBins bins = bins_of(placed, beyond_touch);
   for_each_shift(period_, [&](Vec3 shift, std::int8_t image) {
     for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
       if (placed[i].kind != SurfaceKind::sphere) continue;
       bins.for_near(placed[i].point - shift, [&](const StartItem& other) {
         const auto j = static_cast<Index>(other.number);
         const Vec3 d = placed[i].point - other.position - shift;
-        const Real distance = placed[i].radius + other.radius + skin;
+        const Real distance = placed[i].radius + other.radius + beyond_touch;
         const Surface &one = surfaces_.at(i), &two = surfaces_.at(j);
         if (dot(d, d) < distance * distance && rule_.may_touch(one.parent, two.parent) &&
             model_.contact.law(one.material, two.material).acts())
@@ -114,13 +108,13 @@ void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std
     if (position.empty()) min = max = p;
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-    largest = std::max(largest, radius);
-    position.push_back(vec4(p, radius));
+    largest = std::max(largest, radius), position.push_back(vec4(p, radius));
   }
   const auto n = static_cast<Index>(position.size());
-  const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + skin, 4 * n + 64);
-  std::vector<Index> start(static_cast<std::size_t>(grid.count()) + 1), items(position.size());
-  for (const Vec4& p : position) ++start[static_cast<std::size_t>(grid.nearest(xyz(p))) + 1];
+  const Real beyond_touch = skin + model_.contact.interaction_range;
+  const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + beyond_touch, 4 * n + 64);
+  std::vector<Index> start(as_size(grid.count()) + 1), items(position.size());
+  for (const Vec4& p : position) ++start[as_size(grid.nearest(xyz(p))) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<Index> next(start.begin(), start.end() - 1);
   for (Index i = 0; i < n; ++i) items[next[grid.nearest(xyz(position[i]))]++] = i;
@@ -133,7 +127,7 @@ void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std
     return packed_.contacts_with(shapes[i], surface);
   };
   build_rows({grid, start, items, position, n, largest}, n,
-             {surfaces_, planes_, poses, period_, skin, stored_contacts, may_touch}, rows);
+             {surfaces_, planes_, poses, period_, beyond_touch, stored_contacts, may_touch}, rows);
 }
 
 // Lists these shapes, then the periodic images of their partners.
@@ -159,8 +153,8 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
   std::vector<Real> law_radius;
   for (const Item& item : items_) {
     const Surface& surface = surfaces_.at(corners_.surface_of(item.surface));
-    const bool is_corner = corners_.has(item.surface), resist = !model_.contact.rolling.empty();
-    store_.material.push_back(surface.material + (is_corner && resist ? model_.contact.materials() : 0));
+    const bool is_corner = corners_.has(item.surface);
+    store_.material.push_back(is_corner ? corners_.material(surface.material) : surface.material);
     law_radius.push_back(is_corner ? corners_.mesh_of(item.surface).hull->radius : surface.radius);
     store_.row_key.push_back(row_key(item.surface, item.image));
   }
@@ -232,10 +226,12 @@ void BodyContacts::reopen() { std::swap(accepted_, trial_); }
 
 void BodyContacts::set_items(const SurfacePoses& poses, Instant when, Real h) {
   const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
+  std::vector<FreeShape> free_shapes;
   store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
   for (const Item& item : items_) {
-    const SurfacePose& s = (at_start ? poses.start : poses.placed)[corners_.surface_of(item.surface)];
-    const Body& body = model_.bodies[static_cast<std::size_t>(parent_of(item.surface))];
+    const auto surface = as_size(corners_.surface_of(item.surface));
+    const SurfacePose& s = (at_start ? poses.start : poses.placed)[surface];
+    const Body& body = model_.bodies[as_size(parent_of(item.surface))];
     const bool is_corner = corners_.has(item.surface);
     const CornerPose at =
         is_corner ? corner_pose(s, poses.frames[s.frame], corners_.position_of(item.surface), at_start, snap_)
@@ -244,7 +240,9 @@ void BodyContacts::set_items(const SurfacePoses& poses, Instant when, Real h) {
     store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.displacement : at.velocity, body.mass));
     store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
     arm_.push_back(at.arm);
+    if (!poses.free_bodies.empty()) free_shapes.push_back({at.arm, poses.free_bodies[surface]});
   }
+  entries_.set_free_shapes(std::move(free_shapes));
 }
 
 // Sets the start arrays; the items are left at the start of the step.
@@ -264,7 +262,8 @@ ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const 
   ContactViews<PackedRows> views =
       entries_.views(store_, store_.position, store_.velocity, {list_.offsets.data(), list_.neighbors.data()},
                      list_.surfaces);
-  views.history = history, views.spin = store_.angular_velocity.data();
+  views.history = history, views.spin = store_.angular_velocity.data(),
+  views.interaction_range = model_.contact.interaction_range;
   return views;
 }
 
@@ -278,7 +277,7 @@ void BodyContacts::find_loads(const SurfacePoses& poses, Real h) {
       poses, store_, list_.surfaces,
       {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
-  kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
+  kernels_->run(views(history), store_.owned, BodyLoadRequest{arm_.data(), h, loads_.data()});
   for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = corners_.surface_of(items_[i].surface);
   if (in_step) trial_.accepted();
 }
@@ -289,18 +288,11 @@ void BodyContacts::find_steps(const SurfacePoses& poses, Real h) {
   steps_.resize(static_cast<std::size_t>(store_.owned));
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
-  const StepStart start = step_start(h);
+  FrictionStart start{step_start(h), start_spin_.data(), mean_spin_.data(), {}, nullptr};
   if (accepted_.exists()) trial_ = accepted_, has_step_ = true;
-  if (model_.rotates()) {
-    FrictionStart friction{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
-    entries_.find_friction_steps(poses, store_, list_.surfaces, friction, trial_.views());
-    friction.on_bodies = entries_.friction_steps();
-    kernels_->body_friction_steps(views(trial_.views()), store_.owned, friction, arm_.data(), steps_.data(),
-                                  to);
-  } else {
-    entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
-    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
-  }
+  entries_.find_steps(poses, store_, list_.surfaces, start, trial_.views());
+  start.on_bodies = entries_.friction_steps();
+  kernels_->run(views(trial_.views()), store_.owned, BodyStepRequest{start, arm_.data(), steps_.data(), to});
   if (accepted_.exists()) trial_.accepted();
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
   find_pairs();
@@ -337,8 +329,7 @@ void BodyContacts::add_sums(std::vector<InstantSums>& to) const {
 void BodyContacts::add_sums(std::vector<StepSums>& to) const {
   for (const BodyStep& step : steps_)
     if (step.sums.contacts > 0) to.push_back(step.sums);
-  const std::vector<StepSums> of_surfaces =
-      model_.rotates() ? entries_.friction_step_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
+  const std::vector<StepSums> of_surfaces = entries_.step_sums(list_.surfaces);
   to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
 }
 
@@ -346,14 +337,14 @@ BodyContactTotals BodyContacts::totals() const {
   BodyContactTotals sum;
   for (const BodyLoad& load : loads_) {
     sum.loss_power += load.loss, sum.elastic_energy += load.energy, sum.pairs += load.pairs;
-    sum.springs.add(load.springs, 1), sum.losses.add(load.losses);
+    sum.cohesion += load.cohesion, sum.springs.add(load.springs, 1), sum.losses.add(load.losses);
   }
   return sum;
 }
 
 BodyStep BodyContacts::step_totals() const {
   BodyStep sum;
-  for (const BodyStep& step : steps_) sum.losses.add(step.losses, 1), sum.friction += step.friction;
+  for (const BodyStep& step : steps_) sum.losses.add(step.losses, 1), sum.tangential.add(step.tangential);
   return sum;
 }
 
@@ -362,10 +353,7 @@ void BodyContacts::accumulate_load_works(const SurfacePoses& poses, Real h) {
 }
 
 void BodyContacts::accumulate_step_works(const SurfacePoses& poses) {
-  if (model_.rotates())
-    entries_.accumulate_friction_works(poses, store_, list_.surfaces);
-  else
-    entries_.accumulate_step_works(poses, store_, list_.surfaces);
+  entries_.accumulate_step_works(poses, store_, list_.surfaces);
 }
 
 std::vector<TriangleSums> BodyContacts::triangle_sums() const {

@@ -43,13 +43,10 @@ struct BodyContactTotals {
   Real loss_power = 0;        // [W]
   Real elastic_energy = 0;    // [J]
   SpringEnergies springs;     // parts of elastic_energy
+  Real cohesion = 0;          // part of elastic_energy [J]
   TangentialLosses losses{};  // over the step [J]
   Real pairs = 0;             // number of contacts
 };
-
-// Contact laws of bodies. Bodies attract neither each other nor walls: cohesive laws are replaced by their
-// repulsive part, with tension because of their dampers.
-Contact without_cohesion(Contact contact);
 
 class BodyContacts {
  public:

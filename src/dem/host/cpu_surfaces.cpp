@@ -66,12 +66,14 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePoses& poses, const ParticleS
           touches_before_.data(),
           box_,
           query.history,
-          records_of(kernels_.history()),
+          records_of(kernels_.traits().history),
           query.spin,
           query.h,
           interaction_range_,
           masses_.empty() ? nullptr : masses_.data(),
-          law_radii()};
+          law_radii(),
+          poses.free_bodies.empty() ? nullptr : poses.free_bodies.data(),
+          free_shapes()};
 }
 
 void CpuSurfaces::find_loads(const SurfacePoses& poses, const ParticleStore& store, SurfaceRows& rows,
@@ -117,35 +119,23 @@ void CpuSurfaces::reserve_entries(const SurfaceRows& rows) {
 }
 
 void CpuSurfaces::find_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
-                             const StepStart& start, const HistoryViews& history) {
-  steps_.resize(rows.surfaces.size()), reserve_entries(rows);
-  const SurfaceViews views =
-      entry_views(poses, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
-  touch_over_step(views, rows, start, poses.start.data());
-  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, poses.start.data(),
-                         steps_.data());
-}
-
-void CpuSurfaces::find_friction_steps(const SurfacePoses& poses, const ParticleStore& store,
-                                      const SurfaceRows& rows, const FrictionStart& start,
-                                      const HistoryViews& history) {
-  friction_steps_.resize(rows.surfaces.size()), reserve_entries(rows);
+                             const FrictionStart& start, const HistoryViews& history) {
+  moves_ ? friction_steps_.resize(rows.surfaces.size()) : steps_.resize(rows.surfaces.size());
+  reserve_entries(rows);
   const SurfaceViews views =
       entry_views(poses, store, rows,
                   {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
   touch_over_step(views, rows, start.step, poses.start.data());
-  kernels_.surface_friction_steps(views, static_cast<Index>(rows.by_surface.size()), start,
-                                  poses.start.data(), friction_steps_.data());
+  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, poses.start.data(),
+                         {steps_.data(), friction_steps_.data()});
 }
 
 std::vector<InstantSums> CpuSurfaces::load_sums(const SurfaceRows& rows) const {
   return sums_of<InstantSums>(loads_, rows, numbers());
 }
 std::vector<StepSums> CpuSurfaces::step_sums(const SurfaceRows& rows) const {
-  return sums_of<StepSums>(steps_, rows, numbers());
-}
-std::vector<StepSums> CpuSurfaces::friction_step_sums(const SurfaceRows& rows) const {
-  return sums_of<StepSums>(friction_steps_, rows, numbers());
+  return moves_ ? sums_of<StepSums>(friction_steps_, rows, numbers())
+                : sums_of<StepSums>(steps_, rows, numbers());
 }
 
 std::vector<ShownContact> CpuSurfaces::shown(const SurfacePoses& poses, const ParticleStore& store,
@@ -185,12 +175,10 @@ void CpuSurfaces::accumulate_load_works(const SurfacePoses& poses, const Particl
 
 void CpuSurfaces::accumulate_step_works(const SurfacePoses& poses, const ParticleStore& store,
                                         const SurfaceRows& rows) {
-  accumulate(poses, store, rows, ImplicitWorks{steps_.data()});
-}
-
-void CpuSurfaces::accumulate_friction_works(const SurfacePoses& poses, const ParticleStore& store,
-                                            const SurfaceRows& rows) {
-  accumulate(poses, store, rows, ImplicitFrictionWorks{friction_steps_.data()});
+  if (moves_)
+    accumulate(poses, store, rows, ImplicitFrictionWorks{friction_steps_.data()});
+  else
+    accumulate(poses, store, rows, ImplicitWorks{steps_.data()});
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
@@ -199,7 +187,7 @@ ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const st
   ContactViews<PackedRows> views{position.data(), velocity.data(),     store.material.data(),
                                  neighbors,       rows.offsets.data(), rows.surfaces.data(),
                                  numbers(),       loads_.data(),       steps_.data()};
-  views.law_radius = law_radii();
+  views.law_radius = law_radii(), views.free_shapes = free_shapes();
   return views;
 }
 

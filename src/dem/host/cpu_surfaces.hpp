@@ -20,6 +20,8 @@ class CpuSurfaces {
               Real interaction_range, std::vector<Real> masses = {});
   // Radii of the items that laws use instead of the items' own [m]; empty: their own.
   void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
+  // The items as shapes of bodies, see `SurfaceViews`; empty: particles.
+  void set_free_shapes(std::vector<FreeShape> shapes) { free_shapes_ = std::move(shapes); }
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // Finds the loads for views(), at the current poses of the surfaces, of the store's particles in the state
@@ -28,14 +30,10 @@ class CpuSurfaces {
                   const SurfaceQuery& query);
   // Contacts over an implicit step of the store's particles; history: with what the accepted step will store.
   void find_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
-                  const StepStart& start, const HistoryViews& history);
-  // Contacts over an implicit step with friction.
-  void find_friction_steps(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
-                           const FrictionStart& start, const HistoryViews& history);
+                  const FrictionStart& start, const HistoryViews& history);
   // Sums of the last evaluation, per surface in contact.
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
-  std::vector<StepSums> friction_step_sums(const SurfaceRows& rows) const;
   // Calls visit(particle, placed surface, contact point relative to the parent's centre, slopes) for the
   // contacts over the step that was evaluated last.
   template <class Visit>
@@ -43,8 +41,7 @@ class CpuSurfaces {
     for (const Index entry : rows.by_surface) {
       const auto show = [&](const auto& contact, Vec3 place) {
         if (contact.touches)
-          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place,
-                slopes_of(contact.contact));
+          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place, slopes_of(contact));
       };
       if (moves_)
         show(friction_steps_[entry],
@@ -64,13 +61,11 @@ class CpuSurfaces {
   void accumulate_load_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                              Real h);
   void accumulate_step_works(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows);
-  void accumulate_friction_works(const SurfacePoses& poses, const ParticleStore& store,
-                                 const SurfaceRows& rows);
   std::vector<std::int64_t> works() const {
     return works_.exist() ? works_.limbs(work_sums_) : std::vector<std::int64_t>{};
   }
   void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
-  // Per entry, of the last find_friction_steps().
+  // Per entry, of the last find_steps() where particles rotate.
   const SurfaceFriction* friction_steps() const { return friction_steps_.data(); }
 
   // Views of particles at these positions, with the contacts that were evaluated last.
@@ -80,6 +75,7 @@ class CpuSurfaces {
 
  private:
   const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
+  const FreeShape* free_shapes() const { return free_shapes_.empty() ? nullptr : free_shapes_.data(); }
   SurfaceViews entry_views(const SurfacePoses& poses, const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceQuery& query) const;
   template <class Works>
@@ -92,6 +88,7 @@ class CpuSurfaces {
 
   const ContactKernels& kernels_;
   std::vector<Real> masses_, law_radii_;
+  std::vector<FreeShape> free_shapes_;
   std::vector<WallPlane> planes_;
   Real interaction_range_;  // [m]
   bool open_surfaces_;

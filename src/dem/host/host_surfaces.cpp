@@ -10,6 +10,14 @@
 namespace scree {
 namespace {
 
+bool damps_by_mass(const NormalLawParameters& law) { return law.damping_ratio > 0; }
+
+// J^-1 in the body's frame [1/(kg m^2)].
+Sym3 inverse_inertia(const Body& body) {
+  if (body.kind == BodyKind::spatial) return inverse(body.inertia_tensor);
+  return {0, 0, 0, 0, 0, 1 / body.inertia};
+}
+
 // Calls visit(sum) for the merged sums of all ranks, in the order of their surfaces; on rank 0. In every step
 // there may be many parts, of hundreds of bytes each: they stay where they are.
 template <class Sums, class Visit>
@@ -60,6 +68,8 @@ HostSurfaces::HostSurfaces(const Model& model, const Subdomain& subdomain, const
       frames_.back().surface_velocity =
           model.walls[static_cast<std::size_t>(surfaces_.number_of(s))].surface_velocity;
   }
+  if (std::ranges::any_of(model.contact.laws, damps_by_mass))
+    for (const Body& body : model.bodies) inverse_inertias_.push_back(inverse_inertia(body));
   plan_list(model.contact.skin, kNoMotion);
 }
 
@@ -203,7 +213,7 @@ void HostSurfaces::book_step() {
   if (!ranks_.is_root()) return;
   const BodyStep step = bodies_.step_totals();
   losses_.contact_loss += step.losses.dissipated, losses_.integrator_loss += step.losses.integrator;
-  losses_.tangential.of[kFrictionLoss] += step.friction;
+  losses_.tangential.add(step.tangential);
   bodies_.accumulate_step_works(poses());
   bodies_.accept();
 }

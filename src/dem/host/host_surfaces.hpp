@@ -59,7 +59,7 @@ class HostSurfaces {
   // One entry per placed surface.
   const std::vector<SurfacePose>& placed() const { return placed_; }
   const std::vector<SurfaceFrame>& frames() const { return frames_; }
-  SurfacePoses poses() const { return {placed_, frames_, meshes_, start_, extra_travel_}; }
+  SurfacePoses poses() const { return {placed_, frames_, meshes_, start_, extra_travel_, free_bodies_}; }
   // Changes by the last update_poses(): displacements, and rotations; of spheres, for laws with
   // `kNeedsMotion`, times the radii [m], else [rad].
   const std::vector<Vec3>& step() const { return step_; }
@@ -142,6 +142,7 @@ class HostSurfaces {
   void begin_step();
   void rotate_parents();
   void rotate_frames();
+  void find_free_bodies();
   void span(const Surface& surface, SurfaceFrame& frame) const;
   // Whether displacements since the start of a step are needed.
   bool tracks_displacement() const { return model_.rotates() || !frames_.empty(); }
@@ -168,7 +169,9 @@ class HostSurfaces {
     Vec3 spin, turn;        // [rad/s], since the start of the step [rad]
   };
   std::vector<ParentRotation> rotations_;
-  std::vector<bool> has_axes_;  // per parent: spatial, or with surfaces other than spheres
+  std::vector<FreeBody> free_bodies_;   // SurfacePoses::free_bodies
+  std::vector<Sym3> inverse_inertias_;  // of the bodies, in their frames [1/(kg m^2)]
+  std::vector<bool> has_axes_;          // per parent: spatial, or with surfaces other than spheres
   std::vector<Vec3> step_, step_rotation_;
   std::vector<InstantSums> loads_;  // of particles, then of shapes
   std::size_t particle_loads_ = 0;  // number of the particles' sums in loads_

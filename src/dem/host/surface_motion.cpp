@@ -92,6 +92,21 @@ void HostSurfaces::rotate_frames() {
   }
 }
 
+// Where a law depends on masses. J^-1 = A J_0^-1 A^T with the rotation A of the body's frame.
+void HostSurfaces::find_free_bodies() {
+  if (inverse_inertias_.empty()) return;
+  free_bodies_.assign(placed_.size(), {});
+  for (Index s = 0; s < size() && surfaces_.is_on_body(s); ++s) {
+    const auto b = static_cast<std::size_t>(surfaces_.at(s).parent);
+    const bool is_spatial = model_.bodies[b].kind == BodyKind::spatial;
+    const Real inverse_mass = 1 / model_.bodies[b].mass;
+    free_bodies_[s] = {{inverse_mass, inverse_mass, is_spatial ? inverse_mass : 0}, inverse_inertias_[b]};
+    if (!is_spatial) continue;
+    const Mat3 &axes = rotations_[b].axes, of = axes * full(inverse_inertias_[b]) * transposed(axes);
+    free_bodies_[s].inverse_inertia = {of.x.x, of.x.y, of.x.z, of.y.y, of.y.z, of.z.z};
+  }
+}
+
 void HostSurfaces::update_poses() {
   axes_before_.clear();
   for (const SurfaceFrame& frame : frames_) axes_before_.push_back(frame.axes);
@@ -121,6 +136,7 @@ void HostSurfaces::update_poses() {
         (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - previous_rotation);
   }
   rotate_frames();
+  find_free_bodies();
 }
 
 Real HostSurfaces::last_displacement() const {

@@ -1,18 +1,20 @@
 // Linear solver for the particles' Newton matrix: Chebyshev iteration (Golub and Varga, Numer. Math. 3, 1961)
-// preconditioned with the 3x3 diagonal blocks D. It is matrix-free over the contacts, and its only reductions
-// are maxima.
+// preconditioned with the diagonal blocks D of the particles. It is matrix-free over the contacts, and its
+// only reductions are maxima. Its loops are those of the backends: cpu/cpu_solver.hpp, cuda/cuda_solver.cuh.
+//
+// The matrix A is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha). Each pair term is at
+// most twice its own diagonal, so that the eigenvalues of D^-1 A lie between 1 / (1 +
+// largest_stiffness_ratio) and 2.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
+#include "base/spatial_velocity.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/implicit/step_items.hpp"
-#include "partition/halo.hpp"
 
 namespace scree {
 
@@ -35,7 +37,7 @@ class ChebyshevWeights {
   Real half_width_, sigma_, rho_;
 };
 
-// Weights with the eigenvalue bounds of the particles' matrix; see `BlockSolver`.
+// Weights with the eigenvalue bounds of the particles' matrix.
 inline ChebyshevWeights solver_weights(Real largest_stiffness_ratio) {
   return ChebyshevWeights(1 / (1 + largest_stiffness_ratio), 2);
 }
@@ -83,40 +85,67 @@ struct DirectionItem {
   }
 };
 
-inline constexpr int kMostProducts = 2000;  // matrix products of one solve
+// How directions are stored: that of a particle without rotation is as long as a load of four numbers.
+SCREE_HD Vec3 direction_of(Vec4 stored) { return xyz(stored); }
+SCREE_HD Twistf direction_of(Twistf stored) { return stored; }
+SCREE_HD void store_direction(Vec3 d, Vec4& to) { to = vec4(d, 0); }
+SCREE_HD void store_direction(Twistf d, Twistf& to) { to = d; }
 
-// Chebyshev iteration: take(weights) finds the next directions, adds them to the solution and returns the
-// largest |residual| over all ranks. Returns the number of matrix products.
-template <class Take>
-int iterate_chebyshev(Real largest_stiffness_ratio, Real tolerance, const Take& take) {
-  ChebyshevWeights weights = solver_weights(largest_stiffness_ratio);
-  int products = 0;
-  while (products < kMostProducts) {
-    ++products;
-    if (take(weights) <= tolerance) break;
-    weights.advance();
-  }
-  return products;
+// Square of the largest component of a residual [N^2].
+SCREE_HD Real largest_square(Vec3 residual) { return dot(residual, residual); }
+SCREE_HD Real largest_square(const Twist& residual) {
+  const Real move = dot(residual.move, residual.move), turn = dot(residual.turn, residual.turn);
+  return move > turn ? move : turn;
 }
 
-// The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha). Each pair term is at
-// most twice its own diagonal, so that the eigenvalues of D^-1 A lie between 1 / (1 +
-// largest_stiffness_ratio) and 2.
-class BlockSolver {
- public:
-  struct System {
-    SubtractMatrixItem<PackedRows> matrix;  // d and residual are set by the solver
-    std::span<const Sym3> inverse_block;
-    std::span<Vec3> residual;  // in: right-hand side; out: remaining residual
-    const Halo& halo;
-    const Ranks& ranks;
-    Real largest_stiffness_ratio;
-    Real tolerance;  // on the largest |residual| [N]
-  };
+// Begins a solve. Direction: `DirectionItem` or `TwistDirectionItem`.
+template <class Direction, class Stored, class Correction>
+struct FirstDirectionItem {
+  Direction direction;
+  Stored* first;
+  Correction* solution;
 
-  // Solves A x = residual into `solution` [owned]. d: search directions of all items; the caller sets the
-  // entries of ghosts and shapes. Returns the number of matrix products.
-  int solve(const System& system, std::vector<Vec4>& d, std::vector<Vec3>& solution) const;
+  SCREE_HD void operator()(Index i) const {
+    store_direction(direction.next(i, {}), first[i]);
+    solution[i] = {};
+  }
 };
+template <class Direction, class Stored, class Correction>
+FirstDirectionItem(Direction, Stored*, Correction*) -> FirstDirectionItem<Direction, Stored, Correction>;
+
+// One step of the solve: adds the direction to the solution, subtracts its product with the matrix from the
+// residual, and finds the next direction. Returns the square of the particle's residual.
+template <class Subtract, class Direction, class Stored, class Correction>
+struct ProductItem {
+  Subtract subtract;    // reads the directions of all items
+  Direction direction;  // weights of the next direction
+  Stored* next;
+  Correction* solution;
+
+  SCREE_HD Real operator()(Index i) const {
+    const auto d = direction_of(subtract.d[i]);
+    solution[i] += d;
+    subtract(i);
+    store_direction(direction.next(i, d), next[i]);
+    return square(i);
+  }
+  // The same in two passes over the particles: on the CPU, a loop over the directions alone is vectorized.
+  SCREE_HD Real subtract_product(Index i) const {
+    solution[i] += direction_of(subtract.d[i]);
+    subtract(i);
+    return square(i);
+  }
+  SCREE_HD void find_next(Index i) const {
+    store_direction(direction.next(i, direction_of(subtract.d[i])), next[i]);
+  }
+
+ private:
+  SCREE_HD Real square(Index i) const { return largest_square(subtract.residual[i]); }
+};
+template <class Subtract, class Direction, class Stored, class Correction>
+ProductItem(Subtract, Direction, Stored*, Correction*)
+    -> ProductItem<Subtract, Direction, Stored, Correction>;
+
+inline constexpr int kMostProducts = 2000;  // matrix products of one solve
 
 }  // namespace scree

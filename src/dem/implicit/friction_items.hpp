@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "dem/implicit/friction_matrix.hpp"
 
@@ -31,6 +32,15 @@ struct FrictionSums {
             cross(n, c.friction.step),
             cross(n, c.friction.end),
             std::abs(c.normal.step.force) + norm(c.friction.step)};
+  }
+  SCREE_HD static FrictionSums of(const RollingFrictionalContact& c) {
+    FrictionSums out = of(static_cast<const FrictionalContact&>(c));
+    const Real inverse = 1 / c.radius_i;
+    out.start_moment -= inverse * c.rolling.start, out.step_moment -= inverse * c.rolling.step;
+    out.end_moment -= inverse * c.rolling.end;
+    // A viscous moment also acts without a force.
+    out.magnitude += inverse * (norm(c.rolling.start) + norm(c.rolling.step));
+    return out;
   }
   // No contact: adding it changes no bit, not even the sign of a zero.
   SCREE_HD static FrictionSums nothing() {
@@ -60,6 +70,8 @@ struct FrictionSystemItem {
   Real* phase_squared;
 
   using Self = typename FrictionWalk<Laws, Rows>::Self;
+  using Contact = FrictionalContactOf<LawOf<Laws>>;
+  static constexpr bool kRolls = LawOf<Laws>::Rolling::acts;
   struct Total {
     FrictionSums sums;
     Real largest_phase = 0;
@@ -84,7 +96,7 @@ struct FrictionSystemItem {
       total.entries = walk.in.rows.sum_contacts(self.i, walk.kinematics.test(walk.in, self),
                                                 SharedContact{*this, total.largest_phase}, total.sums);
     } else {
-      walk.neighbors(self, contact_of(), [&](const FrictionalContact& c, Index j) {
+      walk.neighbors(self, contact_of(), [&](const Contact& c, Index j) {
         total.sums += take(c, self.i, j, total.entries++, total.largest_phase);
       });
     }
@@ -93,12 +105,13 @@ struct FrictionSystemItem {
     const Index i = self.i;
     FrictionSums& sums = total.sums;
     Index surfaces = 0;
-    walk.surfaces(self, contact_of(), [&](const FrictionalContact& c, Index surface) {
+    walk.surfaces(self, contact_of(), [&](const Contact& c, Index surface) {
       sums += FrictionSums::of(c), update_phase(c, i, total.largest_phase);
       const Index partner =
           walk.in.numbers.is_static(surface) ? FrictionalPath::kWall : static_cast<Index>(c.slot);
-      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] =
-          FrictionEntry::of(c, weights, partner);
+      const Index entry = walk.in.surface_offsets[i] + surfaces++;
+      matrix.surface_entries[entry] = FrictionEntry::of(c, weights, partner);
+      if constexpr (kRolls) matrix.surface_rolling[entry] = RollingEntry::of(c, weights, c.radius_i);
     });
     const Real radius = walk.in.position[i].w;
     matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;
@@ -121,16 +134,17 @@ struct FrictionSystemItem {
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
-  SCREE_HD EvaluateFrictionalContact contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
+  SCREE_HD RespondWithFriction<> contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
   // Stores the k-th contact of row i as an entry of the matrix. Returns its contribution to the sums.
-  SCREE_HD FrictionSums take(const FrictionalContact& c, Index i, Index j, Index k,
-                             Real& largest_phase) const {
+  SCREE_HD FrictionSums take(const Contact& c, Index i, Index j, Index k, Real& largest_phase) const {
     const std::int64_t slot = walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride();
     if (!c.acts) {
       matrix.entries.put_none(slot);
       return FrictionSums::nothing();
     }
     matrix.entries.put(slot, FrictionEntry::of(c, weights, j)), update_phase(c, i, largest_phase);
+    if constexpr (kRolls)
+      matrix.entries.rolling[slot] = RollingEntry::of(c, weights, c.radius_i / c.radius_j);
     return FrictionSums::of(c);
   }
   SCREE_HD void update_phase(const FrictionalContact& c, Index i, Real& largest_phase) const {
@@ -140,22 +154,32 @@ struct FrictionSystemItem {
   }
 };
 
-// Outputs of the energy accounting; friction: part of contact [J].
+// Outputs of the energy accounting; losses: parts of `contact`, null where the law does not distinguish them
+// [J].
 struct FrictionLossOutputs {
-  Real *contact, *integrator, *friction;
+  Real *contact, *integrator;
+  Real* losses[kLossKinds];
 };
 
-// Sums of the energy accounting over a particle's share of its contacts.
+// Sums of the energy accounting over a particle's share of its contacts [J].
+template <int kKinds>
 struct FrictionLossSums {
-  Real dissipated = 0, integrator = 0, friction = 0;  // [J]
+  Real dissipated = 0, integrator = 0;
+  LossesByKind<kKinds> by_kind{};
 
   SCREE_HD static FrictionLossSums of(const FrictionLosses& one, Real share) {
-    return {share * one.dissipated, share * one.integrator, share * one.friction};
+    FrictionLossSums out{share * one.dissipated, share * one.integrator};
+    for (int k = 0; k < kKinds; ++k) out.by_kind.of[k] = share * one.by_kind.of[k];
+    return out;
   }
   // No contact: adding it changes no bit, not even the sign of a zero.
-  SCREE_HD static FrictionLossSums nothing() { return {-0.0, -0.0, -0.0}; }
+  SCREE_HD static FrictionLossSums nothing() {
+    FrictionLossSums out{-0.0, -0.0};
+    out.by_kind.fill(-0.0);
+    return out;
+  }
   SCREE_HD FrictionLossSums& operator+=(const FrictionLossSums& part) {
-    dissipated += part.dissipated, integrator += part.integrator, friction += part.friction;
+    dissipated += part.dissipated, integrator += part.integrator, by_kind.add(part.by_kind);
     return *this;
   }
 };
@@ -168,30 +192,31 @@ struct FrictionLossesItem {
   FrictionLossOutputs to;
 
   using Self = typename FrictionWalk<Laws, Rows>::Self;
+  using Sums = FrictionLossSums<kLossKindsOf<LawOf<Laws>>>;
 
   SCREE_HD void operator()(Index i) const {
     const Self self = walk.self(i);
-    FrictionLossSums sum;
+    Sums sum;
     add_neighbors(self, sum);
     finish(self, sum);
   }
 
   // The parts of the kernel, in this order.
   SCREE_HD_CALLER
-  SCREE_HD void add_neighbors(const Self& self, FrictionLossSums& sum) const {
+  SCREE_HD void add_neighbors(const Self& self, Sums& sum) const {
     if constexpr (kShared<Rows>) {
       walk.in.rows.sum_contacts(self.i, walk.kinematics.test(walk.in, self), SharedLosses{*this}, sum);
     } else {
-      walk.template neighbors<true>(self, evaluator(), [&](const FrictionLosses& one, Index) {
-        if (one.acts) sum += FrictionLossSums::of(one, kPairShare);
+      walk.template neighbors<true>(self, contact_of(), [&](const FrictionalContact& c, Index) {
+        if (c.acts) sum += Sums::of(c.losses, kPairShare);
       });
     }
   }
-  SCREE_HD void finish(const Self& self, FrictionLossSums& sum) const {
-    walk.template surfaces<true>(
-        self, evaluator(), [&](const FrictionLosses& one, Index) { sum += FrictionLossSums::of(one, 1); });
+  SCREE_HD void finish(const Self& self, Sums& sum) const {
+    walk.template surfaces<true>(self, contact_of(),
+                                 [&](const FrictionalContact& c, Index) { sum += Sums::of(c.losses, 1); });
     to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
-    to.friction[self.i] += sum.friction;
+    sum.by_kind.accumulate(to.losses, self.i);
   }
 
  private:
@@ -199,16 +224,16 @@ struct FrictionLossesItem {
   struct SharedLosses {
     const FrictionLossesItem& item;
 
-    SCREE_HD FrictionLossSums operator()(Index i, Index j, std::int64_t slot) const {
-      const FrictionLosses one = item.walk.contact_at(item.evaluator(), i, j, slot);
+    SCREE_HD Sums operator()(Index i, Index j, std::int64_t slot) const {
+      const auto c = item.walk.contact_at(item.contact_of(), i, j, slot);
       const auto& history = item.walk.in.history;
-      if (one.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, one.history);
-      return one.acts ? FrictionLossSums::of(one, kPairShare) : FrictionLossSums::nothing();
+      if (c.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, c.history);
+      return c.acts ? Sums::of(c.losses, kPairShare) : Sums::nothing();
     }
     SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
   };
 
-  SCREE_HD EvaluateFrictionLosses evaluator() const { return {{walk.kinematics.start, walk.in.spin}}; }
+  SCREE_HD RespondWithFriction<true> contact_of() const { return {walk.kinematics.start, walk.in.spin}; }
 };
 
 // Stores the friction limits of particle i's contacts at the iterate, including limits that are already
@@ -220,7 +245,7 @@ struct LaggedLimitItem {
 
   SCREE_HD void operator()(Index i) const {
     const auto self = walk.self(i);
-    const EvaluateFrictionalContact of{walk.kinematics.start, walk.in.spin};
+    const RespondWithFriction<> of{walk.kinematics.start, walk.in.spin};
     walk.neighbors(self, of, [&](const FrictionalContact& c, Index) {
       if (c.acts) to.neighbors[c.slot] = c.friction.limit;
     });

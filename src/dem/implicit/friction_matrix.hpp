@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "base/spatial_velocity.hpp"
 #include "dem/implicit/frictional_contacts.hpp"
@@ -82,12 +83,94 @@ struct FrictionEntry {
   }
 };
 
+// Resistance to rolling and twisting of one contact in the Newton matrix, beside its `FrictionEntry`. The
+// rotational rows are torques over R_i, and their unknowns rotations times the radius.
+struct alignas(16) RollingEntry {
+  float x, y, z;  // unit vector of rolling at the limit, or zero
+  float across;   // derivative of the moment over R_i with respect to R_i times the rotation of i relative to
+                  // j, across normal and direction [kg]
+  float along_normal;                     // the same for twisting [kg]
+  float rolling_growth, twisting_growth;  // derivatives of the moment over R_i with respect to the overlap,
+                                          // along the direction and along the normal [kg]
+  float partner_scale;  // R_i over the unit of j's rotation: R_i / R_j for particles, else R_i [m]
+
+  SCREE_HD static RollingEntry of(const RollingFrictionalContact& c, const NewtonWeights& weights,
+                                  Real partner_scale) {
+    const auto single = [](Real x) { return static_cast<float>(x); };
+    const StepRolling& m = c.rolling;
+    const Real inverse = 1 / c.radius_i, scaled = weights.stiffness * inverse * inverse,
+               along = weights.of(c.normal.step) * inverse;
+    return {single(m.direction.x),
+            single(m.direction.y),
+            single(m.direction.z),
+            single(scaled * m.rolling),
+            single(scaled * m.twisting),
+            single(m.rolling_load_slope * along),
+            single(m.twisting_load_slope * along),
+            single(partner_scale)};
+  }
+
+  // Product with the relative displacement and with R_i times the rotation of i relative to j: minus the
+  // torque on i over R_i. n: normal; consistent: see `FrictionEntry::apply()`.
+  template <class Vector>
+  SCREE_HD Vector apply(Vector n, Vector relative_displacement, Vector relative_turn, bool consistent) const {
+    const Vector t{x, y, z};
+    const auto twist = dot(n, relative_turn);
+    const Vector roll = relative_turn - twist * n;
+    Vector moment = across * (roll - dot(t, roll) * t) + (along_normal * twist) * n;
+    if (consistent) {
+      const auto approach = dot(n, relative_displacement);
+      moment = moment - (approach * rolling_growth) * t - (approach * twisting_growth) * n;
+    }
+    return moment;
+  }
+  // Adds the symmetric part to the block of i.
+  SCREE_HD void add_to(Block6& block, Vec3 n) const {
+    const Real k = across;
+    block.turn += Sym3{k, 0, 0, k, 0, k};
+    block.turn += outer(-k, Vec3{x, y, z});
+    block.turn += outer(along_normal - k, n);
+  }
+};
+
+// An entry of laws with rolling resistance.
+struct RollingFrictionEntry : FrictionEntry {
+  RollingEntry rolling;
+
+  SCREE_HD void add_to(Block6& block) const {
+    FrictionEntry::add_to(block);
+    rolling.add_to(block, Vec3{normal.x, normal.y, normal.z});
+  }
+};
+template <bool kRolls>
+using FrictionEntryOf = std::conditional_t<kRolls, RollingFrictionEntry, FrictionEntry>;
+
+// Product of an entry with the directions of i and of its partner j, an item.
+SCREE_HD Twistf product_of(const FrictionEntry& entry, Twistf own, Twistf other, bool consistent) {
+  return entry.apply(own.move - other.move, own.turn + other.turn, consistent);
+}
+SCREE_HD Twistf product_of(const RollingFrictionEntry& entry, Twistf own, Twistf other, bool consistent) {
+  Twistf out = product_of(static_cast<const FrictionEntry&>(entry), own, other, consistent);
+  out.turn = out.turn + entry.rolling.apply(Vec3f{entry.normal.x, entry.normal.y, entry.normal.z},
+                                            own.move - other.move,
+                                            own.turn - entry.rolling.partner_scale * other.turn, consistent);
+  return out;
+}
+
 // Entries as a structure of arrays: a warp reads whole cache lines.
 struct FrictionEntries {
   FrictionEntry::Normal* normal;
   FrictionEntry::SlipDirection* slip_direction;
   FrictionEntry::Shear* shear;
+  RollingEntry* rolling = nullptr;  // for laws with rolling resistance
 
+  template <bool kRolls>
+  SCREE_HD FrictionEntryOf<kRolls> at(std::int64_t slot) const {
+    if constexpr (kRolls)
+      return {(*this)[slot], rolling[slot]};
+    else
+      return (*this)[slot];
+  }
   SCREE_HD FrictionEntry operator[](std::int64_t slot) const {
     return {normal[slot], slip_direction[slot], shear[slot]};
   }
@@ -103,9 +186,14 @@ struct FrictionEntryArrays {
   Array<FrictionEntry::Normal> normal;
   Array<FrictionEntry::SlipDirection> slip_direction;
   Array<FrictionEntry::Shear> shear;
+  Array<RollingEntry> rolling;
 
-  void resize(std::size_t n) { normal.resize(n), slip_direction.resize(n), shear.resize(n); }
-  FrictionEntries views() { return {normal.data(), slip_direction.data(), shear.data()}; }
+  // rolls: whether the law has rolling resistance.
+  void resize(std::size_t n, bool rolls) {
+    normal.resize(n), slip_direction.resize(n), shear.resize(n);
+    if (rolls) rolling.resize(n);
+  }
+  FrictionEntries views() { return {normal.data(), slip_direction.data(), shear.data(), rolling.data()}; }
 };
 
 // Entries of contacts with neighbours are at the list's slots, packed to the front of a row; some of them may
@@ -114,22 +202,31 @@ struct FrictionMatrix {
   Index *count, *surface_count;
   FrictionEntries entries;
   FrictionEntry* surface_entries;
+  RollingEntry* surface_rolling = nullptr;  // for laws with rolling resistance
 
-  // Calls take(entry) for particle i's contacts with neighbours; the next entry is loaded meanwhile.
-  template <class Rows, class Take>
+  // Calls take(entry) for particle i's contacts with neighbours; the next entry is loaded meanwhile. kRolls:
+  // whether the law has rolling resistance.
+  template <bool kRolls, class Rows, class Take>
   SCREE_HD void for_each_entry(const Rows& rows, Index i, const Take& take) const {
     std::int64_t slot = rows.first(i);
     Index left = count[i];
     if (left == 0) return;
-    FrictionEntry next = entries[slot];
+    FrictionEntryOf<kRolls> next = entries.at<kRolls>(slot);
     while (left > 0) {
-      const FrictionEntry entry = next;
+      const FrictionEntryOf<kRolls> entry = next;
       slot += Rows::stride();
-      if (--left > 0) next = entries[slot];
+      if (--left > 0) next = entries.at<kRolls>(slot);
       if (entry.is_contact()) take(entry);
     }
   }
 };
+
+// Calls use(std::bool_constant) with whether the law has rolling resistance: items that read the matrix are
+// compiled for both.
+template <class Use>
+decltype(auto) with_rolling(bool rolls, const Use& use) {
+  return rolls ? use(std::true_type{}) : use(std::false_type{});
+}
 
 // A 6x6 block per particle, in slices of 32 with each number contiguous: a warp reads and writes whole cache
 // lines.

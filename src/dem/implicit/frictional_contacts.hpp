@@ -3,16 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "dem/contact/contact_walk.hpp"
 #include "dem/contact/system_items.hpp"
 #include "dem/implicit/step_items.hpp"
 #include "physics/step_friction.hpp"
+#include "physics/step_rolling.hpp"
 
 namespace scree {
 
-// Lagged limits of the mean friction force, constant while the step is solved, at the list's slots and at the
-// entries of the surfaces [N]; negative: no contact. Null: the limits follow the normal forces.
+// Lagged limits, constant while the step is solved, at the list's slots and at the entries of the surfaces
+// (`StepFriction::limit`) [N]; negative: no contact. Null: the limits follow the normal forces.
 struct LaggedLimits {
   Real *neighbors = nullptr, *surfaces = nullptr;
 };
@@ -36,6 +38,7 @@ struct FrictionalPath : ContactPath {
   Real curvature = 0;         // rotation of the normal per tangential displacement of i's centre [1/m]
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
   Vec3 arm_rotation;          // R_i times i's rotation over the step, plus the same of j; even [m]
+  Vec3 relative_rotation;     // of i relative to j over the step; odd [rad]
   Vec3 surface_velocity;      // conveyor velocity of j's surface at the end of the step [m/s]
   Index i, j;                 // items; j: kWall
   std::int64_t slot;          // of the list, or entry of the surfaces
@@ -100,6 +103,7 @@ struct OverFrictionStep {
   SCREE_HD FrictionalPath finish(const ContactViews<Rows>& in, FrictionalPath out, const RotatingPartner& one,
                                  const RotatingPartner& other, Index i, Index j) const {
     out.arm_rotation = start.step.h * (one.arm * one.spin + other.arm * other.spin);
+    out.relative_rotation = start.step.h * (one.spin - other.spin);
     out.i = i, out.j = j;
     out.velocity0 = xyz(start.step.velocity[i]), out.velocity1 = xyz(in.velocity[i]);
     if (j == FrictionalPath::kWall) return out;
@@ -108,7 +112,12 @@ struct OverFrictionStep {
   }
 };
 
-// Quantities of one contact that the step is solved with.
+// Energy accounting of a contact over the step.
+struct FrictionLosses : ContactLosses {
+  TangentialLosses by_kind;  // parts of the dissipation [J]
+};
+
+// Response of one contact to the step.
 struct FrictionalContact {
   StepContact normal;
   StepFriction friction;
@@ -119,20 +128,54 @@ struct FrictionalContact {
   bool acts;   // else all members above are undefined
   bool lasts;  // the contact exists at the end of the step, with this history
   ContactHistory history;
+  FrictionLosses losses;  // only where asked for
 };
 
-// Evaluates a contact over the step. arm_spin(at_end): sum of both partners' spins times their arms at one
-// end of the step; even [m/s]; called for laws with a dashpot.
-template <class Law, class ArmSpin>
-SCREE_HD FrictionalContact frictional_contact(const Law& law, const FrictionalPath& c,
-                                              const ContactHistory& old, bool resolve_events,
-                                              const ArmSpin& arm_spin) {
-  FrictionalContact out{};
+// The same for laws with rolling resistance.
+struct RollingFrictionalContact : FrictionalContact {
+  StepRolling rolling;
+  Real radius_i, radius_j;  // radius_j: 0 for surfaces without a radius [m]
+};
+template <class Law>
+using FrictionalContactOf =
+    std::conditional_t<Law::Rolling::acts, RollingFrictionalContact, FrictionalContact>;
+
+SCREE_HD void add_rolling_losses(const FrictionalPath& c, const StepRolling& m, FrictionLosses& out) {
+  const Real work = Real(-0.5) * dot(m.start + m.step, c.relative_rotation);
+  const Real rolling = m.rolling_losses.sum(), twisting = m.twisting_losses.sum(), lost = rolling + twisting;
+  out.by_kind.of[kRollingLoss] = rolling, out.by_kind.of[kTwistingLoss] = twisting;
+  out.dissipated += lost, out.integrator += (m.stored0 - m.stored1) - work - lost;
+}
+
+template <class Contact>
+SCREE_HD FrictionLosses friction_losses(const FrictionalPath& c, const Contact& at) {
+  FrictionLosses out{at.normal.losses, {}};
+  const StepFriction& friction = at.friction;
+  const Vec3 force = at.lever_arm_ratio0 * friction.start + at.lever_arm_ratio * friction.step;
+  const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
+  const Real work =
+      Real(0.5) * (dot(moment, c.arm_rotation) - dot(force, c.displacement - c.step.h * c.surface_velocity));
+  const Real lost = friction.losses.sum();
+  out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
+  out.by_kind.of[kFrictionLoss] = lost;
+  if constexpr (std::is_same_v<Contact, RollingFrictionalContact>) add_rolling_losses(c, at.rolling, out);
+  return out;
+}
+
+// Response of a contact to the step. spins: of both partners at the ends of the step, as functions of at_end:
+// arm_sum(), the sum of the spins times their arms, even [m/s], for laws with a tangential dashpot; and
+// relative(), the spin of i relative to j, odd [rad/s], for laws with rolling resistance. kLosses: with the
+// energy accounting.
+template <bool kLosses, class Law, class Spins>
+SCREE_HD FrictionalContactOf<Law> frictional_contact(const Law& law, const FrictionalPath& c,
+                                                     const ContactHistory& old, bool resolve_events,
+                                                     const Spins& spins) {
+  FrictionalContactOf<Law> out{};
   out.slot = c.slot;
   out.acts = OverFrictionStep::closed(c), out.lasts = c.step.acts_at_end();
   if (!out.acts) return out;
   const auto normal = law.normal.of_pair(c.size);
-  out.normal = EvaluateStepContact{resolve_events}.of(normal, c);
+  out.normal = RespondOverStep<kLosses>{resolve_events}.of(normal, c);
   out.normal0 = c.normal0, out.lever_arm_ratio0 = c.lever_arm_ratio0,
   out.lever_arm_ratio = c.motion.lever_arm_ratio;
   out.curvature = c.curvature;
@@ -150,71 +193,57 @@ SCREE_HD FrictionalContact frictional_contact(const Law& law, const FrictionalPa
     const auto rate = [](Real lever_arm_ratio, Vec3 velocity, Vec3 both, Vec3 across_normal) {
       return tangential_part(lever_arm_ratio * velocity - cross(both, across_normal), across_normal);
     };
-    step.slip_rate0 = rate(c.lever_arm_ratio0, c.velocity0, arm_spin(false), c.normal0);
-    step.slip_rate1 = rate(c.motion.lever_arm_ratio, c.velocity1, arm_spin(true), c.normal1);
+    step.slip_rate0 = rate(c.lever_arm_ratio0, c.velocity0, spins.arm_sum(false), c.normal0);
+    step.slip_rate1 = rate(c.motion.lever_arm_ratio, c.velocity1, spins.arm_sum(true), c.normal1);
   }
   out.friction = step_friction(law, step, old.spring);
   out.history.spring = out.friction.spring;
+  if constexpr (Law::Rolling::acts) {
+    out.rolling = step_rolling(law, step, {spins.relative(false), spins.relative(true)}, old.moment);
+    out.history.moment = out.rolling.spring;
+    out.radius_i = c.motion.arm_i, out.radius_j = c.motion.arm_j;
+  }
+  if constexpr (kLosses) out.losses = friction_losses(c, out);
   return out;
 }
 
-struct EvaluateFrictionalContact {
+template <bool kLosses = false>
+struct RespondWithFriction {
   FrictionStart start;
   const Vec4* spin;  // at the end of the step
 
-  template <class Law>
-  SCREE_HD FrictionalContact operator()(const Law& law, const FrictionalPath& c,
-                                        const ContactHistory& old) const {
-    return frictional_contact(law, c, old, start.step.resolve_events, [&](bool at_end) {
-      const Vec4* spins = at_end ? spin : start.spin;
+  // Spins of a pair of items; see `frictional_contact()`.
+  struct ItemSpins {
+    const RespondWithFriction& of;
+    const FrictionalPath& c;
+
+    SCREE_HD Vec3 arm_sum(bool at_end) const {
+      const Vec4* spins = at_end ? of.spin : of.start.spin;
       Vec3 sum = c.motion.arm_i * xyz(spins[c.i]);
       if (c.j != FrictionalPath::kWall) sum = sum + c.motion.arm_j * xyz(spins[c.j]);
       return sum;
-    });
-  }
-  template <class Views>
-  SCREE_HD const FrictionalContact* stored(const Views&, Index entry) const;
-};
-
-// Energy accounting of a contact over the step, and its new history.
-struct FrictionLosses : ContactLosses {
-  Real friction;  // part of the dissipation [J]
-  bool acts, lasts;
-  ContactHistory history;
-};
-template <class Law>
-SCREE_HD FrictionLosses friction_losses(const Law& law, const FrictionalPath& c, const FrictionalContact& at,
-                                        bool resolve_events) {
-  if (!at.acts) return {{}, 0, false, false, {}};
-  FrictionLosses out{EvaluateStepLosses{{resolve_events}}(law, c), 0, true, at.lasts, at.history};
-  const StepFriction& friction = at.friction;
-  const Vec3 force = at.lever_arm_ratio0 * friction.start + at.lever_arm_ratio * friction.step;
-  const Vec3 moment = cross(c.normal0, friction.start) + cross(c.normal1, friction.step);
-  const Real work =
-      Real(0.5) * (dot(moment, c.arm_rotation) - dot(force, c.displacement - c.step.h * c.surface_velocity));
-  const Real lost = friction.losses.sum();
-  out.dissipated += lost, out.integrator += (friction.stored0 - friction.stored1) - work - lost;
-  out.friction = lost;
-  return out;
-}
-
-struct EvaluateFrictionLosses {
-  EvaluateFrictionalContact contact;
+    }
+    SCREE_HD Vec3 relative(bool at_end) const {
+      const Vec4* spins = at_end ? of.spin : of.start.spin;
+      const Vec3 own = xyz(spins[c.i]);
+      return c.j != FrictionalPath::kWall ? own - xyz(spins[c.j]) : own;
+    }
+  };
 
   template <class Law>
-  SCREE_HD FrictionLosses operator()(const Law& law, const FrictionalPath& c,
-                                     const ContactHistory& old) const {
-    return friction_losses(law, c, contact(law, c, old), contact.start.step.resolve_events);
+  SCREE_HD FrictionalContactOf<Law> operator()(const Law& law, const FrictionalPath& c,
+                                               const ContactHistory& old) const {
+    return frictional_contact<kLosses>(law, c, old, start.step.resolve_events, ItemSpins{*this, c});
   }
   template <class Views>
-  SCREE_HD const FrictionLosses* stored(const Views&, Index entry) const;
+  SCREE_HD const RollingFrictionalContact* stored(const Views&, Index entry) const;
 };
 
 // One contact of a particle with a surface on a body over the step; evaluated once for both.
 struct SurfaceFriction {
   bool touches;  // else all members below are undefined
-  FrictionalContact contact;
-  FrictionLosses losses;
+  bool rolls;    // whether the law resists rolling; else that part of the contact is undefined
+  RollingFrictionalContact contact;
   Vec3 arm;          // from the body's centre to that of a sphere, or to the contact point, at the end of the
                      // step [m]
   Real radius;       // of a sphere; else 0 [m]
@@ -223,15 +252,12 @@ struct SurfaceFriction {
   Vec3 surface_velocity;  // see FrictionalPath
 };
 
+template <bool kLosses>
 template <class Views>
-SCREE_HD const FrictionalContact* EvaluateFrictionalContact::stored(const Views&, Index entry) const {
+SCREE_HD const RollingFrictionalContact* RespondWithFriction<kLosses>::stored(const Views&,
+                                                                              Index entry) const {
   const SurfaceFriction& at = start.on_bodies[entry];
   return at.touches ? &at.contact : nullptr;
-}
-template <class Views>
-SCREE_HD const FrictionLosses* EvaluateFrictionLosses::stored(const Views&, Index entry) const {
-  const SurfaceFriction& at = contact.start.on_bodies[entry];
-  return at.touches ? &at.losses : nullptr;
 }
 
 }  // namespace scree

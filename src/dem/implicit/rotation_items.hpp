@@ -33,6 +33,7 @@ struct SpinUpdateItem {
 
 // Minus the residuals of Eq. 16 for translation and rotation, the latter over the radius; masses of the
 // Newton matrix and the inverse of its block.
+template <bool kRolls>
 struct FrictionResidualItem {
   StepViews step;
   RotationViews rotation;
@@ -56,9 +57,14 @@ struct FrictionResidualItem {
     const ScaledMass masses{weight * m, weight * inertia / (radius * radius)};
     mass[i] = masses;
     Block6 block;
-    matrix.for_each_entry(rows, i, [&](const FrictionEntry& entry) { entry.add_to(block); });
-    for (Index k = 0; k < matrix.surface_count[i]; ++k)
-      matrix.surface_entries[first_surface + k].add_to(block);
+    matrix.for_each_entry<kRolls>(rows, i, [&](const auto& entry) { entry.add_to(block); });
+    for (Index k = 0; k < matrix.surface_count[i]; ++k) {
+      const FrictionEntry& entry = matrix.surface_entries[first_surface + k];
+      entry.add_to(block);
+      if constexpr (kRolls)
+        matrix.surface_rolling[first_surface + k].add_to(
+            block, Vec3{entry.normal.x, entry.normal.y, entry.normal.z});
+    }
     stiffness_ratio[i] = largest_row(block, masses.move, masses.turn);
     block.move += Sym3{masses.move, 0, 0, masses.move, 0, masses.move};
     block.turn += Sym3{masses.turn, 0, 0, masses.turn, 0, masses.turn};
@@ -75,6 +81,9 @@ struct FrictionNormsItem {
   const Twist* residual;
   const ScaledMass* mass;
   const Real *magnitude, *stiffness_ratio, *phase_squared;
+  // Null for laws without rolling resistance. With it a moment may act without a force, and the angular
+  // acceleration belongs to the scale of the residual.
+  const Vec3* start_angular_acceleration = nullptr;
 
   SCREE_HD FrictionNorms operator()(Index i) const {
     const Real move = norm(residual[i].move), turn = norm(residual[i].turn);
@@ -85,6 +94,8 @@ struct FrictionNormsItem {
     out.residual = move > turn ? move : turn;
     out.correction_bound = gain * (by_move > by_rotation ? by_move : by_rotation);
     out.force = magnitude[i] + at_start;
+    if (start_angular_acceleration != nullptr)
+      out.force += mass[i].turn * step.position[i].w * norm(start_angular_acceleration[i]);
     out.stiffness_ratio = stiffness_ratio[i], out.phase_squared = phase_squared[i];
     return out;
   }
@@ -117,7 +128,7 @@ struct FrictionCorrectItem {
 
 // residual_i -= (A d)_i for the Newton matrix A = masses + contacts. Directions and their products with
 // contact entries are in single precision, because they are most of the memory traffic beside the entries.
-template <class Rows>
+template <class Rows, bool kRolls>
 struct SubtractFrictionItem {
   FrictionMatrix matrix;
   Rows rows;
@@ -131,12 +142,18 @@ struct SubtractFrictionItem {
   SCREE_HD void operator()(Index i) const {
     const Twistf own = d[i];
     Twistf products{};
-    matrix.for_each_entry(rows, i, [&](const FrictionEntry& entry) {
+    matrix.for_each_entry<kRolls>(rows, i, [&](const auto& entry) {
       const Twistf other = d[entry.normal.neighbor];
-      products += entry.apply(own.move - other.move, own.turn + other.turn, consistent);
+      products += product_of(entry, own, other, consistent);
     });
-    for (Index k = 0; k < matrix.surface_count[i]; ++k)
-      products += matrix.surface_entries[surface_offsets[i] + k].apply(own.move, own.turn, consistent);
+    for (Index k = 0; k < matrix.surface_count[i]; ++k) {
+      const FrictionEntry& entry = matrix.surface_entries[surface_offsets[i] + k];
+      products += entry.apply(own.move, own.turn, consistent);
+      if constexpr (kRolls)
+        products.turn = products.turn + matrix.surface_rolling[surface_offsets[i] + k].apply(
+                                            Vec3f{entry.normal.x, entry.normal.y, entry.normal.z}, own.move,
+                                            own.turn, consistent);
+    }
     const Twist of_mass{mass[i].move * in_double(own.move), mass[i].turn * in_double(own.turn)};
     residual[i] -= unit * (of_mass + in_double(products));
   }

@@ -15,11 +15,11 @@ std::vector<ContactLine> contact_lines(const ContactKernels& kernels, const Cont
   const auto n = static_cast<Index>(counts.size());
   std::vector<Index> offsets(counts.size() + 1);
   to.counts = counts.data();
-  kernels.contact_lines(in, n, to);
+  kernels.run(in, n, to);
   std::inclusive_scan(counts.begin(), counts.end(), offsets.begin() + 1);
   std::vector<ContactLine> lines(static_cast<std::size_t>(offsets.back()));
   to.lines = lines.data(), to.offsets = offsets.data();
-  kernels.contact_lines(in, n, to);
+  kernels.run(in, n, to);
   return lines;
 }
 

@@ -4,14 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "dem/contact/contact_items.hpp"
-#include "dem/contact/system_items.hpp"
 #include "dem/implicit/step_items.hpp"
-#include "dem/reports/contact_line_items.hpp"
-#include "dem/reports/escape_items.hpp"
-#include "dem/reports/output_fields.hpp"
+#include "dem/laws/contact_requests.hpp"
 #include "dem/search/pair_list.hpp"
-#include "dem/surface_contact/body_items.hpp"
 #include "dem/surface_contact/friction_surfaces.hpp"
 #include "dem/surface_contact/surface_items.hpp"
 #include "dem/surface_contact/wall_items.hpp"
@@ -20,23 +15,18 @@
 
 namespace scree {
 
-// Forces, torques and Newton matrix of the particles over an implicit step with friction.
-struct FrictionRequest {
-  Vec3 gravity;
-  NewtonWeights weights;
-  FrictionStart start;
-  StepForces forces;
-  StepTorques torques;
-  FrictionMatrix matrix;
-  Real* phase_squared;
+// Contacts with surfaces over an implicit step, per entry, with three or with six degrees of freedom.
+struct SurfaceStepsTo {
+  SurfaceStep* steps;
+  SurfaceFriction* friction_steps;
 };
 
 class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
-  virtual int history() const = 0;  // numbers of history per contact
-  virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
-                      Real* loss_power, Vec3* angular_acceleration) const = 0;
+  virtual LawTraits traits() const = 0;
+  // Applies the item of the request to n items.
+  virtual void run(const ContactViews<PackedRows>& in, Index n, const CpuRequest& request) const = 0;
   // Closes an explicit step of all n owned particles; pairs: of the list, with their history, for laws with
   // `kNeedsMotion`. Returns the square of the largest acceleration; a NaN if one is not finite.
   virtual Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
@@ -46,50 +36,16 @@ class ContactKernels {
                               const VerletViews& state) = 0;
   // Writes the pairs' history back to the slots, for laws with `kNeedsMotion`.
   virtual void return_records(PairList& pairs, const HistoryViews& history) const = 0;
-  virtual void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
-                      const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
   // Contacts of n entries of particles with surfaces on bodies, at an instant and over an implicit step.
   virtual void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const = 0;
-  virtual void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
-                             const SurfacePose* start_surface_poses, SurfaceStep* steps) const = 0;
-  // Contacts of n shapes of bodies with each other and with surfaces: at an instant or over an explicit step,
-  // and over an implicit one, without friction and with it. The history of a step is stored.
-  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyQuery& query,
-                          BodyLoad* out) const = 0;
-  virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                          const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
-  virtual void body_friction_steps(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                                   const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
+  virtual void surface_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
+                             const SurfacePose* start_surface_poses, const SurfaceStepsTo& to) const = 0;
   // Sums of the first n `WallContactItem`, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
-  virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
-  // Output field that reads contacts.
-  virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;
-  // Output of the contacts in `loads` of n entries with placed surfaces; and the first n `ContactLineItem`.
+  // Output of the contacts in `loads` of n entries with placed surfaces.
   virtual void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                               ShownContact* shown) const = 0;
-  virtual void contact_lines(const ContactViews<PackedRows>& in, Index n,
-                             const LineRequest& request) const = 0;
-  // Energy accounting of the particles' contacts over an accepted implicit step.
-  virtual void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                           Real* contact_loss, Real* integrator_loss) const = 0;
-  // Implicit steps with friction, for laws with `kFrictionOnly`: contacts of n entries with surfaces on
-  // bodies, system, energy accounting, and the friction limits at an iterate. friction_steps: per entry.
-  virtual void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
-                                      const SurfacePose* start_surface_poses,
-                                      SurfaceFriction* friction_steps) const = 0;
-  virtual void friction_system(const ContactViews<PackedRows>& in, Index n,
-                               const FrictionRequest& request) const = 0;
-  virtual void friction_losses(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                               const FrictionLossOutputs& to) const = 0;
-  virtual void store_lagged_limits(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                                   const LaggedLimits& to) const = 0;
-  // n escaped particles, and the removal of their contacts from all others: see the items.
-  virtual void escaped_particles(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
-                                 EscapedParticle* escaped_particles) const = 0;
-  virtual void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
-                          const StartViews& start) const = 0;
 };
 
 // Contact stages of one type of law on the CPU, for the laws of all pairs of `materials`. Each type is

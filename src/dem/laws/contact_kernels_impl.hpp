@@ -1,7 +1,6 @@
 // Contact stages of one law; included where they are instantiated.
 #pragma once
 
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -18,12 +17,9 @@ class CpuContactKernels : public ContactKernels {
  public:
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
-  int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
-  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
-              Vec3* angular_acceleration) const override {
-    for_each(
-        Serial{}, n,
-        ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
+  LawTraits traits() const override { return LawTraits::of<LawOf<Laws>>(); }
+  void run(const ContactViews<PackedRows>& in, Index n, const CpuRequest& request) const override {
+    with_requested_item(in, laws_, request, [&](const auto& item) { for_each(Serial{}, n, item); });
   }
   Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
                      const VerletViews& state, Vec3* force) override {
@@ -44,111 +40,30 @@ class CpuContactKernels : public ContactKernels {
   void return_records(PairList& pairs, const HistoryViews& history) const override {
     if constexpr (kPaired) ::scree::return_records<LawOf<Laws>>(pairs, history);
   }
-  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
-              const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
-    for_each(Serial{}, n,
-             ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
-  }
   [[gnu::flatten]] void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
     for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
   }
-  void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
-                     const SurfacePose* start_surface_poses, SurfaceStep* steps) const override {
-    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_surface_poses, laws_, steps});
-  }
-  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyQuery& query,
-                  BodyLoad* out) const override {
-    if constexpr (LawOf<Laws>::kNeedsMotion)
-      if (query.h > 0) {
-        using Item = BodyLoadItem<Laws, PackedRows, OverExplicitStep>;
-        return for_each(Serial{}, n, Item{{in, laws_, {query.h}}, query.arm, out});
-      }
-    for_each(Serial{}, n,
-             BodyLoadItem<Laws, PackedRows, InstantKinematics<Laws>>{{in, laws_}, query.arm, out});
-  }
-  void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
-                  BodyStep* out, const ShapeContactsTo& to) const override {
-    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
-  }
-  void body_friction_steps(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                           const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, BodyFrictionItem<Laws, PackedRows>{walk, arm, out, to});
-    });
+  void surface_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
+                     const SurfacePose* start_surface_poses, const SurfaceStepsTo& to) const override {
+    if constexpr (kFreedoms == 6)
+      for_each(Serial{}, n,
+               SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, to.friction_steps});
+    else if constexpr (kFreedoms == 3)
+      for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start.step, start_surface_poses, laws_, to.steps});
+    else
+      throw std::logic_error("surface_steps: the law has no implicit steps");
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
                  Real (&sums)[kWallTerms]) const override {
     reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
   }
-  void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
-    for_each(Serial{}, n, ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out});
-  }
-  void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
-    with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
-                        [&](const auto& item) { for_each(Serial{}, request.n, item); });
-  }
   void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
                       ShownContact* shown) const override {
     for_each(Serial{}, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
   }
-  void contact_lines(const ContactViews<PackedRows>& in, Index n, const LineRequest& request) const override {
-    for_each(Serial{}, n, ContactLineItem<Laws, PackedRows>{{in, laws_}, request});
-  }
-  void step_losses(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
-                   Real* integrator_loss) const override {
-    for_each(Serial{}, n,
-             ContactLossesItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
-  }
-  void surface_friction_steps(const SurfaceViews& in, Index n, const FrictionStart& start,
-                              const SurfacePose* start_surface_poses,
-                              SurfaceFriction* friction_steps) const override {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      for_each(Serial{}, n, SurfaceFrictionItem<Laws>{in, start, start_surface_poses, laws_, friction_steps});
-    else
-      refuse_friction();
-  }
-  void friction_system(const ContactViews<PackedRows>& in, Index n, const FrictionRequest& r) const override {
-    over_friction_step(in, r.start, [&](const auto& walk) {
-      for_each(Serial{}, n,
-               FrictionSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
-                                                    r.phase_squared});
-    });
-  }
-  void friction_losses(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                       const FrictionLossOutputs& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, FrictionLossesItem<Laws, PackedRows>{walk, to});
-    });
-  }
-  void store_lagged_limits(const ContactViews<PackedRows>& in, Index n, const FrictionStart& start,
-                           const LaggedLimits& to) const override {
-    over_friction_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, LaggedLimitItem<Laws, PackedRows>{walk, to});
-    });
-  }
-  void escaped_particles(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
-                         EscapedParticle* escaped_particles) const override {
-    for_each(Serial{}, n, EscapeEnergyItem<Laws, PackedRows>{{in, laws_}, box, escaped_particles});
-  }
-  void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
-                  const StartViews& start) const override {
-    for_each(Serial{}, n, EscapedContactsItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
-  }
 
  private:
-  // Calls use(walk), compiled only for laws that have implicit steps with friction.
-  template <class Use>
-  void over_friction_step(const ContactViews<PackedRows>& in, const FrictionStart& start,
-                          const Use& use) const {
-    if constexpr (kFrictionOnly<LawOf<Laws>>)
-      use(FrictionWalk<Laws, PackedRows>{in, laws_, {start}});
-    else
-      refuse_friction();
-  }
-  [[noreturn]] static void refuse_friction() {
-    throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
-  }
-
+  static constexpr int kFreedoms = kStepFreedoms<LawOf<Laws>>;
   // Evaluating a contact twice is faster than storing its result for laws without `kNeedsMotion`.
   static constexpr bool kPaired = LawOf<Laws>::kNeedsMotion;
   using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;

@@ -15,6 +15,7 @@
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
 #include "physics/orientation.hpp"
+#include "physics/tangential_losses.hpp"
 
 // One line per field, with its FieldParts. A checkpoint contains all fields; the hash those of the state, in
 // this order.
@@ -44,11 +45,9 @@
         kState | kRotation | kOutput)                                                                        \
   FIELD(orientation, Quaternion, "1", "rotation since t = 0, as a unit quaternion w, x, y, z",               \
         kState | kRotation | kOutput)                                                                        \
-  FIELD(friction_loss, Real, "J", "part of contact_loss by friction", kState | kRotation | kOutput)          \
-  FIELD(rolling_loss, Real, "J", "part of contact_loss by rolling resistance",                               \
-        kState | kRotation | kRolling | kOutput)                                                             \
-  FIELD(twisting_loss, Real, "J", "part of contact_loss by twisting resistance",                             \
-        kState | kRotation | kRolling | kOutput)
+  SCREE_LOSS_KINDS(SCREE_LOSS_FIELD, FIELD)
+#define SCREE_LOSS_FIELD(FIELD, kind, field, column, what, parts) \
+  FIELD(field, Real, "J", "part of contact_loss by " what, kState | parts | kOutput)
 // clang-format on
 
 namespace scree {

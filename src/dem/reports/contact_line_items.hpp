@@ -78,13 +78,9 @@ struct ShownSurfaceItem {
 struct EvaluateShownContact {
   const ShownContact* of_surfaces;  // from `ShownSurfaceItem`
 
-  template <class Law>
-  SCREE_HD ShownContact operator()(const Law& law, const PairState& pair) const {
-    return shown_contact<Law>(pair.geometry, branch(pair), law.load(pair).force, 0);
-  }
-  template <class Law, class Pair, class History>
-  SCREE_HD ShownContact operator()(const Law& law, const Pair& pair, const History& old) const {
-    return shown_contact<Law>(pair.geometry, branch(pair), law.load(pair, old).load.force,
+  template <class Law, class Pair>
+  SCREE_HD ShownContact operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    return shown_contact<Law>(pair.geometry, branch(pair), law.respond(pair, old).load.force,
                               slip_of(law, pair, old));
   }
   template <class Views>
@@ -104,6 +100,7 @@ struct LineRequest {
   const Index* offsets = nullptr;  // where the lines of each particle begin
   Index first_line = 0;            // where `lines` begins
   Index* counts = nullptr;
+  Index first = 0;  // the first of the particles
 };
 
 // Lines of the contacts that belong to particle i: with particles of a higher id, every other one with its
@@ -113,7 +110,8 @@ struct ContactLineItem {
   ContactWalk<Laws, Rows> walk;
   LineRequest to;
 
-  SCREE_HD void operator()(Index i) const {
+  SCREE_HD void operator()(Index k) const {
+    const Index i = to.first + k;
     const auto self = walk.self(i);
     const std::int64_t own_key = to.row_key[i];
     Index count = 0;

@@ -84,7 +84,8 @@ struct EscapedContactsItem {
     Vec3 ended_force, ended_torque;
     Real ended_loss = 0;
     Index ended = 0;
-    walk.neighbors_if(self, is_escaped, EvaluateLoad{}, [&](const auto& load, Index) {
+    walk.neighbors_if(self, is_escaped, Respond{}, [&](const auto& contact, Index) {
+      const auto& load = contact.load;
       ended_force += load.force, ended_torque += load.torque_i, ended_loss += load.loss, ++ended;
     });
     if (ended == 0) return;

@@ -123,7 +123,9 @@ struct CohesionItem {
 // Dissipation of friction, rolling and twisting in the particle's share of its contacts.
 SCREE_HD TangentialLosses losses_of(const ParticleViews& in, Index i) {
   const auto value = [i](const Real* losses) { return losses != nullptr ? losses[i] : 0; };
-  return {{value(in.friction_loss), value(in.rolling_loss), value(in.twisting_loss)}};
+#define SCREE_LOSS(of, kind, field, ...) value(of.field),
+  return {{SCREE_LOSS_KINDS(SCREE_LOSS, in)}};
+#undef SCREE_LOSS
 }
 
 // Sums where particles rotate; separate from LedgerTerm, so that other runs are unaffected.
@@ -147,7 +149,7 @@ struct RotationItem {
     const Vec4 w = in.angular_velocity[i];
     const TangentialLosses losses = losses_of(in, i);
     return {{rotational_energy(w.w, xyz(w)), springs[i].friction, springs[i].rolling,
-             losses.of[kFrictionLoss], losses.of[kRollingLoss], losses.of[kTwistingLoss]}};
+             SCREE_LOSS_KINDS(SCREE_LOSS_VALUE, losses.of)}};
   }
 };
 

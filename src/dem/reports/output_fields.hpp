@@ -86,13 +86,10 @@ struct StressOutput {
   using Value = Tensor;
 
   struct Acting {
-    template <class Law>
-    SCREE_HD SurfaceLoad operator()(const Law& law, const PairState& pair) const {
-      return {true, law.load(pair), {}, {}, contact_arm(pair)};
-    }
-    template <class Law, class Pair, class History>
-    SCREE_HD SurfaceLoad operator()(const Law& law, const Pair& pair, const History& old) const {
-      return {true, law.load(pair, old).load, {}, {}, contact_arm(pair)};
+    template <class Law, class Pair>
+    SCREE_HD SurfaceLoad operator()(const Law& law, const Pair& pair,
+                                    const typename Law::History& old) const {
+      return {true, law.respond(pair, old).load, {}, {}, contact_arm(pair)};
     }
     template <class Views>
     SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {

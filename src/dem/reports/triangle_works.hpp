@@ -40,6 +40,11 @@ struct ContactWorks {
   Real impact, sliding;
 };
 
+// lost: with the losses by kind as parts.
+SCREE_HD ContactWorks by_sliding(Real lost, const TangentialLosses& losses) {
+  return {lost - losses.sum(), losses.of[kFrictionLoss]};
+}
+
 // Dissipation of the contacts with surfaces from the last evaluation, by type of step; the particles' energy
 // accounting uses the same numbers.
 struct ExplicitWorks {
@@ -52,24 +57,22 @@ struct ExplicitWorks {
     const SurfaceLoad& contact = loads[entry];
     const Real lost = h * contact.load.loss;
     if (!moves) return {lost, 0};
-    const TangentialLosses& losses = contact.losses;
-    return {lost - (losses.of[kFrictionLoss] + losses.of[kRollingLoss] + losses.of[kTwistingLoss]),
-            losses.of[kFrictionLoss]};
+    return by_sliding(lost, contact.losses());
   }
 };
 struct ImplicitWorks {
   const SurfaceStep* steps;
 
   SCREE_HD bool touches(Index entry) const { return steps[entry].touches; }
-  SCREE_HD ContactWorks of(Index entry) const { return {steps[entry].losses.dissipated, 0}; }
+  SCREE_HD ContactWorks of(Index entry) const { return {steps[entry].contact.losses.dissipated, 0}; }
 };
 struct ImplicitFrictionWorks {
   const SurfaceFriction* friction_steps;
 
   SCREE_HD bool touches(Index entry) const { return friction_steps[entry].touches; }
   SCREE_HD ContactWorks of(Index entry) const {
-    const FrictionLosses& losses = friction_steps[entry].losses;
-    return {losses.dissipated - losses.friction, losses.friction};
+    const FrictionLosses& losses = friction_steps[entry].contact.losses;
+    return by_sliding(losses.dissipated, losses.by_kind);
   }
 };
 

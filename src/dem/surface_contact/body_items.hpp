@@ -19,6 +19,7 @@ struct BodyLoad {
   Real energy = 0;            // elastic [J]
   Real pairs = 0;             // number of contacts
   SpringEnergies springs;     // parts of the energy, with friction
+  Real cohesion = 0;          // part of the energy [J]
   TangentialLosses losses{};  // parts of the dissipation, over the step [J]
 };
 
@@ -26,8 +27,8 @@ struct BodyLoad {
 struct BodyStep {
   StepSums sums;
   ContactLosses losses;
-  Real friction = 0;   // part of the dissipation [J]
-  Index partners = 0;  // shapes of other bodies in contact
+  TangentialLosses tangential{};  // parts of the dissipation [J]
+  Index partners = 0;             // shapes of other bodies in contact
 };
 
 // Derivatives of a contact force with respect to the motion of its partners, over an implicit step.
@@ -35,6 +36,7 @@ struct ContactSlopes {
   Vec3 normal, direction;   // unit vectors; direction: of sliding, else zero
   Real stiffness, damping;  // normal [N/m], [N s/m]
   Real shear;               // tangential, perpendicular to `direction` [N/m]
+  StepRolling rolling{};    // of laws with rolling resistance
 };
 
 // Contact of a shape with that of another body. other: item.
@@ -56,14 +58,8 @@ struct ShapeContactsTo {
 };
 
 SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
-  return {c.normal, {}, c.step.stiffness, c.step.damping, 0};
+  return {c.normal, {}, c.step.stiffness, c.step.damping, 0, {}};
 }
-
-// Input of the evaluation of shapes.
-struct BodyQuery {
-  const Vec3* arm;  // of their centres from the bodies' centres [m]
-  Real h;  // length of the explicit step that ends now, for laws with `kNeedsMotion` [s]; 0: an instant
-};
 
 // Load on the body of a shape. In `SurfaceLoad` the other partner takes the role of the particle.
 struct EvaluateBodyLoad {
@@ -71,24 +67,31 @@ struct EvaluateBodyLoad {
     SurfaceLoad contact;
     Vec3 normal;
   };
-  template <class Law>
-  SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    return {{true, law.normal_load(pair).exchanged(), EvaluateEnergy{}(law, pair), {}, {}},
-            pair.geometry.normal()};
-  }
-  template <class Law, class Pair, class History>
-  requires Law::kNeedsMotion SCREE_HD LoadWithHistory<Found, History>
-  operator()(const Law& law, const Pair& pair, const History& old) const {
-    const auto outcome = law.load(pair, old);
-    const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
-    return {{{true, outcome.load.exchanged(), EvaluateEnergy{}(law, pair, now), {}, {}, outcome.losses()},
-             pair.geometry.normal()},
-            outcome.history};
+  template <class Law, class Pair>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    const auto outcome = law.respond(pair, old);
+    const SurfaceLoad contact{true, outcome.load.exchanged(), energy_of(law, pair, old, outcome.history), {},
+                              {},   outcome.losses()};
+    return LoadWithHistory<Found, decltype(outcome.history)>{{contact, pair.geometry.normal()},
+                                                             outcome.history};
   }
   // A contact with a surface that was evaluated before, from the surface's side.
   template <class Views>
   SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
     return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+  }
+
+ private:
+  // A contact that has opened in the step has losses only.
+  template <class Law, class Pair, class History>
+  SCREE_HD static ContactEnergy energy_of(const Law& law, const Pair& pair, const typename Law::History& old,
+                                          const History& now) {
+    if constexpr (kHasRange<Law>)
+      if (!law.closed(pair, old)) return {};
+    if constexpr (std::is_same_v<Pair, MovingPair>)
+      return EvaluateEnergy{}(law, pair, now);
+    else
+      return EvaluateEnergy{}(law, pair, old);
   }
 };
 
@@ -131,9 +134,11 @@ struct BodyLoadItem {
     contact.arm = point;
     sum.sums.add_contact(contact);
     sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
+    if constexpr (kMayBeCohesive<typename LawOf<Laws>::Normal>)
+      sum.cohesion += share * contact.energy.cohesion;
     if constexpr (!LawOf<Laws>::kNeedsMotion) return;
     sum.springs.add(contact.energy.springs, share);
-    contact.losses.scale(share), sum.losses.add(contact.losses);
+    contact.by_kind.scale(share), sum.losses.add(contact.by_kind);
   }
 };
 
@@ -147,17 +152,17 @@ struct BodyStepItem {
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
-    const auto add = [&](StepContact contact, Index) {
+    const auto add = [&](StepContact contact, Real share) {
+      sum.losses.add(contact.losses, share);
       contact.normal = -contact.normal;
-      sum.sums.add_contact(SurfaceStep{true, contact, {}, arm[i] + self.p.w * contact.normal});
+      sum.sums.add_contact(SurfaceStep{true, contact, arm[i] + self.p.w * contact.normal});
     };
-    const EvaluateStepContact of{walk.kinematics.start.resolve_events};
+    const RespondOverStep<true> of{walk.kinematics.start.resolve_events};
     walk.neighbors(self, of, [&](const StepContact& contact, Index j) {
-      add(contact, j);
+      add(contact, kPairShare);
       to.put(i, sum, {j, slopes_of(contact)});
     });
-    walk.surfaces(self, of, add);
-    sum.losses = step_losses_of(walk, i, kPairShare);
+    walk.surfaces(self, of, [&](const StepContact& contact, Index) { add(contact, 1); });
     out[i] = sum;
   }
 };
@@ -167,29 +172,15 @@ SCREE_HD ContactSlopes slopes_of(const FrictionalContact& c) {
   slopes.direction = c.friction.direction, slopes.shear = c.friction.stiffness;
   return slopes;
 }
-
-// Friction of a contact over an implicit step, with its energy accounting.
-struct EvaluateBodyFriction {
-  EvaluateFrictionalContact contact;
-
-  struct Found {
-    FrictionalContact contact;
-    FrictionLosses losses;
-    bool lasts;
-    ContactHistory history;
-  };
-  template <class Law>
-  SCREE_HD Found operator()(const Law& law, const FrictionalPath& path, const ContactHistory& old) const {
-    const FrictionalContact found = contact(law, path, old);
-    return {found, friction_losses(law, path, found, contact.start.step.resolve_events), found.lasts,
-            found.history};
-  }
-  template <class Views>
-  SCREE_HD const SurfaceFriction* stored(const Views&, Index entry) const {
-    const SurfaceFriction& at = contact.start.on_bodies[entry];
-    return at.touches ? &at : nullptr;
-  }
-};
+SCREE_HD ContactSlopes slopes_of(const RollingFrictionalContact& c) {
+  ContactSlopes slopes = slopes_of(static_cast<const FrictionalContact&>(c));
+  slopes.rolling = c.rolling;
+  return slopes;
+}
+SCREE_HD ContactSlopes slopes_of(const SurfaceFriction& c) {
+  return c.rolls ? slopes_of(c.contact) : slopes_of(static_cast<const FrictionalContact&>(c.contact));
+}
+SCREE_HD ContactSlopes slopes_of(const SurfaceStep& c) { return slopes_of(c.contact); }
 
 template <class Laws, class Rows>
 struct BodyFrictionItem {
@@ -198,18 +189,26 @@ struct BodyFrictionItem {
   BodyStep* out;
   ShapeContactsTo to;
 
+  static constexpr bool kRolls = LawOf<Laws>::Rolling::acts;
+  using Contact = FrictionalContactOf<LawOf<Laws>>;
+
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
     const auto self = walk.self(i);
-    const EvaluateBodyFriction of{{walk.kinematics.start, walk.in.spin}};
+    const RespondWithFriction<true> of{walk.kinematics.start, walk.in.spin};
     const auto add = [&](const auto& found, Real share) {
-      if (!found.losses.acts) return;
-      sum.sums.add_contact(SurfaceFriction{true, from_surface(found.contact), {}, arm[i], self.p.w, {}, {}});
-      sum.losses.add(found.losses, share), sum.friction += share * found.losses.friction;
+      if (!found.acts) return;
+      SurfaceFriction contact{};
+      contact.touches = true, contact.rolls = kRolls, contact.arm = arm[i], contact.radius = self.p.w;
+      static_cast<Contact&>(contact.contact) = from_surface(found);
+      sum.sums.add_contact(contact);
+      sum.losses.add(found.losses, share);
+      TangentialLosses by_kind = found.losses.by_kind;
+      by_kind.scale(share), sum.tangential.add(by_kind);
     };
     walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
       add(found, kPairShare);
-      if (found.losses.acts) to.put(i, sum, {j, slopes_of(found.contact)});
+      if (found.acts) to.put(i, sum, {j, slopes_of(found)});
     });
     walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
     out[i] = sum;
@@ -217,10 +216,14 @@ struct BodyFrictionItem {
 
  private:
   // The contact from the surface's side: quantities that are odd under exchange change sign.
-  SCREE_HD static FrictionalContact from_surface(FrictionalContact c) {
+  SCREE_HD static Contact from_surface(Contact c) {
     c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
     c.friction.start = -c.friction.start, c.friction.step = -c.friction.step,
     c.friction.end = -c.friction.end;
+    if constexpr (kRolls) {
+      StepRolling& m = c.rolling;
+      m.start = -m.start, m.step = -m.step, m.end = -m.end;
+    }
     return c;
   }
 };

@@ -11,6 +11,7 @@ void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const Cont
   PairStiffness& sum = blocks_[{one.body, other.body}];
   sum.first = one.body, sum.second = other.body;
   const Vec3 n = slopes.normal, t = slopes.direction;
+  const bool rolls = slopes.rolling.rolling > 0 || slopes.rolling.twisting > 0;
   for (int row = 0; row < kBlockRows; ++row)
     for (int column = 0; column < kBlockRows; ++column) {
       const Vec3 a = unit_displacement(one.arm, row), b = unit_displacement(other.arm, column);
@@ -18,6 +19,8 @@ void BodyPairs::add(const TouchedBody& one, const TouchedBody& other, const Cont
       const auto at = static_cast<std::size_t>(kBlockRows * row + column);
       sum.stiffness[at] -=
           slopes.stiffness * along + slopes.shear * (dot(a, b) - along - dot(t, a) * dot(t, b));
+      if (rolls && row >= 3 && column >= 3)
+        sum.stiffness[at] -= turning_stiffness(slopes.rolling, n, unit_axis(row - 3), unit_axis(column - 3));
       sum.damping[at] -= slopes.damping * along;
     }
 }

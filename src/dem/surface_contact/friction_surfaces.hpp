@@ -15,6 +15,18 @@ SCREE_HD Vec3 unit_displacement(Vec3 point, int k) {
   return k < 3 ? axis : cross(axis, point);
 }
 
+// Derivative of the moment of rolling and twisting along the axis `a` by a rotation about the axis `b`, both
+// unit vectors [N m].
+SCREE_HD Real turning_stiffness(const StepRolling& m, Vec3 normal, Vec3 a, Vec3 b) {
+  const Real along = dot(normal, a) * dot(normal, b);
+  return m.rolling * (dot(a, b) - along - dot(m.direction, a) * dot(m.direction, b)) + m.twisting * along;
+}
+
+// Unit vector of the k-th coordinate axis.
+SCREE_HD Vec3 unit_axis(int k) {
+  return {k == 0 ? Real(1) : Real(0), k == 1 ? Real(1) : Real(0), k == 2 ? Real(1) : Real(0)};
+}
+
 // Terms of the wrench and its blocks. The friction force acts at the centre of a sphere with a couple, as
 // between two spheres, and at the contact point of other surfaces. Its part of the blocks equals that in the
 // particles' Newton matrix (`FrictionEntry`): the slip is minus the tangential displacement of the contact
@@ -28,7 +40,9 @@ SCREE_HD Real sum_term(const SurfaceFriction& c, int k) {
     if (k % kWrenchTerms == kBlockRows) return c.contact.lever_arm_ratio * dot(friction, c.surface_velocity);
     const Vec3 force =
         c.contact.lever_arm_ratio * friction - (at_end ? normal.end_force : normal.step.force) * n;
-    return component(force, cross(c.arm, force) + c.radius * cross(n, friction), k % kWrenchTerms);
+    Vec3 torque = cross(c.arm, force) + c.radius * cross(n, friction);
+    if (c.rolls) torque += at_end ? c.contact.rolling.end : c.contact.rolling.step;
+    return component(force, torque, k % kWrenchTerms);
   }
   const BlockIndex at = block_index(k);
   const Vec3 contact_point = c.arm + c.radius * n;
@@ -36,8 +50,10 @@ SCREE_HD Real sum_term(const SurfaceFriction& c, int k) {
   const Real along = dot(n, a) * dot(n, b);
   if (!at.is_stiffness) return normal.step.damping * along;
   const Vec3 t = c.contact.friction.direction;
-  return normal.step.stiffness * along +
-         c.contact.friction.stiffness * (dot(a, b) - along - dot(t, a) * dot(t, b));
+  const Real stiffness = normal.step.stiffness * along +
+                         c.contact.friction.stiffness * (dot(a, b) - along - dot(t, a) * dot(t, b));
+  if (!c.rolls || at.row < 3) return stiffness;  // at.column >= at.row
+  return stiffness + turning_stiffness(c.contact.rolling, n, unit_axis(at.row - 3), unit_axis(at.column - 3));
 }
 
 // Contact over the step, for the k-th of the entries by_surface. in.spin: at the end of the step.
@@ -63,19 +79,16 @@ struct SurfaceFrictionItem {
       return in.template store_no_history<Law>(entry);
     }
     const FrictionalPath path = path_of(kinematics, surface, before, entry, i);
-    out.touches = OverFrictionStep::closed(path);
+    out.touches = OverFrictionStep::closed(path), out.rolls = Law::Rolling::acts;
     if (!out.touches) return in.template store_no_history<Law>(entry);
     const Law& law = laws.get(in.material[i], surface.material);
-    const bool resolve_events = start.step.resolve_events;
     const ContactHistory old =
         in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
-    out.contact = frictional_contact(law, path, old, resolve_events, [&](bool at_end) {
-      return path.motion.arm_i * xyz((at_end ? in.spin : start.spin)[i]) +
-             path.motion.arm_j * (at_end ? surface : before).spin;
-    });
-    out.losses = friction_losses(law, path, out.contact, resolve_events);
+    const Spins spins{path.motion, xyz(start.spin[i]), xyz(in.spin[i]), before.spin, surface.spin};
+    static_cast<FrictionalContactOf<Law>&>(out.contact) =
+        frictional_contact<true>(law, path, old, start.step.resolve_events, spins);
     if (out.contact.acts && surface.turns())
-      out.losses.integrator +=
+      out.contact.losses.integrator +=
           parent_work(law, path, out.contact, parent_excess(kinematics, surface, before)) +
           belt_work(surface, path, out.contact);
     out.arm = kinematics.now.is_sphere ? surface.arm : surface.arm + kinematics.now.pair.contact;
@@ -87,6 +100,17 @@ struct SurfaceFrictionItem {
   }
 
  private:
+  // Spins of the particle i and of the surface's parent j; see `frictional_contact()`.
+  struct Spins {
+    const ContactMotion& motion;
+    Vec3 i0, i1, j0, j1;  // at the start and the end [rad/s]
+
+    SCREE_HD Vec3 arm_sum(bool at_end) const {
+      return motion.arm_i * (at_end ? i1 : i0) + motion.arm_j * (at_end ? j1 : j0);
+    }
+    SCREE_HD Vec3 relative(bool at_end) const { return at_end ? i1 - j1 : i0 - j0; }
+  };
+
   // Adds the conveyor velocity of the surface to the kinematics of the contact.
   SCREE_HD static void add_conveyor_motion(const SurfaceFrame& frame, FrictionalPath& path) {
     add_surface_velocity(path.motion, frame.middle_surface_velocity());
@@ -126,7 +150,7 @@ struct SurfaceFrictionItem {
     out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(contact_point);
     static_cast<ContactPath&>(out) =
         OverImplicitStep{start.step}.path(end, out.velocity1, begin, out.velocity0, kinematics.displacement,
-                                          surface_size(in, entry, p, in.velocity[i]));
+                                          surface_size<Law>(in, entry, kinematics.now, p, in.velocity[i]));
     out.step.change = kinematics.change;
     if (is_sphere)
       out.motion = sphere_motion(end, kinematics.displacement, one, other, h);
@@ -140,6 +164,7 @@ struct SurfaceFrictionItem {
                                : out.motion.lever_arm_ratio * end.distance / (radius_sum - out.step.overlap0);
     out.curvature = kinematics.now.is_face ? 0 : out.motion.lever_arm_ratio / radius_sum;
     out.arm_rotation = h * (one.arm * one.spin + other.arm * other.spin);
+    out.relative_rotation = h * (one.spin - other.spin);
     out.i = i, out.j = FrictionalPath::kWall;
     OverFrictionStep{start}.at_entry(out, entry);
     return out;
@@ -169,6 +194,12 @@ struct FrictionShiftItem {
       residual[i] -= contact.radius > 0
                          ? of.apply(-scale * move, scale * turn, consistent)
                          : of.apply(-scale * (move + cross(turn, contact.contact_arm)), Vec3{}, consistent);
+      if (matrix.surface_rolling == nullptr) continue;
+      const RollingEntry& rolling = matrix.surface_rolling[surface_offsets[i] + k];
+      const Vec3 moved = contact.radius > 0 ? move : move + cross(turn, contact.contact_arm),
+                 rotation = contact.radius > 0 ? (1 / contact.radius) * turn : turn;
+      residual[i].turn -= rolling.apply(Vec3{of.normal.x, of.normal.y, of.normal.z}, -scale * moved,
+                                        -(scale * rolling.partner_scale) * rotation, consistent);
     }
   }
 };

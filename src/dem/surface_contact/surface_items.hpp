@@ -35,10 +35,13 @@ struct SurfaceViews {
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws with `kNeedsMotion`
   Real h = 0;                  // see SurfaceQuery
   Real interaction_range = 0;  // Contact::interaction_range [m]
-  // Mass of each placed surface's parent for damping laws; null: all parents are immovable [kg]
+  // Mass of each placed surface's parent where laws read it alone; null: infinite [kg]
   const Real* masses = nullptr;
   // Radii [m] that laws use instead of the particles' own; null: the particles' own.
   const Real* law_radius = nullptr;
+  // Per placed surface, and per item if these are shapes of bodies; null: nothing moves.
+  const FreeBody* free_bodies = nullptr;
+  const FreeShape* free_shapes = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
@@ -86,6 +89,23 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
   return {in.law_radius != nullptr ? in.law_radius[in.entries.particles[entry]] : p.w,
           placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
           in.masses != nullptr ? in.masses[surface] : kInfinity};
+}
+// The same with the motion of the bodies at the contact, for laws that depend on it.
+template <class Law>
+SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, const SurfaceTouch& touch, Vec4 p,
+                               Vec4 u) {
+  PairSize size = surface_size(in, entry, p, u);
+  if constexpr (kUsesMass<Law>) {
+    if (in.free_bodies == nullptr) return size;
+    const Index surface = in.surface_of(entry);
+    const FreeBody& body = in.free_bodies[surface];
+    const Vec3 normal = touch.pair.geometry.normal(), arm = in.placed[surface].arm;
+    size.of_bodies = body.rotation(touch.is_sphere ? arm : arm + touch.pair.contact, normal);
+    size.of_bodies += in.masses == nullptr ? body.translation(normal) : body.held(normal);
+    if (in.free_shapes != nullptr)
+      size.of_bodies += in.free_shapes[in.entries.particles[entry]].beside_mass(normal);
+  }
+  return size;
 }
 
 // Position of a contact with a plane or a mesh at the start of the step, from the surface's point then [m].
@@ -139,7 +159,7 @@ struct SurfaceLoadItem {
     out.touches = touch.touches;
     if (!out.touches) return in.template store_no_history<Law>(entry);
     const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
-                          surface_size(in, entry, p, u)};
+                          surface_size<Law>(in, entry, touch, p, u)};
     const Law& law = laws.get(in.material[i], surface.material);
     if constexpr (Law::kNeedsMotion)
       find_moving(law, state, touch, surface, entry);
@@ -156,25 +176,20 @@ struct SurfaceLoadItem {
   SCREE_HD void find_load(const Law& law, const PairState& state, const SurfacePose& surface,
                           Index entry) const {
     SurfaceLoad& out = loads[entry];
-    if constexpr (Law::kHistory == 0) {
-      if constexpr (kHasRange<Law>) {
-        out.touches = law.closed(state, {});
-        if (!out.touches) return;
-      }
-      out.load = law.load(state);
-    } else {
-      const auto load = EvaluateLoad{}(law, state, old(surface, entry));
-      out.load = load;
-      in.template store_history<Law>(surface, entry, load.history);
-    }
-    out.energy = EvaluateEnergy{}(law, state);
+    const auto before = old(surface, entry);
+    out.touches = is_closed(law, state, before);
+    if (!out.touches) return;
+    const auto outcome = law.respond(state, before);
+    out.load = outcome.load, out.energy = EvaluateEnergy{}(law, state, before);
+    if constexpr (Law::kHistory > 0) in.template store_history<Law>(surface, entry, outcome.history);
   }
   SCREE_HD auto old(const SurfacePose& surface, Index entry) const {
     return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
   }
 
   // Whether a pair within the interaction range is in contact.
-  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
+  SCREE_HD static bool is_closed(const Law& law, const PairState& state,
+                                 const typename Law::History& before) {
     if constexpr (kHasRange<Law>)
       return law.closed(state, before);
     else
@@ -182,7 +197,7 @@ struct SurfaceLoadItem {
   }
   SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
                             const SurfacePose& surface, Index entry) const {
-    const ContactHistory before = old(surface, entry);
+    const auto before = old(surface, entry);
     const bool closed = is_closed(law, state, before);
     if (!closed) {
       in.template store_no_history<Law>(entry);
@@ -194,7 +209,7 @@ struct SurfaceLoadItem {
     if (in.h > 0) {
       if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
         add_surface_velocity(pair.motion, in.frames[surface.frame].middle_surface_velocity());
-      const ContactOutcome outcome = law.load(pair, before);
+      const auto outcome = law.respond(pair, before);
       take(outcome, entry);
       loads[entry].energy = closed ? EvaluateEnergy{}(law, pair, outcome.history) : ContactEnergy{};
       if (closed) in.template store_history<Law>(surface, entry, outcome.history);
@@ -202,7 +217,7 @@ struct SurfaceLoadItem {
       InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
       if (!touch.is_sphere && in.frames[surface.frame].is_conveyor())
         at.slip_rate -= pair.motion.lever_arm_ratio * conveyor_velocity(touch, surface);
-      take(law.load(at, before), entry);
+      take(law.respond(at, before), entry);
       loads[entry].energy = EvaluateEnergy{}(law, at, before);
     }
   }
@@ -247,8 +262,9 @@ struct SurfaceLoadItem {
     if (touch.is_sphere || !in.frames[surface.frame].is_conveyor()) return 0;
     return -dot(force, conveyor_velocity(touch, surface));
   }
-  SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
-    loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
+  template <class Outcome>
+  SCREE_HD void take(const Outcome& outcome, Index entry) const {
+    loads[entry].load = outcome.load, loads[entry].by_kind = outcome.losses();
   }
 };
 
@@ -323,16 +339,15 @@ struct SurfaceStepItem {
     ContactPath over = OverImplicitStep{start}.path(
         pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
         xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.displacement,
-        surface_size(in, entry, p, u));
+        surface_size<LawOf<Laws>>(in, entry, path.now, p, u));
     over.step.change = path.change;
     const auto& law = laws.get(in.material[i], surface.material);
-    const EvaluateStepContact of{start.resolve_events};
-    out.contact = of(law, over);
-    out.losses = EvaluateStepLosses{of}(law, over);
+    out.contact = RespondOverStep<true>{start.resolve_events}(law, over, {});
     if (surface.turns()) {
       const Real force0 = start_force(law.normal.of_pair(over.size), over.step);
-      out.losses.integrator += parent_excess(path, surface, before)
-                                   .work(force0 * over.normal0, out.contact.step.force * over.normal1);
+      out.contact.losses.integrator +=
+          parent_excess(path, surface, before)
+              .work(force0 * over.normal0, out.contact.step.force * over.normal1);
     }
     out.arm = surface.arm + pair.contact;
     out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;

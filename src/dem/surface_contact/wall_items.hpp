@@ -31,13 +31,9 @@ struct WallLoad {
 };
 
 struct EvaluateWallLoad {
-  template <class Law>
-  SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
-    return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
-  }
-  template <class Law, class Pair, class History>
-  SCREE_HD WallLoad operator()(const Law& law, const Pair& pair, const History& old) const {
-    return {law.load(pair, old).load.force, -pair.geometry.distance * pair.geometry.direction};
+  template <class Law, class Pair>
+  SCREE_HD WallLoad operator()(const Law& law, const Pair& pair, const typename Law::History& old) const {
+    return {law.respond(pair, old).load.force, -pair.geometry.distance * pair.geometry.direction};
   }
   // Bodies account for their loads on walls themselves.
   template <class Views>

@@ -19,6 +19,7 @@ CornerSet::CornerSet(const Model& model, const SurfaceSet& surfaces) : surfaces_
       next += hull->corners.size();
       countable(next, "bodies: more corners of meshes");
     }
+  if (!empty() && (model.rolls() || model.is_cohesive())) own_materials_ = model.contact.materials();
 }
 
 const CornerSet::OfMesh& CornerSet::mesh_of(Index corner) const {
@@ -54,7 +55,7 @@ void CornerSet::add_near_planes(const SurfacePoses& poses, std::span<const WallP
 }
 
 Contact CornerSet::with_own_materials(Contact contact) const {
-  if (empty() || contact.rolling.empty()) return contact;
+  if (own_materials_ == 0) return contact;
   const auto materials = static_cast<std::size_t>(contact.materials());
   const auto twice = [&]<class T>(const std::vector<T>& of_pairs) {
     std::vector<T> out;
@@ -66,8 +67,14 @@ Contact CornerSet::with_own_materials(Contact contact) const {
   contact.laws = twice(contact.laws), contact.friction = twice(contact.friction);
   contact.rolling = twice(contact.rolling), contact.wear = twice(contact.wear);
   for (std::size_t i = 0; i < 2 * materials; ++i)
-    for (std::size_t j = 0; j < 2 * materials; ++j)
-      if (std::max(i, j) >= materials) contact.rolling[i * 2 * materials + j] = {};
+    for (std::size_t j = 0; j < 2 * materials; ++j) {
+      if (std::max(i, j) < materials) continue;
+      const std::size_t pair = i * 2 * materials + j;
+      if (!contact.rolling.empty()) contact.rolling[pair] = {};
+      // The damper of a cohesive law is that of a law with tension.
+      NormalLawParameters& law = contact.laws[pair];
+      if (law.is_cohesive()) law = law.without_cohesion(), law.tension = true;
+    }
   contact.material_names.resize(2 * materials);
   return contact;
 }

@@ -34,12 +34,15 @@ class CornerSet {
   // mesh that is far from all planes costs one test.
   void add_near_planes(const SurfacePoses& poses, std::span<const WallPlane> planes, Real margin,
                        std::vector<Index>& to) const;
-  // Contact parameters with every material twice. Vertices have neither rolling nor twisting resistance: they
-  // use the second set of materials, without these laws. Unchanged where the deck has none.
+  // Contact parameters with every material twice. Vertices neither resist rolling and twisting nor attract,
+  // since they stand for flat faces: they use the second set of materials, without these laws. Unchanged
+  // where the deck has none.
   Contact with_own_materials(Contact contact) const;
+  int material(int of_mesh) const { return of_mesh + own_materials_; }
 
  private:
-  Index surfaces_;  // number of placed surfaces
+  int own_materials_ = 0;  // number of the first material of the second set; 0: there is none
+  Index surfaces_;         // number of placed surfaces
   std::vector<OfMesh> meshes_;
 };
 

@@ -17,11 +17,12 @@
 
 namespace scree {
 
-// Quantities of one contact that an implicit step is solved with.
+// Response of one contact to an implicit step: what the step is solved with.
 struct StepContact {
   StepContactForce step;  // force for the end of the step, see step_contact_force
   Real end_force;         // force of the law at the end of the step [N]
   Vec3 normal;            // at the end of the step
+  ContactLosses losses;   // only where asked for
 };
 
 // One contact of a particle with a surface on a body at an instant; evaluated once for both.
@@ -29,17 +30,18 @@ struct SurfaceLoad {
   bool touches;                    // else all members below are undefined
   ContactLoadOf<Real, Vec3> load;  // on the particle
   ContactEnergy energy;
-  Vec3 arm;                   // from the body's centre to the contact point [m]
-  Vec3 particle_arm;          // contact_arm() on the particle's side [m]
-  TangentialLosses losses{};  // for laws with `kNeedsMotion`
-  Real belt_power = 0;        // power of the force on a conveyor surface [W]
+  Vec3 arm;                    // from the body's centre to the contact point [m]
+  Vec3 particle_arm;           // contact_arm() on the particle's side [m]
+  TangentialLosses by_kind{};  // parts of the dissipation over the step, for laws with `kNeedsMotion` [J]
+  Real belt_power = 0;         // power of the force on a conveyor surface [W]
+
+  SCREE_HD const TangentialLosses& losses() const { return by_kind; }
 };
 
 // One contact of a particle with a surface on a body over an implicit step.
 struct SurfaceStep {
   bool touches;
   StepContact contact;
-  ContactLosses losses;
   Vec3 arm;               // at the end of the step [m]
   Vec3 contact_arm{};     // from the surface's point to the contact point, at the end of the step [m]
   bool is_sphere = true;  // whether the surface is a sphere

@@ -106,6 +106,38 @@ struct SurfacePose {
   SCREE_HD bool turns() const { return kind != SurfaceKind::sphere && !(turn == Vec3{}); }
 };
 
+// Inertia of the body of a placed surface at one instant; zero for walls, which nothing moves. Joints do not
+// count: the body is as free as if it had none.
+struct FreeBody {
+  Vec3 inverse_mass;     // along x, y and z [1/kg]; a planar body does not leave its plane
+  Sym3 inverse_inertia;  // J^-1 about its centre, in the global frame [1/(kg m^2)]
+
+  // The parts of its inverse effective mass for a force along the unit vector n [1/kg]. arm: of any point of
+  // the force's line from the centre [m].
+  SCREE_HD Real translation(Vec3 n) const {
+    return inverse_mass.x * n.x * n.x + inverse_mass.y * n.y * n.y + inverse_mass.z * n.z * n.z;
+  }
+  SCREE_HD Real rotation(Vec3 arm, Vec3 n) const {
+    const Vec3 moment = cross(arm, n);
+    return dot(moment, inverse_inertia * moment);
+  }
+  // `translation()` less that of the whole mass, for laws that have the mass: zero but for planar bodies. Two
+  // partners that cannot move along n keep a finite effective mass.
+  SCREE_HD Real held(Vec3 n) const {
+    constexpr Real kMost = 1 - 1e-9;
+    return kMost * (inverse_mass.z - inverse_mass.x) * n.z * n.z;
+  }
+};
+
+// A shape of a body, or a corner of its mesh, as an item. arm: of its centre from the body's [m].
+struct FreeShape {
+  Vec3 arm;
+  FreeBody body;
+
+  // What the body's motion adds to its inverse mass for a force through the centre of the shape [1/kg].
+  SCREE_HD Real beside_mass(Vec3 n) const { return body.rotation(arm, n) + body.held(n); }
+};
+
 // Orientation of a placed plane or mesh. Spheres have none.
 struct SurfaceFrame {
   Mat3 axes;    // rotation from the parent's frame to the global one, now
@@ -170,6 +202,8 @@ struct SurfacePoses {
   // Per placed surface: how much farther than a particle it may move before the list expires; empty: no
   // farther [m].
   std::span<const Real> extra_travel{};
+  // Per placed surface; empty where no law depends on masses, or there are no bodies.
+  std::span<const FreeBody> free_bodies{};
 
   // Search distance beyond touch of a placed surface; skin: that of static planes [m].
   Real skin_of(Index s, Real skin) const {

@@ -4,87 +4,23 @@
 #include <algorithm>
 #include <array>
 
+#include "deck/pair_laws.hpp"
 #include "model/builder/build_normal_law.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/builder/mixing.hpp"
 #include "model/checks/limits.hpp"
+#include "model/derived/choose_law.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/touching.hpp"
 #include "physics/cohesion.hpp"
-#include "physics/tangential_laws.hpp"
+#include "physics/eepa.hpp"
+#include "physics/liquid_bridge.hpp"
+#include "physics/restitution.hpp"
+#include "physics/wear.hpp"
 
 namespace scree {
 
 namespace {
-
-// G* of two materials with a Young's modulus [Pa].
-Real shear_modulus(const DeckTable& a, const DeckTable& b) {
-  return effective_shear_modulus(a.real("young_modulus"), a.real("poisson_ratio"), b.real("young_modulus"),
-                                 b.real("poisson_ratio"));
-}
-
-Friction build_friction(const DeckTable& deck, const DeckTable& table, const NormalLawParameters& law,
-                        const int (&material)[2]) {
-  if (!table.has("friction")) {
-    if (table.has("tangential_stiffness")) table.fail("tangential_stiffness", "needs friction");
-    if (table.real("tangential_damping_ratio") > 0) table.fail("tangential_damping_ratio", "needs friction");
-    return {};
-  }
-  Friction friction{.friction = table.real("friction"),
-                    .damping_ratio = table.real("tangential_damping_ratio")};
-  if (law.effective_modulus > 0) {
-    if (table.has("tangential_stiffness"))
-      table.fail("tangential_stiffness",
-                 "must be left out for Hertz's law: Mindlin's follows from the moduli");
-    const std::vector<DeckTable>& materials = deck.tables("materials");
-    friction.shear_modulus = shear_modulus(materials[static_cast<std::size_t>(material[0])],
-                                           materials[static_cast<std::size_t>(material[1])]);
-  } else if (table.has("tangential_stiffness")) {
-    friction.stiffness = table.real("tangential_stiffness");
-  } else if (law.exponent == 1) {
-    friction.stiffness = standard_slip_stiffness(law.normal_stiffness);
-  } else {
-    table.fail("tangential_stiffness", "missing; it follows from the stiffness only where exponent = 1");
-  }
-  return friction;
-}
-
-constexpr std::array kRollingKeys{"rolling_friction", "rolling_damping", "twisting_friction"};
-
-// Rolling resistance of the pair. Default stiffness: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the
-// plane (ElasticPlasticRolling).
-RollingParameters build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
-  const bool springs = is_positive(table, "rolling_friction"),
-             acts = springs || is_positive(table, "rolling_damping");
-  for (const char* key : kRollingKeys)
-    if (is_positive(table, key) && !table.has("friction")) table.fail(key, "needs friction; it may be 0");
-  if (table.has("rolling_stiffness") && !table.has("rolling_friction"))
-    table.fail("rolling_stiffness", "needs rolling_friction");
-  if (table.real("rolling_damping_ratio") > 0 && !table.has("rolling_friction"))
-    table.fail("rolling_damping_ratio", "needs rolling_friction");
-  if (dimension == 2 && is_positive(table, "twisting_friction"))
-    table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
-  RollingParameters rolling;
-  if (springs) {
-    rolling.friction = table.real("rolling_friction");
-    if (table.has("rolling_stiffness"))
-      rolling.stiffness = table.real("rolling_stiffness");
-    else
-      rolling.stiffness_factor = dimension == 2 ? 3 : Real(2.25);
-    rolling.damping_ratio = table.real("rolling_damping_ratio");
-  }
-  if (table.has("rolling_damping")) rolling.damping = table.real("rolling_damping");
-  if (table.has("twisting_friction"))
-    rolling.twisting_friction = table.real("twisting_friction");
-  else if (acts && dimension == 3)
-    rolling.twisting_friction = friction.friction;
-  return rolling;
-}
-
-// Whether the pair has rolling or twisting resistance.
-bool resists_rolling(const DeckTable& table) {
-  return std::ranges::any_of(kRollingKeys, [&](const char* key) { return is_positive(table, key); });
-}
 
 // Throws InputError where particles are given an angular velocity without any friction.
 void check_rotation(const DeckTable& deck, const Model& model) {
@@ -97,19 +33,28 @@ void check_rotation(const DeckTable& deck, const Model& model) {
   }
 }
 
+bool is_plastic(const NormalLawParameters& law) { return law.own.as<Plasticity>() != nullptr; }
+bool has_bridges(const NormalLawParameters& law) { return law.own.as<BridgeParameters>() != nullptr; }
 bool is_jkr(const NormalLawParameters& law) { return law.jkr && law.adhesion_work > 0; }
 bool pulls(const NormalLawParameters& law) {
-  return law.is_cohesive() && (!is_jkr(law) || law.attraction > 0);
+  return law.attraction > 0 || (law.adhesion_work > 0 && !law.jkr);
+}
+
+// Whether the pair has adhesion that no plastic law has.
+bool adheres_elastically(const NormalLawParameters& law) {
+  return !is_plastic(law) && (law.adhesion_work > 0 || law.range > 0);
 }
 
 // The pairs that have a law so far, and features that some of them have.
 struct GivenPairs {
   std::vector<bool> slots;  // indexed as Contact::laws
-  bool hertz = false, stiff = false, jkr = false, adhesion = false;
+  bool hertz = false, stiff = false, jkr = false, adhesion = false, bridges = false;
+  bool plastic = false, elastic_adhesion = false;
 
   void add(const NormalLawParameters& law) {
     hertz = hertz || law.effective_modulus > 0, stiff = stiff || (law.acts() && law.effective_modulus == 0);
-    jkr = jkr || is_jkr(law), adhesion = adhesion || pulls(law);
+    jkr = jkr || is_jkr(law), adhesion = adhesion || pulls(law), bridges = bridges || has_bridges(law);
+    plastic = plastic || is_plastic(law), elastic_adhesion = elastic_adhesion || adheres_elastically(law);
   }
 };
 
@@ -124,11 +69,74 @@ void check_mixing(const DeckTable& table, const GivenPairs& before, const Normal
 }
 
 // Throws InputError where pairs have different kinds of adhesion: a run has JKR contacts, or added adhesive
-// forces.
+// forces, or plastic contacts, or liquid bridges.
 void check_adhesion_kinds(const DeckTable& table, const GivenPairs& before, const NormalLawParameters& law) {
-  if (!law.is_cohesive() || !(is_jkr(law) || before.jkr) || !(pulls(law) || before.adhesion)) return;
+  if ((is_plastic(law) && before.elastic_adhesion) || (adheres_elastically(law) && before.plastic))
+    table.fail(
+        is_plastic(law)               ? "plasticity_ratio"
+        : table.has("surface_energy") ? "surface_energy"
+        : law.adhesion_work > 0       ? "work_of_adhesion"
+                                      : "attraction_range",
+        "in a deck with a plasticity_ratio, all pairs with a work of adhesion have one, and no pair has an "
+        "attraction_range");
+  if (!law.is_cohesive()) return;
+  const bool jkr = is_jkr(law) || before.jkr, adhesion = pulls(law) || before.adhesion;
+  if ((has_bridges(law) || before.bridges) && (jkr || adhesion || is_plastic(law) || before.plastic))
+    table.fail(has_bridges(law)              ? "bridge_volume"
+               : is_plastic(law)             ? "plasticity_ratio"
+               : law.attraction > 0          ? "attraction"
+               : table.has("surface_energy") ? "surface_energy"
+                                             : "work_of_adhesion",
+               "in a deck with liquid bridges no pair has adhesion, an attraction or a plasticity_ratio");
+  if (!jkr || !adhesion) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
+}
+
+// Takes the keys of a law. Throws InputError where they replace parameters that only another law has.
+void take_law(const PairLaw& law, const PairInDeck& pair, PairParameters& parameters) {
+  const auto all = [](const PairParameters& of) {
+    return std::array{of.normal.own, of.friction.own, of.rolling.own};
+  };
+  const auto before = all(parameters);
+  law.take(pair, parameters);
+  const auto after = all(parameters);
+  for (std::size_t k = 0; k < after.size(); ++k)
+    if (before[k] && before[k].operator->() != after[k].operator->())
+      pair.table.fail(after[k]->key(),
+                      fmt::format("stands beside {}; a pair has one of the two", before[k]->key()));
+}
+
+// Parameters of the laws of the pair of these materials.
+PairParameters parameters_of(const DeckTable& deck, const DeckTable& table, const Model& model,
+                             const int (&material)[2], const GivenPairs& given) {
+  PairParameters parameters;
+  NormalLawParameters& law = parameters.normal = build_law(deck, table, model, material);
+  check_mixing(table, given, law);
+  const std::vector<DeckTable>& materials = deck.tables("materials");
+  const auto of_material = [&](int side) {
+    return materials.empty() ? nullptr : &materials[static_cast<std::size_t>(material[side])];
+  };
+  const PairInDeck pair{table, {of_material(0), of_material(1)}, model.space.dimension};
+  for (const PairLaw& one : pair_laws()) take_law(one, pair, parameters);
+  // The damping force of adhesive laws is not limited.
+  if (law.is_cohesive() && table.has("restitution"))
+    law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
+  check_adhesion_kinds(table, given, law);
+  return parameters;
+}
+
+// Throws InputError where no law serves the pair beside those before it.
+void check_served(const DeckTable& table, const Contact& contact, const PairParameters& of_pair) {
+  if (has_contact_law(contact)) return;
+  const AnyParameters& own = of_pair.normal.own     ? of_pair.normal.own
+                             : of_pair.friction.own ? of_pair.friction.own
+                                                    : of_pair.rolling.own;
+  table.fail(
+      own ? own->key() : "stiffness",
+      "no contact law has the features of this pair and of the pairs before it; a deck has one law for all "
+      "pairs. With adhesion, an attraction, a plasticity_ratio or liquid bridges, all pairs need exponent = "
+      "1, or Hertz's law");
 }
 
 void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
@@ -142,27 +150,24 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   } else if (contact.materials() > 1) {
     table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
   }
-  NormalLawParameters law = build_law(deck, table, model, material);
-  check_mixing(table, given, law);
-  take_attraction(table, law);
-  check_adhesion_kinds(table, given, law);
-  const Friction friction = build_friction(deck, table, law, material);
-  const RollingParameters rolling = build_rolling(table, friction, model.space.dimension);
-  // JKR laws exist only with friction: the contact rotates with its partners.
-  if (table.has("friction") || (law.jkr && law.is_cohesive())) contact.friction.resize(contact.laws.size());
-  if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
-  take_wear(table, friction.friction, material, contact);
+  const PairParameters pair = parameters_of(deck, table, model, material, given);
+  if (table.has("friction") || needs_friction(pair.normal)) contact.friction.resize(contact.laws.size());
+  if (pair.rolling.act()) contact.rolling.resize(contact.laws.size());
+  if (pair.wear_coefficient > 0) contact.wear.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
     if (given.slots[slot] && (side == 0 || material[0] != material[1])) {
       table.fail("materials", "repeated; every pair of materials must be given once");
     }
-    contact.laws[slot] = law;
-    if (table.has("friction")) contact.friction[slot] = friction;
-    if (resists_rolling(table)) contact.rolling[slot] = rolling;
+    contact.laws[slot] = pair.normal;
+    if (table.has("friction")) contact.friction[slot] = pair.friction;
+    if (pair.rolling.act()) contact.rolling[slot] = pair.rolling;
+    if (pair.wear_coefficient > 0)
+      contact.wear[slot] = wear_per_work(pair.wear_coefficient, pair.friction.friction);
     given.slots[slot] = true;
   }
-  given.add(law);
+  check_served(table, contact, pair);
+  given.add(pair.normal);
 }
 
 // Combines the pairs that can meet and are not given, where the deck has a rule. Pairs of meshes and planes

@@ -33,11 +33,6 @@ void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& n
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
                      const Share& share, Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
-// Adds the wear of a pair of these two materials.
-void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact);
-// Default tangential stiffness for a linear stiffness [N/m]: two solid spheres in contact then have equal
-// normal and tangential periods.
-inline Real standard_slip_stiffness(Real stiffness) { return Real(2) / 7 * stiffness; }
 // Called after the contacts are built. Replaces integrator.particles = "auto" and sets time.control
 // accordingly; both are added to `chosen`.
 void choose_integrator(const DeckTable& deck, Model& model, const Share& share,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deck/pair_laws.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/checks/explicit_step.hpp"
 #include "model/checks/impact_speed.hpp"
@@ -71,15 +72,18 @@ std::optional<IntegratorChoice> named_otherwise(const DeckTable& deck, const Mod
 }
 
 IntegratorChoice fitting_integrator(const DeckTable& deck, const Model& model) {
-  if (model.particles.totals.count == 0) return {};  // without particles there is no reason
+  const IntegratorChoice cohesive{
+      ParticleIntegrator::velocity_verlet,
+      "contacts have adhesion, an attraction or liquid bridges, for which explicit steps are the default"};
+  if (model.particles.totals.count == 0)  // without particles there is no other reason
+    return model.is_cohesive() ? cohesive : IntegratorChoice{};
   if (const auto named = named_otherwise(deck, model)) return *named;
   const std::int64_t touching = touching_particles(model);
-  if (touching == 0) return {ParticleIntegrator::hht, "no particle touches anything"};
+  if (touching == 0 && !model.is_cohesive()) return {ParticleIntegrator::hht, "no particle touches anything"};
   if (model.rolls())
     return {ParticleIntegrator::velocity_verlet,
-            "contacts have rolling or twisting resistance, which only explicit steps support"};
-  if (model.is_cohesive())
-    return {ParticleIntegrator::velocity_verlet, "contacts have adhesion, which only explicit steps support"};
+            "contacts have rolling or twisting resistance, for which explicit steps are the default"};
+  if (model.is_cohesive()) return cohesive;
   const std::int64_t many = model.rotates() ? kManyWithFriction : kManyParticles;
   const std::string count =
       fmt::format("{} may touch, {} friction", counted(touching, "particle", "particles"),
@@ -135,6 +139,44 @@ void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
   chosen.push_back({"time", "control", word_of(StepControl::fixed), ""});
 }
 
+namespace {
+
+// Parameters that single laws of a pair in the deck have.
+std::vector<AnyParameters> own_parameters(const DeckTable& pair, const Contact& contact) {
+  int material[2] = {0, 0};
+  for (std::size_t side = 0; side < 2 && pair.has("materials"); ++side)
+    material[side] =
+        static_cast<int>(std::ranges::find(contact.material_names, pair.texts("materials")[side]) -
+                         contact.material_names.begin());
+  std::vector<AnyParameters> all{contact.law(material[0], material[1]).own,
+                                 contact.rolling_of(material[0], material[1]).own};
+  if (!contact.friction.empty()) all.push_back(contact.friction_of(material[0], material[1]).own);
+  return all;
+}
+
+// Throws InputError where the law of a pair has no implicit steps. needs: the words for explicit steps.
+void check_attraction(const DeckTable& deck, const Contact& contact, const std::string& needs) {
+  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
+    for (const AnyParameters& own : own_parameters(pair, contact))
+      if (const std::string reason = own->explicit_only(); !reason.empty())
+        pair.fail(own->key(), fmt::format("{}: {}", needs, reason));
+    for (const char* key : {"surface_energy", "work_of_adhesion"})
+      if (pair.has(key) && pair.real(key) > 0 &&
+          (!pair.has("adhesion") || pair.choice<Adhesion>("adhesion") == Adhesion::jkr))
+        pair.fail(key, fmt::format("{}: JKR contacts break at a distance beyond touch, which implicit steps "
+                                   "do not resolve; {} is possible with them",
+                                   needs, setting("adhesion", Adhesion::dmt)));
+    if (pair.has("attraction_range") && pair.real("attraction_range") > 0 && pair.real("attraction") > 0)
+      pair.fail(
+          "attraction_range",
+          fmt::format("{}: implicit steps do not resolve an attraction beyond touch; without "
+                      "attraction_range the attraction ends where the contact opens, which they resolve",
+                      needs));
+  }
+}
+
+}  // namespace
+
 void check_integrator(const DeckTable& deck, const Model& model) {
   const Integrator& integrator = model.integrator;
   const DeckTable& method = deck.table("integrator");
@@ -150,14 +192,7 @@ void check_integrator(const DeckTable& deck, const Model& model) {
   if (integrator.precision == Precision::mixed)
     method.fail("precision",
                 fmt::format("must be \"{}\", unless {}", word_of(Precision::full), explicit_steps));
-  const std::string needs = "needs " + explicit_steps;
-  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
-      if (pair.has(key) && pair.real(key) > 0)
-        pair.fail(key, fmt::format("{}: implicit steps support only friction", needs));
-    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
-      if (pair.has(key) && pair.real(key) > 0) pair.fail(key, needs);
-  }
+  check_attraction(deck, model.contact, "needs " + explicit_steps);
 }
 
 namespace {

@@ -5,20 +5,8 @@
 
 #include "deck/suggestion.hpp"
 #include "model/builder/build_parts.hpp"
-#include "physics/wear.hpp"
 
 namespace scree {
-
-void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact) {
-  if (!pair.has("wear_coefficient") || pair.real("wear_coefficient") == 0) return;
-  if (friction == 0)
-    pair.fail("wear_coefficient",
-              "needs friction above 0: the sliding distance is computed from its dissipation");
-  contact.wear.resize(contact.laws.size());
-  for (int side = 0; side < 2; ++side)
-    contact.wear[static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side])] =
-        wear_per_work(pair.real("wear_coefficient"), friction);
-}
 
 void build_surface_fields(const DeckTable& output, Model& model) {
   const char* const key = "surface_fields";

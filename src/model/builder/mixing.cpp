@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/builder/build_parts.hpp"
 #include "physics/springs_in_series.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 
@@ -40,26 +40,27 @@ class Combination {
   }
 
   DeckTable result() const { return out_; }
-  void take_same(const char* key);
-  void take_mean(const char* key);
-  void take_series(const char* key);
+  void take_as_declared();  // all keys but those of the functions below
   void take_stiffness();
-  void take_damping();
+  void take_restitution();
   void take_tangential_stiffness();
   void take_twisting();
   void take_adhesion();
 
  private:
   const DeckTable& find(const DeckTable& contact, const LikePairs& like, const std::string& name) const;
-  bool both(const char* key) const;
+  bool both(const std::string& key) const;
   [[noreturn]] void fail(const DeckTable& at, const std::string& key, const std::string& problem) const;
   template <class T>
-  void set(const char* key, T value) {
+  void set(const std::string& key, T value) {
     DeckValue made{std::move(value), out_.location(), ""};
     if constexpr (!std::is_same_v<T, std::vector<std::string>>) made.shown = text_of(made);
     out_.set(key, std::move(made));
   }
-  void set_series(const char* key, Real of_a, Real of_b, Real exponent = 1);
+  void take_same(const std::string& key);
+  void take_mean(const std::string& key);
+  void take_series(const std::string& key);
+  void set_series(const std::string& key, Real of_a, Real of_b, Real exponent = 1);
 
   Mixing rule_;
   const std::string &name_a_, &name_b_;
@@ -83,14 +84,14 @@ void Combination::fail(const DeckTable& at, const std::string& key, const std::s
 }
 
 // Whether both pairs have the key, or neither.
-bool Combination::both(const char* key) const {
+bool Combination::both(const std::string& key) const {
   if (a_.has(key) == b_.has(key)) return a_.has(key);
   const bool in_a = a_.has(key);
   const std::string& other = in_a ? name_b_ : name_a_;
   fail(in_a ? a_ : b_, key, fmt::format("the pair {} has none", pair_text(other, other)));
 }
 
-void Combination::take_same(const char* key) {
+void Combination::take_same(const std::string& key) {
   if (!both(key)) return;
   const DeckValue &of_a = a_.values().at(key), &of_b = b_.values().at(key);
   if (text_of(of_a) != text_of(of_b))
@@ -99,11 +100,11 @@ void Combination::take_same(const char* key) {
   out_.set(key, of_a);
 }
 
-void Combination::take_mean(const char* key) {
+void Combination::take_mean(const std::string& key) {
   if (both(key)) set(key, mixed(rule_, a_.real(key), b_.real(key)));
 }
 
-void Combination::set_series(const char* key, Real of_a, Real of_b, Real exponent) {
+void Combination::set_series(const std::string& key, Real of_a, Real of_b, Real exponent) {
   if ((of_a == 0) != (of_b == 0)) {
     const std::string& other = of_a == 0 ? name_b_ : name_a_;
     fail(of_a == 0 ? a_ : b_, key,
@@ -112,19 +113,28 @@ void Combination::set_series(const char* key, Real of_a, Real of_b, Real exponen
   set(key, in_series(of_a, of_b, exponent));
 }
 
-void Combination::take_series(const char* key) {
+void Combination::take_series(const std::string& key) {
   if (both(key)) set_series(key, a_.real(key), b_.real(key));
 }
 
+// Springs in series at equal force, whose overlaps depend on the exponent.
 void Combination::take_stiffness() {
-  take_same("exponent"), take_same("limit_damping");
-  take_same("largest_overlap"), take_same("impact_speed");
   if (both("stiffness"))
     set_series("stiffness", a_.real("stiffness"), b_.real("stiffness"), a_.real("exponent"));
 }
 
+void Combination::take_as_declared() {
+  for (const Key& key : a_.keys().keys) {
+    if (key.combining == Combining::same) take_same(key.name);
+    if (key.combining == Combining::mean) take_mean(key.name);
+    if (key.combining == Combining::series) take_series(key.name);
+    if (key.combining == Combining::none)
+      throw std::logic_error("mixing: the key " + key.name + " has no rule");
+  }
+}
+
 // A contact without restitution and damping has a restitution of 1.
-void Combination::take_damping() {
+void Combination::take_restitution() {
   const bool rebounds = a_.has("restitution") || b_.has("restitution");
   for (const DeckTable* pair : {&a_, &b_})
     if (rebounds && pair->real("damping") > 0) {
@@ -135,7 +145,6 @@ void Combination::take_damping() {
     return pair.has("restitution") ? pair.real("restitution") : 1;
   };
   if (rebounds) set("restitution", mixed(rule_, restitution(a_), restitution(b_)));
-  take_mean("damping");
 }
 
 // Left out, it follows from a linear stiffness; left out in both pairs, so does that of the combined pair.
@@ -217,12 +226,9 @@ LikePairs like_pairs(const DeckTable& contact) {
 DeckTable combined_pair(const DeckTable& contact, const LikePairs& like, const std::string& name_a,
                         const std::string& name_b) {
   Combination pair(contact, like, name_a, name_b);
-  pair.take_stiffness(), pair.take_damping();
-  pair.take_mean("friction"), pair.take_tangential_stiffness(), pair.take_mean("tangential_damping_ratio");
-  pair.take_mean("rolling_friction"), pair.take_series("rolling_stiffness");
-  pair.take_mean("rolling_damping_ratio"), pair.take_mean("rolling_damping"), pair.take_twisting();
-  pair.take_mean("wear_coefficient");
-  pair.take_adhesion(), pair.take_mean("attraction"), pair.take_mean("attraction_range");
+  pair.take_stiffness(), pair.take_restitution();
+  pair.take_as_declared();
+  pair.take_tangential_stiffness(), pair.take_twisting(), pair.take_adhesion();
   return pair.result();
 }
 

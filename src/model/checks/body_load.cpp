@@ -13,12 +13,12 @@ namespace scree {
 
 namespace {
 
-// Adds the contact of a particle of this size. In the particle's damping the mass of the body counts as
-// infinite.
+// Adds the contact of a particle of this size. The normal damping is that of a contact at the body's centre,
+// where it is largest; in the tangential damping the mass of the body counts as infinite.
 void add_contact(const Model& model, int particles, int surface, Real radius, Real surface_radius, Real mass,
                  PressedBody& body) {
   const NormalLawParameters& law = model.contact.law(particles, surface);
-  const PairSize size{radius, surface_radius, mass, kInfinity};
+  const PairSize size{radius, surface_radius, mass, body.mass};
   body.stiffness = std::max(body.stiffness, typical_stiffness(law, size));
   body.damping = std::max(body.damping, law_of_size(law, size).normal_damping);
   if (!model.rotates()) return;

@@ -66,6 +66,7 @@ void bound_by_pair(const Model& model, ExplicitTrials& trials, const PairLimit& 
     bound(step, substeps * kPullOffShare * limit.contact_time,
           fmt::format("{:g} of the shortest contact of {}, which breaks within a small part of it",
                       kPullOffShare, name));
+  bound(step, substeps * limit.longest_step, limit.law.own->step_reason(name));
   // Trials are expensive: where the step is short enough, the longest good step need not be found.
   if (step.step < kInfinity && trials.error(limit, step.step / substeps) < kReboundTolerance) return;
   bound(step, substeps * trials.good_step(limit),

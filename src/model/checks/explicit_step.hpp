@@ -17,6 +17,7 @@ struct ExplicitStep {
 //   (model/checks/impact_trials.hpp),
 // - uses at most kStableStepFraction of the stability limit in dense contact, with springs and dashpots along
 //   the normal, tangential and against rolling, and at most kPullOffShare of the duration of a JKR contact,
+//   and the longest step that the law's own force needs (OwnParameters::longest_step),
 // - resolves the oscillation of bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and
 //   with the largest number of particles that can touch them (shortest_loaded_step),
 // - and moves nothing by more than half of the smallest radius (unnoticed_step).

@@ -27,11 +27,7 @@ struct Partner {
 struct Partners {
   Partner i, j;
 
-  // Sizes for the law: bodies in contact with particles have infinite mass.
-  PairSize size() const {
-    const bool beside_particle = i.is_particle && !j.is_particle;
-    return {i.radius, j.radius, i.mass, beside_particle ? kInfinity : j.mass};
-  }
+  PairSize size() const { return {i.radius, j.radius, i.mass, j.mass}; }
   Real mass() const {
     if (i.mass == kInfinity || j.mass == kInfinity) return std::min(i.mass, j.mass);
     return reduced_mass(i.mass, j.mass);
@@ -63,12 +59,12 @@ Partners lightest_partners(const Model& model, const std::vector<MaterialUse>& u
   return {body(side), use(1 - side).shapes > (same ? 1 : 0) ? body(1 - side) : Partner{}};
 }
 
-// fastest: largest speed at which the two may meet. Where the force is linear any speed is equivalent; one
-// with small rotations is used.
+// fastest: largest speed at which the two may meet. Where the force is linear and elastic any speed is
+// equivalent; one with small rotations is used.
 Real trial_speed(Real fastest, const NormalLawParameters& law, const Partners& two) {
   constexpr Real kLinear = 1e-3, kAtRest = 0.01, kMost = 0.2;  // overlap over radius
   const auto speed = [&](Real share) { return overlapping_speed(law, two.mass(), share * two.radius()); };
-  if (law.exponent == 1) return speed(kLinear);
+  if (law.is_linear()) return speed(kLinear);
   return fastest > 0 ? std::min(fastest, speed(kMost)) : speed(kAtRest);
 }
 
@@ -133,7 +129,11 @@ auto with_setup(const Field& field, const PairLimit& limit, const Use& use) {
       if (two.i.is_particle) setup.incidence = incidence(one.tangential.friction);
     setup.impact = {two.size(),        two.mass(),  inertia_of(two.i),
                     inertia_of(two.j), setup.speed, std::tan(setup.incidence) * setup.speed};
-    return use(one, setup);
+    // Liquid bridges have a bound of their own on the step: they may hold partners for many contact times.
+    if constexpr (requires { one.normal.dry(); })
+      return use(Law{one.normal.dry(), one.tangential, one.rolling}, setup);
+    else
+      return use(one, setup);
   });
 }
 
@@ -146,22 +146,18 @@ auto with_explicit_trials(const Field& field, const PairLimit& limit, const Use&
   });
 }
 
-// All data on which the trial of a pair depends, besides the model's step and integrator. The structured
-// bindings name every member, so that a new member does not compile until it is added here.
+// All data on which the trial of a pair depends, besides the model's step and integrator.
 using TrialKey = std::vector<Real>;
 TrialKey key_of(const Field& field, const PairLimit& limit) {
   const Contact& contact = field.model.contact;
   const std::size_t pair = pair_of(field, limit);
-  const auto& [k, c, n, tension, e, zeta, work, jkr, attraction, range] = contact.laws[pair];
-  TrialKey key{k, c, n, Real(tension), e, zeta, work, Real(jkr), attraction, range, field.speeds.of(limit)};
-  if (!contact.friction.empty()) {
-    const auto& [mu, k_t, g, zeta_t] = contact.friction[pair];
-    key.insert(key.end(), {mu, k_t, g, zeta_t});
-  }
-  if (!contact.rolling.empty()) {
-    const auto& [mu, factor, k_r, zeta_r, c_r, twisting] = contact.rolling[pair];
-    key.insert(key.end(), {mu, factor, k_r, zeta_r, c_r, twisting});
-  }
+  TrialKey key{field.speeds.of(limit)};
+  const auto add = [&](const std::vector<Real>& numbers) {
+    key.insert(key.end(), numbers.begin(), numbers.end());
+  };
+  add(contact.laws[pair].numbers());
+  if (!contact.friction.empty()) add(contact.friction[pair].numbers());
+  if (!contact.rolling.empty()) add(contact.rolling[pair].numbers());
   const Partners two = lightest_partners(field.model, field.uses, limit);
   for (const auto& [radius, mass, is_particle, inertia_factor] : {two.i, two.j})
     key.insert(key.end(), {radius, mass, Real(is_particle), inertia_factor});
@@ -186,12 +182,12 @@ template <class Law>
 void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTrial& trial) {
   const TrialImpact& impact = setup.impact;
   const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
-  if constexpr (kFrictionOnly<Law>)
+  if constexpr (kHasFrictionSteps<Law>)
     if (trial.is_frictional) {
       const auto make = [&](Real gap) { return FrictionTrial<Law>(law, method, impact, gap); };
       return judge(trial, Trials(law, impact, setup.touch, make));
     }
-  if constexpr (!Law::kHysteretic) {
+  if constexpr (!Law::kHysteretic && !Law::kStateful) {
     const auto pair = law.normal.of_pair(impact.size);
     const auto make = [&](Real gap) { return ImplicitTrial(pair, method, impact, gap); };
     judge(trial, Trials(ContactLaw<typename Law::Normal>{law.normal}, impact, setup.touch, make));

@@ -210,17 +210,20 @@ std::vector<PairLimit> pair_limits(const Model& model) {
                                 rolling,
                                 stiffness,
                                 typical_slip_stiffness(friction, size),
-                                typical_rolling_stiffness(rolling, size, stiffness),
+                                typical_rolling_stiffness(rolling, size, loading_stiffness(law, size)),
                                 std::min(size.radius_i, size.radius_j)};
       const Real step_a = explicit_step(model, first, dense, springs);
       const Real step_b = explicit_step(model, second, dense, springs);
+      const Real mass = smallest_reduced_mass(size);
       limits.push_back({{a, b},
                         sized,
                         stiffness,
                         springs.slip_stiffness,
                         springs.rolling_stiffness,
-                        contact_time(stiffness, smallest_reduced_mass(size)),
-                        step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
+                        contact_time(stiffness, mass),
+                        step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b),
+                        law.own->sticking_speed(size, mass),
+                        law.own->longest_step(size, mass)});
     }
   }
   return limits;

@@ -56,6 +56,9 @@ struct PairLimit {
       0;                   // of the rolling spring over the radius squared [N/m], typical_rolling_stiffness()
   Real contact_time = 0;   // shortest, undamped and head-on [s]
   Real explicit_step = 0;  // stability limit of velocity-verlet in dense contact [s]; 0: no particles
+  // Of these partners, by the law's own parameters.
+  Real sticking_speed = 0;        // undamped impacts below it stick; 0: none do [m/s]
+  Real longest_step = kInfinity;  // OwnParameters::longest_step() [s]
 };
 
 // Limits of the bodies' steps beside velocity-verlet particles, from the oscillation of bodies on their

@@ -220,6 +220,8 @@ std::string many_sizes(const Model& model) {
 std::string wide_attraction(const Model& model) {
   const Real smallest = radius_range(model).smallest, reach = model.contact.interaction_range;
   if (smallest == 0 || reach <= smallest) return "";
+  // The range of a law's own attraction, as of liquid bridges, has no keys that a shorter one would need.
+  if (std::ranges::any_of(model.contact.laws, [](const auto& law) { return law.own->attracts(); })) return "";
   return fmt::format(
       "adhesion acts up to {:.3g} m beyond contact, more than the smallest radius, {:.3g} m: adhesion laws "
       "are for surfaces nearly in contact; use a shorter attraction_range, less work of adhesion, or a "

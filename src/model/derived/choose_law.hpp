@@ -26,6 +26,43 @@ std::vector<Law> laws_of(const Contact& contact) {
   return laws;
 }
 
+// Whether a family of the list accepts the k-th pair of Contact::laws.
+template <class Family>
+bool accepts_pair(const Contact& contact, std::size_t k) {
+  return Family::accepts(contact.laws[k]) &&
+         (contact.friction.empty() || Family::accepts(contact.friction[k])) &&
+         (contact.rolling.empty() || Family::accepts(contact.rolling[k]));
+}
+template <class Family>
+bool accepts_all(const Contact& contact) {
+  for (std::size_t k = 0; k < contact.laws.size(); ++k)
+    if (!accepts_pair<Family>(contact, k)) return false;
+  return true;
+}
+
+// Whether any family of the list satisfies is_so(family).
+template <std::size_t kFirst = 0, class IsSo>
+bool any_family(const IsSo& is_so) {
+  if (is_so(std::tuple_element_t<kFirst, LawFamilies>{})) return true;
+  if constexpr (kFirst + 1 < std::tuple_size_v<LawFamilies>)
+    return any_family<kFirst + 1>(is_so);
+  else
+    return false;
+}
+// Whether the laws that accept these parameters exist only with friction: their contacts rotate with the
+// partners.
+inline bool needs_friction(const NormalLawParameters& law) {
+  return !any_family(
+      [&]<class Family>(Family) { return Family::accepts(law) && Family::has(LawForm::plain); });
+}
+// Whether with_contact_laws() finds a law.
+inline bool has_contact_law(const Contact& contact) {
+  return any_family([&]<class Family>(Family) {
+    return accepts_all<Family>(contact) &&
+           Family::serves(!contact.friction.empty(), !contact.rolling.empty());
+  });
+}
+
 // Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>. The normal law
 // is the first of the list that accepts all pairs and has the form that they need: with friction where
 // contacts have it, with all kinds of rolling resistance where some contact has one. Returns the result of
@@ -34,8 +71,7 @@ template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
   using Family = std::tuple_element_t<kFirst, LawFamilies>;
   const bool rolls = !contact.rolling.empty(), has_friction = !contact.friction.empty();
-  const bool fits = std::all_of(contact.laws.begin(), contact.laws.end(), Family::Normal::accepts) &&
-                    Family::serves(has_friction, rolls);
+  const bool fits = accepts_all<Family>(contact) && Family::serves(has_friction, rolls);
   if constexpr (kFirst + 1 < std::tuple_size_v<LawFamilies>)
     if (!fits) return with_contact_laws<kFirst + 1>(contact, use);
   if (fits) {
@@ -67,10 +103,10 @@ class PairLaws {
  private:
   template <std::size_t kFirst = 0>
   void find_deciding() {
-    const auto refused =
-        std::ranges::find_if_not(contact_.laws, std::tuple_element_t<kFirst, LawFamilies>::Normal::accepts);
-    if (refused != contact_.laws.end())
-      deciding_.push_back(static_cast<std::size_t>(refused - contact_.laws.begin()));
+    std::size_t k = 0;
+    while (k < contact_.laws.size() && accepts_pair<std::tuple_element_t<kFirst, LawFamilies>>(contact_, k))
+      ++k;
+    if (k < contact_.laws.size()) deciding_.push_back(k);
     if constexpr (kFirst + 1 < std::tuple_size_v<LawFamilies>) find_deciding<kFirst + 1>();
   }
   void take(std::size_t pair, Contact& few) const {

@@ -22,6 +22,7 @@
 #include "model/data/body_layout.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/touching.hpp"
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"
 #include "run/record/joint_lines.hpp"
@@ -95,6 +96,20 @@ std::string space_lines(const Model& model, int ranks) {
                      range(model.disc_thickness.smallest, model.disc_thickness.largest, "m"));
 }
 
+// Parameters that a law alone has: "EEPA, plasticity ratio 0.6".
+std::string own_text(const AnyParameters& own) {
+  std::string text = own->title();
+  for (const auto& [name, value] : own->facts()) text += fmt::format(", {} {:g}", name, value);
+  return text;
+}
+
+// sized: whether the law depends on the partners' sizes.
+std::string friction_line(const Friction& friction, const PairLimit& limit, bool sized) {
+  return fmt::format("               friction {}, k_t = {:.6g} N/m{}{}\n", friction.friction,
+                     limit.slip_stiffness, sized ? " (likewise)" : "",
+                     friction.own ? ", " + own_text(friction.own) : "");
+}
+
 // Resistance to rolling and twisting of a pair of materials; an empty text without any.
 std::string rolling_line(const Model& model, const PairLimit& limit) {
   const RollingParameters rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
@@ -105,18 +120,22 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
                     limit.rolling_stiffness, limit.law.exponent == 1 ? "" : ", at 1 % overlap"));
   if (rolling.damping > 0) add(fmt::format("C_r = {:.6g} N m s", rolling.damping));
   if (rolling.twisting_friction > 0) add(fmt::format("twisting friction {}", rolling.twisting_friction));
+  if (rolling.own) add(own_text(rolling.own));
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
-// Adhesion of a pair of materials; an empty text without any.
+// Adhesion of a pair of materials and parameters of its normal law alone; an empty text without any.
 std::string attraction_line(const Model& model, const PairLimit& limit) {
   const NormalLawParameters& law = model.contact.law(limit.material[0], limit.material[1]);
-  std::string parts;
-  if (law.adhesion_work > 0)
-    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.jkr ? "JKR" : "DMT", law.adhesion_work);
-  if (law.attraction > 0)
-    parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
-  const Real reach = largest_interaction_range(law, model.particles.totals.largest_radius);
+  std::string parts = own_text(law.own);
+  const auto add = [&](const std::string& part) { parts += (parts.empty() ? "" : ", ") + part; };
+  if (law.adhesion_work > 0 && !law.own) add(law.jkr ? "JKR" : "DMT");
+  if (law.adhesion_work > 0) add(fmt::format("work of adhesion {:.6g} J/m^2", law.adhesion_work));
+  if (law.attraction > 0) add(fmt::format("attraction {:.6g} N", law.attraction));
+  if (limit.sticking_speed > 0)
+    add(fmt::format("undamped impacts of the smallest partners stick below {:.4g} m/s",
+                    limit.sticking_speed));
+  const Real reach = largest_interaction_range(law, radius_range(model).largest);
   if (reach > 0) parts += fmt::format(", contacts act up to a gap of {:.4g} m", reach);
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
@@ -150,9 +169,7 @@ std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials
     if (const auto pair = made.find(pair_of(limit)); pair != made.end())
       lines += fmt::format("               from contact.mixing: {}\n", pair->second->keys);
     if (limit.slip_stiffness > 0)
-      lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
-                           model.contact.friction_of(limit.material[0], limit.material[1]).friction,
-                           limit.slip_stiffness, sized ? " (likewise)" : "");
+      lines += friction_line(model.contact.friction_of(limit.material[0], limit.material[1]), limit, sized);
     lines += rolling_line(model, limit) + attraction_line(model, limit);
     lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
                          law.exponent == 1 ? "" : " (at 1 % overlap)");

@@ -112,15 +112,15 @@ void rotation_columns(Group rotation, bool rolls) {
   part("elastic_rolling",
        "elastic energy of the rolling and twisting springs of contacts: a part of energy/elastic_contacts",
        &RotationEnergies::rolling_springs);
-  const auto loss = [&](const char* name, const std::string& of, LossKind kind) {
+  const auto loss = [&](const char* name, const std::string& of, LossKind kind, unsigned parts) {
+    if (!FieldsThere{true, rolls}.has(parts)) return;
     rotation.add(name, "J",
                  "energy dissipated by " + of + " since t = 0: a part of energy/dissipated_contacts",
                  [kind](const Sample& s) { return s.losses.of[kind]; });
   };
-  loss("loss_friction", "friction", kFrictionLoss);
-  if (!rolls) return;
-  loss("loss_rolling", "rolling resistance", kRollingLoss);
-  loss("loss_twisting", "twisting resistance", kTwistingLoss);
+#define SCREE_LOSS_COLUMN(of, kind, field, column, what, parts) loss(#column, what, kind, parts);
+  SCREE_LOSS_KINDS(SCREE_LOSS_COLUMN, )
+#undef SCREE_LOSS_COLUMN
 }
 
 void momentum_columns(Group momentum) {

@@ -72,10 +72,10 @@ std::string share_text(Real energy, Real exchanged, const char* after = "") {
 // The message where explicit steps resolve the impacts: the energy is missing in the accounting alone.
 std::string accounting_warning(const BalanceState& balance, Real error, Real impacts) {
   return fmt::format(
-      "{:.3g} J{} are not accounted for: explicit steps integrate the dissipation of contacts, {:.3g} J "
-      "here, to first order in time.step only. The motion is of second order: the energy of impacts in these "
-      "steps is right within {:.2g} % (scree check prints the rebounds). A shorter time.step reduces the "
-      "balance error",
+      "{:.3g} J{} are not accounted for: of the dissipation of contacts, {:.3g} J here, explicit steps "
+      "integrate that of dashpots of friction and rolling to first order in time.step only. The motion is of "
+      "second order: the energy of impacts in these steps is right within {:.2g} % (scree check prints the "
+      "rebounds). A shorter time.step reduces the balance error",
       std::abs(error), share_text(std::abs(error), balance.exchanged, ","), balance.last.dissipated_contacts,
       100 * impacts);
 }

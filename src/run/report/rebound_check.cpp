@@ -31,7 +31,7 @@ std::string rebound_lines(const StepTrial& trial) {
   const TrialResult& r = trial.result;
   const std::string steps = trial.is_adaptive ? fmt::format("adaptive steps of about {:.2g} s", trial.step)
                                               : fmt::format("steps of {:.4g} s", trial.step);
-  const bool linear = trial.limit.law.exponent == 1;
+  const bool linear = trial.limit.law.is_linear();
   std::string lines = fmt::format("               restitution{}: {:.4g}{}; in {}: {:.4g}, error {}; {}\n",
                                   linear ? "" : fmt::format(" at {:.3g} m/s", trial.speed),
                                   r.exact.restitution, trial.is_frictional ? " (normal)" : "", steps,

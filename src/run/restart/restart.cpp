@@ -9,7 +9,6 @@
 #include "base/index.hpp"
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
-#include "dem/host/body_contacts.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/joint_coordinates.hpp"
 #include "model/derived/scalar_function.hpp"
@@ -201,11 +200,10 @@ void reduce_to_sides(const Model& model, State& state) {
   const auto differs = [](const auto& contacts, HistoryContent content) {
     return contacts.content.exists() && contacts.content != content;
   };
-  const HistoryContent content = packed_content(model, history_of(model.contact)),
-                       of_shapes = packed_content(model, history_of(without_cohesion(model.contact)));
+  const HistoryContent content = packed_content(model, history_of(model.contact));
   if (differs(state.contacts, content)) state.contacts = sides_of(state.contacts, model, content);
-  if (differs(state.shape_contacts, of_shapes))
-    state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
+  if (differs(state.shape_contacts, content))
+    state.shape_contacts = sides_of(state.shape_contacts, model, content);
 }
 
 // Applies the values of the new deck. Step data in the state follow from the old deck, forces and

@@ -47,8 +47,9 @@ void visit_ledger(Visitor& visit, LedgerType& ledger) {
 }
 
 // Names in the order of LossKind.
-constexpr std::array<const char*, kLossKinds> kCarriedLosses = {
-    "carried_out/friction_loss", "carried_out/rolling_loss", "carried_out/twisting_loss"};
+#define SCREE_LOSS_CARRIED(of, kind, field, ...) "carried_out/" #field,
+constexpr std::array<const char*, kLossKinds> kCarriedLosses = {SCREE_LOSS_KINDS(SCREE_LOSS_CARRIED, )};
+#undef SCREE_LOSS_CARRIED
 
 template <class Visitor, class StateType>
 void visit_state(Visitor& visit, StateType& state) {

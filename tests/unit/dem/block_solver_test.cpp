@@ -1,10 +1,9 @@
 // The particles' linear solve against Gaussian elimination of the same matrix.
-#include "dem/implicit/block_solver.hpp"
-
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "dem/cpu/cpu_solver.hpp"
 #include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -136,6 +135,31 @@ struct ContactProblem {
   Real largest_stiffness_ratio = 0;
 };
 
+// The system of `solve_on_host`.
+struct System {
+  ContactProblem& problem;
+  std::vector<Vec3>&residual, &solution;
+  std::vector<Vec4> directions[2];
+
+  DirectionItem direction_item(const ChebyshevWeights& weights) const {
+    return {problem.inverse_block.data(), residual.data(), weights.from_last, weights.from_residual};
+  }
+  std::vector<Vec4>& direction(int product) { return directions[product % 2]; }
+  auto first(const ChebyshevWeights& weights) {
+    return FirstDirectionItem{direction_item(weights), direction(0).data(), solution.data()};
+  }
+  auto product(int product, const ChebyshevWeights& weights) {
+    const SubtractMatrixItem<PackedRows> subtract{
+        {problem.count.data(), problem.entries.data(), problem.diagonal.data()},
+        {problem.offsets.data(), nullptr},
+        problem.velocity.data(),
+        kInverseScale,
+        direction(product).data(),
+        residual.data()};
+    return ProductItem{subtract, direction_item(weights), direction(product + 1).data(), solution.data()};
+  }
+};
+
 }  // namespace
 
 TEST_CASE("the solve goes a tenth below the Newton tolerance, and no further than two digits") {
@@ -152,20 +176,9 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
       const Halo halo = one_ghost_each();
       std::vector<Vec4> d(kParticles + static_cast<std::size_t>(halo.size()));
       const Real tolerance = 1e-11;
-      const Ranks alone;
-      const BlockSolver::System system{{{p.count.data(), p.entries.data(), p.diagonal.data()},
-                                        {p.offsets.data(), nullptr},
-                                        p.velocity.data(),
-                                        kInverseScale,
-                                        nullptr,
-                                        nullptr},
-                                       p.inverse_block,
-                                       residual,
-                                       halo,
-                                       alone,
-                                       p.largest_stiffness_ratio,
-                                       tolerance};
-      const int products = BlockSolver().solve(system, d, solution);
+      System system{p, residual, solution, {d, d}};
+      const int products =
+          solve_on_host(halo, Ranks(), kParticles, system, p.largest_stiffness_ratio, tolerance);
       const std::vector<Real> expected = p.gauss();
       // The smallest eigenvalue is at least the lightest particle's mass.
       const Real truncation = tolerance * std::sqrt(kParticles) / 0.5;

@@ -50,10 +50,19 @@ void add_contact(BruteContacts& sum, const NormalLawParameters& law, const Brute
   add_contact(sum, PowerLaw(law), c, i);
 }
 
-// A body counts as fixed for a particle, and has its mass among bodies.
-PairSize size_of(const BruteItem& a, const BruteItem& b) {
-  return {a.radius, b.radius, a.body >= 0 && b.body < 0 ? kInfinity : a.mass,
-          b.body >= 0 && a.body < 0 ? kInfinity : b.mass};
+// A body counts as fixed for a particle, and has its mass among bodies, where a law reads masses alone; the
+// effective mass is always that of the free body.
+PairSize size_of(const BruteItem& a, const BruteItem& b, Vec3 normal) {
+  PairSize out{a.radius, b.radius, a.body >= 0 && b.body < 0 ? kInfinity : a.mass,
+               b.body >= 0 && a.body < 0 ? kInfinity : b.mass};
+  const auto free = [&](const BruteItem& item, const BruteItem& other) {
+    return item.body < 0 ? 0
+           : other.body < 0
+               ? item.free.body.rotation(item.free.arm, normal) + item.free.body.translation(normal)
+               : item.free.beside_mass(normal);
+  };
+  out.of_bodies = free(a, b) + free(b, a);
+  return out;
 }
 
 // Every ordered pair and image: forces once per item, energies and counts half from either side.
@@ -76,14 +85,15 @@ BruteContacts brute_contacts(const LoadedBox& box) {
         const NormalLawParameters& law = box.model.contact.law(a.material, b.material);
         const Real arm = norm(r) * a.radius / (a.radius + b.radius);
         add_contact(sum, law,
-                    {overlap, -dot(normal, a.velocity - b.velocity), normal, arm, size_of(a, b), 0.5}, i);
+                    {overlap, -dot(normal, a.velocity - b.velocity), normal, arm, size_of(a, b, normal), 0.5},
+                    i);
         pairs += 0.5;
       });
     for (const Wall& wall : box.model.walls) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
       const NormalLawParameters& law = box.model.contact.law(a.material, wall.material);
-      const PairSize size{a.radius, kInfinity, a.mass, kInfinity};
+      const PairSize size{a.radius, kInfinity, a.mass, kInfinity, a.free.beside_mass(wall.normal)};
       add_contact(sum, law,
                   {overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, size, 1}, i);
       pairs += 1;

@@ -10,7 +10,7 @@ namespace scree {
 
 namespace {
 
-constexpr int kNumbers = 7, kSteps = 300;
+constexpr int kNumbers = 8, kSteps = 300;
 constexpr Real kStep = 5e-4, kSkin = 0.03;
 
 Model moving_box(const BoxCase& c, int particles = 150) {

@@ -5,6 +5,7 @@
 #include "dem/implicit/friction_items.hpp"
 #include "model/derived/random.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -47,13 +48,20 @@ RandomEntry random_entry(RandomNumbers& random, bool slides) {
   return {entry_of(n, t, along, across), entry_of(-n, -t, along, across)};
 }
 
+// Spins that no dashpot reads.
+struct NoSpins {
+  Vec3 arm_sum(bool) const { return {}; }
+  Vec3 relative(bool) const { return {}; }
+};
+
 // Two spheres of radius 1 over a step of 1 s, without damping; i is displaced and rotated by small amounts.
+template <class Law>
 struct Pair {
-  ContactLaw<LinearLaw, LinearSlider> law;
+  Law law;
   Vec3 r0, r1, spin;      // vectors from j to i at the start and the end; rotation of i over the step
   ContactHistory before;  // across the normal at the start
 
-  FrictionalContact moved(const Twist& by) const {
+  FrictionalContactOf<Law> moved(const Twist& by) const {
     const PairSize size{1, 1, 1, 1};
     const ContactGeometry begin = sphere_pair(r0, Real(2)), end = sphere_pair(r1 + by.move, Real(2));
     const Vec3 displacement = r1 + by.move - r0;
@@ -62,19 +70,20 @@ struct Pair {
         end, displacement, begin, displacement, displacement, size);
     path.motion = sphere_motion(end, displacement, {spin + by.turn, 1, Real(0.4)}, {{}, 1, Real(0.4)}, 1);
     path.lever_arm_ratio0 = 2 / begin.distance, path.curvature = end.scale;
-    return frictional_contact(law, path, before, true, [](bool) { return Vec3{}; });
+    return frictional_contact<false>(law, path, before, true, NoSpins{});
   }
   // Force and torque on i.
   Twist load(const Twist& by) const {
-    const FrictionalContact c = moved(by);
+    const FrictionalContactOf<Law> c = moved(by);
     const FrictionSums sums = FrictionSums::of(c);
     return {sums.step_force, sums.step_moment};
   }
 };
 
 // Overlaps at both ends, one of which may be negative, of the order of `size`, as are slip and spring.
-Pair random_pair(RandomNumbers& random, Real size, Real friction) {
-  Pair out{{LinearLaw(2, 0, false), {Real(0.7), friction, 0}}, {}, {}, {}, {}};
+template <class Law>
+Pair<Law> random_pair(RandomNumbers& random, Real size, Real friction, const Law& law) {
+  Pair<Law> out{law, {}, {}, {}, {}};
   Vec3 n = vector(random);
   n = (1 / norm(n)) * n;
   const Real overlap0 = size * random.uniform(-1, 1),
@@ -102,7 +111,8 @@ TEST_CASE("a contact's matrix is the derivative of its force") {
   for (const Case& of : {Case{1e-5, 2, 3e-4}, Case{0.2, 0, 3e-5}}) {
     int opens = 0, slides = 0, looks = 0;
     for (int k = 0; k < 2000; ++k) {
-      const Pair pair = random_pair(random, of.size, of.friction);
+      const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(2, 0, false), {Real(0.7), of.friction, 0}};
+      const Pair pair = random_pair(random, of.size, of.friction, law);
       const Twist way{vector(random), vector(random)};
       const Real little = 1e-5 * of.size;
       const Twist forth = little * way, back = -little * way;
@@ -119,6 +129,70 @@ TEST_CASE("a contact's matrix is the derivative of its force") {
     CAPTURE(looks, opens, slides);
     CHECK((looks > 1500 && opens > looks / 3));
     if (of.friction > 0) CHECK((slides > looks / 5 && slides < 4 * looks / 5));
+  }
+}
+
+// The moment is of the size of the torque of friction. Where the contact opens or closes, the share of the
+// step in contact is not differentiated.
+TEST_CASE("the matrix of a contact with rolling resistance is the derivative of its force and moment") {
+  constexpr Real kSize = 1e-5, kFriction = 2, kError = 1e-3;
+  ContactLaw<LinearRestitutionLaw, LinearSlider, AnyRolling> law;
+  law.normal.normal_stiffness = 2, law.tangential = {Real(0.7), kFriction, 0};
+  RandomNumbers random(7);
+  int looks = 0, rolls = 0, twists = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Real limit = random.uniform(0.5, 3);
+    law.rolling = AnyRolling::of({limit, 0, 0.4, 0, k % 4 == 0 ? 0.1 : 0, k % 2 == 0 ? 1e9 : 0.});
+    auto pair = random_pair(random, kSize, kFriction, law);
+    // Without a twisting moment, whose stiffness depends on the contact radius.
+    const Vec3 n0 = (1 / norm(pair.r0)) * pair.r0, moment = kSize * tangential_part(vector(random), n0);
+    pair.before.moment = shortened(moment, limit * std::max(2 - norm(pair.r0), Real(0)));
+    const Twist way{vector(random), vector(random)};
+    const Real little = 1e-5 * kSize;
+    const Twist forth = little * way, back = -little * way;
+    const auto at = pair.moved({}), after = pair.moved(forth), before = pair.moved(back);
+    const bool lasts = norm(pair.r0) < 2 && after.lasts && before.lasts;
+    if (!lasts || (after.friction.normal_force_slope > 0) != (before.friction.normal_force_slope > 0) ||
+        (norm(after.rolling.direction) > 0) != (norm(before.rolling.direction) > 0))
+      continue;
+    if (k % 4 == 0 && at.rolling.rolling_losses.sliding != 0) continue;
+    const Twist change = (1 / (2 * little)) * (pair.load(forth) - pair.load(back));
+    Twist found = pull(FrictionEntry::of(at, {1, 0}, 1), way.move, way.turn, true);
+    const Vec3 n = at.normal.normal;
+    found.turn += in_double(
+        RollingEntry::of(at, {1, 0}, 1).apply(in_single(n), in_single(way.move), in_single(way.turn), true));
+    CAPTURE(k);
+    REQUIRE(near(found.move, -change.move, {.absolute = kError}));
+    REQUIRE(near(found.turn, -change.turn, {.absolute = kError}));
+    ++looks, rolls += norm(at.rolling.direction) > 0, twists += at.rolling.twisting > 0;
+  }
+  CAPTURE(looks, rolls, twists);
+  CHECK((looks > 400 && rolls > looks / 8 && rolls < looks && twists > looks / 4));
+}
+
+TEST_CASE("resistance to rolling is positive, and no larger than twice its blocks, for any radii") {
+  RandomNumbers random(8);
+  for (int k = 0; k < 1000; ++k) {
+    Vec3 n = vector(random), t = vector(random);
+    n = (1 / norm(n)) * n, t = t - dot(n, t) * n;
+    t = k % 2 == 0 ? (1 / norm(t)) * t : Vec3{};
+    RollingFrictionalContact c{};
+    c.normal.normal = n, c.rolling.direction = t;
+    c.rolling.rolling = random.uniform(0.1, 3), c.rolling.twisting = random.uniform(0, 3);
+    const Real radius[2] = {random.uniform(0.2, 1), random.uniform(0.2, 1)};
+    const Vec3 turn[2] = {vector(random), vector(random)};
+    Real size = 0, blocks = 0;
+    for (int i = 0; i < 2; ++i) {
+      c.radius_i = radius[i], c.radius_j = radius[1 - i];
+      const RollingEntry entry = RollingEntry::of(c, {1, 0}, radius[i] / radius[1 - i]);
+      const Vec3 relative = turn[i] - radius[i] / radius[1 - i] * turn[1 - i];
+      size += dot(turn[i], in_double(entry.apply(in_single(n), Vec3f{}, in_single(relative), false)));
+      Block6 block{};
+      entry.add_to(block, n);
+      blocks += dot(turn[i], block.turn * turn[i]);
+    }
+    CHECK(size >= -1e-4);
+    CHECK(size <= 2 * blocks * (1 + 1e-5) + 1e-4);
   }
 }
 

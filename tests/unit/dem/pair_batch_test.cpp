@@ -98,7 +98,7 @@ void compare(const std::vector<Law>& laws, Index materials, Index n, std::mt1993
     const PairState state = AtInstant::pair(i.p, i.u, j.p, j.u);
     const MovingPair pair{state, OverExplicitStep{kStep}.motion(state, OverExplicitStep::partner(i.p, i.spin),
                                                                 OverExplicitStep::partner(j.p, j.spin))};
-    const auto outcome = table.get(i.material, j.material).load(pair, history.read<Law>(records, 0));
+    const auto outcome = table.get(i.material, j.material).respond(pair, history.read<Law>(records, 0));
     bool same = same_bits(of_i[k], Packed::of(Packed::Total::of(outcome.load, outcome.losses()))) &&
                 same_bits(of_j[k], Packed::of(Packed::Total::of(outcome.load.exchanged(), outcome.losses())));
     Vec4 expected[2];

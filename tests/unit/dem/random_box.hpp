@@ -210,11 +210,24 @@ inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {
 }
 
 // A particle or a shape in the search by brute force.
+// Inertia of a body in the orientation of its start.
+inline FreeBody free_body(const Body& body) {
+  const Real inverse_mass = 1 / body.mass;
+  FreeBody out{{inverse_mass, inverse_mass, 0}, {0, 0, 0, 0, 0, 1 / body.inertia}};
+  if (body.kind != BodyKind::spatial) return out;
+  const Mat3 axes = rotation_matrix(orientation(start_motion(body)));
+  const Mat3 of = axes * full(inverse(body.inertia_tensor)) * transposed(axes);
+  out.inverse_mass.z = inverse_mass;
+  out.inverse_inertia = {of.x.x, of.x.y, of.x.z, of.y.y, of.y.z, of.z.z};
+  return out;
+}
+
 struct BruteItem {
   Vec3 position, velocity;
   Real radius, mass;
   int material;
   int body;  // -1: a particle
+  FreeShape free{};
 };
 
 inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
@@ -223,14 +236,20 @@ inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
     items.push_back({box.records[i].position, box.records[i].velocity, box.model.particles.radius[i],
                      box.model.particles.mass[i], box.model.particles.material[i], -1});
   const Subdomain subdomain(box.model.space);
-  for (std::size_t b = 0; b < box.motion.size(); ++b)
+  for (std::size_t b = 0; b < box.motion.size(); ++b) {
+    const FreeBody free = free_body(box.model.bodies[b]);
     for (const Shape& shape : box.model.bodies[b].shapes) {
       const PointMotion point = point_motion(box.motion[b], shape.offset);
       ImageCount unused;
       items.push_back({subdomain.wrap(snap(point.position, subdomain.snap_constant()), unused),
-                       point.velocity, shape.radius, box.model.bodies[b].mass, shape.material,
-                       static_cast<int>(b)});
+                       point.velocity,
+                       shape.radius,
+                       box.model.bodies[b].mass,
+                       shape.material,
+                       static_cast<int>(b),
+                       {point.position - box.motion[b].position, free}});
     }
+  }
   return items;
 }
 

@@ -7,6 +7,7 @@
 #include "dem/surfaces/surface_sums.hpp"
 #include "model/derived/random.hpp"
 #include "support/catch.hpp"
+#include "support/near.hpp"
 
 namespace scree {
 
@@ -101,6 +102,17 @@ TEST_CASE("sums over contacts are the same bits in any order and in any parts") 
     CHECK(forward.sum[term].value() == joined.sum[term].value());
   }
   CHECK(joined.contacts == 100);
+}
+
+TEST_CASE("the inverse effective mass of a body beside its mass is that of its free motions") {
+  const Sym3 inertia{2, 0.1, -0.2, 3, 0.3, 4};
+  const Vec3 n{0.6, 0, 0.8}, arm{0.3, -0.2, 0.1};
+  const FreeShape spatial{arm, {{5, 5, 5}, inertia}}, planar{arm, {{5, 5, 0}, {0, 0, 0, 0, 0, 4}}};
+  CHECK(spatial.beside_mass(n) == spatial.body.rotation(arm, n));
+  CHECK(near(5 + planar.beside_mass(n), planar.body.translation(n) + planar.body.rotation(arm, n),
+             {.relative = 1e-8}));
+  // Partners that nothing can move have no effective mass, and laws need a number.
+  CHECK(5 + planar.body.held({0, 0, 1}) > 0);
 }
 
 }  // namespace scree

@@ -103,12 +103,19 @@ TEST_CASE("incompatible keys beside attraction are refused with a remedy") {
       contains(model_error(linear("attraction_range = 0.1\n")), "attraction_range = 0.1: needs attraction"));
   CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nattraction = 0.1\n")),
                  "attraction = 0.1: a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\""));
-  for (const std::string keys :
-       {"work_of_adhesion = 0.1\n", "surface_energy = 0.1\n", "attraction = 0.1\n"}) {
-    CHECK(contains(model_error(hertz(keys), {"integrator.particles=hht"}),
-                   "needs integrator.particles = \"velocity-verlet\""));
+  const std::string energies[] = {"work_of_adhesion = 0.1\n", "surface_energy = 0.1\n"},
+                    constant = "attraction = 0.1\n", range = "attraction_range = 0.1\n";
+  const std::vector<std::string> implicit = {"integrator.particles=hht", "time.control=fixed"};
+  for (const std::string& keys : {energies[0], energies[1], constant, constant + range})
     CHECK(model_of(hertz(keys), {"integrator.precision=mixed"}).is_cohesive());
+  for (const std::string& keys : energies) {
+    const std::string error = model_error(hertz(keys), implicit);
+    CHECK(contains(error, "needs integrator.particles = \"velocity-verlet\""));
+    CHECK(contains(error, "adhesion = \"dmt\" is possible"));
+    CHECK(model_of(hertz(keys + "adhesion = \"dmt\"\n"), implicit).is_cohesive());
   }
+  CHECK(contains(model_error(hertz(constant + range), implicit), "without attraction_range"));
+  CHECK(model_of(hertz(constant), implicit).is_cohesive());
 }
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/liquid_bridge.hpp"
 #include "physics/restitution.hpp"
 #include "physics/springs_in_series.hpp"
 #include "support/catch.hpp"
@@ -49,6 +50,8 @@ void check_alike(const Model& made, const Model& given) {
   CHECK((x.exponent == y.exponent && x.tension == y.tension && x.damping_ratio == y.damping_ratio));
   CHECK((x.effective_modulus == y.effective_modulus && x.adhesion_work == y.adhesion_work));
   CHECK((x.jkr == y.jkr && x.attraction == y.attraction && x.range == y.range));
+  const LiquidBridge p = x.own.value<BridgeParameters>().liquid, q = y.own.value<BridgeParameters>().liquid;
+  CHECK((p.volume == q.volume && p.contact_angle == q.contact_angle));
   REQUIRE(made.contact.friction.size() == given.contact.friction.size());
   if (made.rotates()) {
     const Friction f = made.contact.friction_of(0, 1), g = given.contact.friction_of(0, 1);
@@ -153,6 +156,9 @@ TEST_CASE("of materials with moduli the exact effective ones, whatever the rule"
   check_becomes("minimum", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 "surface_energy = 0.04\nadhesion = \"dmt\"\n", "surface_energy = 0.02\nadhesion = \"dmt\"\n",
                 kMetals);
+  check_becomes("arithmetic", "plasticity_ratio = 0.5\nwork_of_adhesion = 2.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.75\nwork_of_adhesion = 4.0\nadhesion_exponent = 2.0\n",
+                "plasticity_ratio = 0.625\nwork_of_adhesion = 3.0\nadhesion_exponent = 2.0\n", kMetals);
 }
 
 TEST_CASE("derived pairs are listed in the model as keys, in the order of the materials") {
@@ -165,7 +171,7 @@ TEST_CASE("derived pairs are listed in the model as keys, in the order of the ma
 }
 
 TEST_CASE("every key of a pair is mixed") {
-  // A new key must be handled in combined_pair, and be in this list.
+  // A new key must declare how it is combined, and be in this list.
   const std::vector<std::string> known = {"materials",
                                           "stiffness",
                                           "largest_overlap",
@@ -187,13 +193,22 @@ TEST_CASE("every key of a pair is mixed") {
                                           "surface_energy",
                                           "adhesion",
                                           "attraction",
-                                          "attraction_range"};
+                                          "attraction_range",
+                                          "plasticity_ratio",
+                                          "adhesion_exponent",
+                                          "bridge_volume",
+                                          "surface_tension",
+                                          "contact_angle",
+                                          "bridge_force",
+                                          "bridge_viscosity",
+                                          "bridge_least_gap"};
   for (const Key& key : contact_keys().keys) {
     if (key.name != "pairs") continue;
     CHECK(key.table->keys.size() == known.size());
     for (const Key& of_pair : key.table->keys) {
       INFO(of_pair.name);
       CHECK(std::count(known.begin(), known.end(), of_pair.name) == 1);
+      CHECK(of_pair.combining != Combining::none);
     }
   }
 }

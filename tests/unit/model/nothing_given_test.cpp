@@ -54,10 +54,8 @@ TEST_CASE("unsupported laws are refused in implicit steps whatever keys beside t
     return model_error(deck_of(pair, "", hertz));
   };
   const std::string needs = "needs integrator.particles = \"velocity-verlet\"";
-  CHECK(contains(refused("friction = 0.5\nrolling_friction = 0.0\nrolling_damping = 1e-3\n"), needs));
-  CHECK(contains(refused("friction = 0.5\nrolling_friction = 0.1\nrolling_damping = 0.0\n"), needs));
   CHECK(contains(refused("attraction = 0.0\nwork_of_adhesion = 0.5\n", true), needs));
-  CHECK(contains(refused("attraction = 0.5\nwork_of_adhesion = 0.0\n", true), needs));
+  CHECK(contains(refused("attraction = 0.5\nwork_of_adhesion = 0.0\nattraction_range = 0.1\n", true), needs));
   CHECK(contains(refused("rolling_friction = 0.1\n"), "needs friction"));
 }
 

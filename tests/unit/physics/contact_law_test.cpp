@@ -65,6 +65,7 @@ TEST_CASE("the sizes of a pair: a plane is flat and is rigid") {
   CHECK(PairSize{2, 2, 3, 6}.effective_mass() == 2);
   CHECK(PairSize{2, kInfinity, 4, kInfinity}.effective_radius() == 2);
   CHECK(PairSize{2, kInfinity, 4, kInfinity}.effective_mass() == 4);
+  CHECK(PairSize{2, kInfinity, 4, kInfinity, 0.25}.effective_mass() == 2);
 }
 
 TEST_CASE("stiffness and damping are the derivatives of the force") {

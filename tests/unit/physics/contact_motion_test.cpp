@@ -41,8 +41,8 @@ TEST_CASE("both sides of a pair see the same contact, odd or even, to the last b
     CHECK((a.normal0 == -b.normal0 && a.normal1 == -b.normal1 && a.overlap0 == b.overlap0));
     CHECK((a.slip == -b.slip && a.rolling == -b.rolling));
     CHECK((a.twisting == b.twisting && a.turn == -b.turn && a.lever_arm_ratio == b.lever_arm_ratio));
-    const ContactOutcome f = all_laws().load(one.pair, one.history);
-    const ContactOutcome g = all_laws().load(other.pair, other.history);
+    const ContactOutcome f = all_laws().respond(one.pair, one.history);
+    const ContactOutcome g = all_laws().respond(other.pair, other.history);
     CHECK((f.load.force == -g.load.force && f.load.loss == g.load.loss));
     CHECK((f.load.torque_i == g.load.torque_j && f.load.torque_j == g.load.torque_i));
     CHECK((f.history.spring == -g.history.spring && f.history.moment == -g.history.moment));
@@ -54,7 +54,7 @@ TEST_CASE("a contact gives no linear and no angular momentum") {
   RandomNumbers random;
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, 0.05, false);
-    const ContactOutcome out = all_laws().load(c.pair, c.history);
+    const ContactOutcome out = all_laws().respond(c.pair, c.history);
     // The forces are opposite; their moment about j, and both torques:
     const Vec3 moment =
         cross(c.pair.geometry.direction, out.load.force) + out.load.torque_i + out.load.torque_j;
@@ -68,7 +68,7 @@ TEST_CASE("the power of force and torques is that of the spring over the slip") 
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, h, false);
     const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(100, 0, false), {40, 1e9, 0}};
-    const ContactOutcome out = law.load(c.pair, c.history);
+    const ContactOutcome out = law.respond(c.pair, c.history);
     const Real power = dot(out.load.force, c.pair.velocity) + dot(out.load.torque_i, c.spin_i) +
                        dot(out.load.torque_j, c.spin_j);
     const Real normal_power = -100 * c.pair.geometry.overlap * c.pair.geometry.rate(c.pair.velocity);

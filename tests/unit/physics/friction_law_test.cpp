@@ -57,7 +57,7 @@ TEST_CASE("a contact that opens loses its history, and a force that is cut holds
   const ContactLaw<LinearLaw, LinearSlider, Both> law{
       LinearLaw(100, 0, false), {40, 0.4, 0.2}, {{0.2, 0.3, 2.25, 0}, {0.4}}};
   c.pair.geometry.overlap = -1e-9;
-  const ContactOutcome open = law.load(c.pair, c.history);
+  const ContactOutcome open = law.respond(c.pair, c.history);
   CHECK((open.load.force == Vec3{} && open.load.torque_i == Vec3{} && open.history.spring == Vec3{}));
   c = contact_of(random, 0.05, false);
   const Real parting = 2 * 100 * c.pair.geometry.overlap;  // the force of a damping of 1 at separation
@@ -65,7 +65,7 @@ TEST_CASE("a contact that opens loses its history, and a force that is cut holds
       c.pair.velocity + (parting + c.pair.geometry.rate(c.pair.velocity)) * c.pair.geometry.normal();
   ContactLaw<LinearLaw, LinearSlider, Both> damped = law;
   damped.normal = LinearLaw(100, 1, false);
-  const ContactOutcome cut = damped.load(c.pair, c.history);
+  const ContactOutcome cut = damped.respond(c.pair, c.history);
   CHECK((cut.load.force == Vec3{} && cut.history.spring == Vec3{} && cut.history.moment == Vec3{}));
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("forces and moments stay within their limits") {
       HertzLaw(100, 0.5, false), {40, mu, 0.2}, {{mu_roll, 0.3, 2.25, 0}, {mu}}};
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, 0.05, false);
-    const ContactOutcome out = law.load(c.pair, c.history);
+    const ContactOutcome out = law.respond(c.pair, c.history);
     const Vec3 n = c.pair.motion.normal1;
     const Real normal = dot(out.load.force, n), d = c.pair.geometry.overlap;
     CHECK(norm(tangential_part(out.load.force, n)) <= mu * normal * (1 + kRoundOff));
@@ -98,7 +98,7 @@ TEST_CASE("rolling and twisting springs take their stiffness from the contact") 
     // Limits that are never reached.
     const ContactLaw<HertzLaw, MindlinSlider, Both> law{
         HertzLaw(100, 0, false), {40, 1e6, 0}, {{1e-2, 0, 2.25, 0}, {1e6}}};
-    const ContactOutcome out = law.load(c.pair, {});
+    const ContactOutcome out = law.respond(c.pair, {});
     const Real rolling = 2.25 * (1.5 * 100 * a) * 1e-4 * radius * radius;
     CHECK(near(tangential_part(out.history.moment, c.pair.motion.normal1), rolling * c.pair.motion.rolling,
                {.absolute = 1e-12 * norm(out.history.moment)}));
@@ -125,7 +125,7 @@ TEST_CASE("viscous rolling: a moment against the rolling rate that takes its pow
   for (int k = 0; k < kCases; ++k, random.vector()) {
     const RandomContact c = contact_of(random, 1e-9, false);
     const ContactLaw<LinearLaw, Frictionless, Drag> law{LinearLaw(100, 0, false), {}, {{0.7}, {}}};
-    const ContactOutcome out = law.load(c.pair, {});
+    const ContactOutcome out = law.respond(c.pair, {});
     const Vec3 rate = tangential_part(c.spin_i - c.spin_j, c.pair.motion.normal1);
     CHECK(near(out.load.torque_i, -0.7 * rate, {.relative = 1e-6}));
     CHECK(out.load.torque_j == -out.load.torque_i);
@@ -139,9 +139,9 @@ TEST_CASE("a contact that begins within a step slips over its part of the step")
   c.history = {};
   const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(100, 0, false), {40, 1e6, 0}};
   c.pair.motion.overlap0 = c.pair.geometry.overlap;
-  const Vec3 all = law.load(c.pair, {}).history.spring;
+  const Vec3 all = law.respond(c.pair, {}).history.spring;
   c.pair.motion.overlap0 = -3 * c.pair.geometry.overlap;
-  CHECK(near(law.load(c.pair, {}).history.spring, Real(0.25) * all, {.relative = kRoundOff}));
+  CHECK(near(law.respond(c.pair, {}).history.spring, Real(0.25) * all, {.relative = kRoundOff}));
 }
 
 }  // namespace scree

@@ -111,7 +111,7 @@ Comparison compare(const Law& law, const Spheres& spheres, int steps, Real scale
       c.exact = c.single = {};
       continue;
     }
-    const ContactOutcome exact = law.load(pair, c.exact);
+    const ContactOutcome exact = law.respond(pair, c.exact);
     const auto single = single_load(law, pair_in_single(spheres, motion, kStep), c.single);
     c.exact = exact.history, c.single = single.history, ++c.closed;
     c.losses.add(exact.losses());
@@ -198,7 +198,7 @@ TEST_CASE("single precision: no friction acts while the normal force is tensile"
     const Motion motion{at(k), at(k + 1), {1, 0.5, 0}, {1, 0, 0}};
     const MovingPair pair = exact_pair(spheres, motion, kStep);
     if (!(pair.geometry.overlap > 0)) break;
-    const ContactOutcome outcome = law.load(pair, exact);
+    const ContactOutcome outcome = law.respond(pair, exact);
     const auto in_single = single_load(law, pair_in_single(spheres, motion, kStep), single);
     exact = outcome.history, single = in_single.history;
     smallest = std::min(smallest, outcome.load.force.z), largest = std::max(largest, norm(exact.spring));
@@ -242,7 +242,7 @@ TEST_CASE("single precision: moments grow by the smallest rotations, and stay wi
   const auto rotate = [&](Vec3 spin, int steps) {
     for (int k = 0; k < steps; ++k) {
       const Motion motion{at, at, spin, {}};
-      exact = law.load(exact_pair(spheres, motion, kStep), exact).history;
+      exact = law.respond(exact_pair(spheres, motion, kStep), exact).history;
       single = single_load(law, pair_in_single(spheres, motion, kStep), single).history;
     }
   };

@@ -1,6 +1,8 @@
 // A spring with a slider and a dashpot: history, force and energy.
 #include "physics/spring_slider.hpp"
 
+#include <algorithm>
+
 #include "random_contact.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -48,7 +50,7 @@ TEST_CASE("force and history stay within the limit") {
   }
 }
 
-TEST_CASE("work, elastic energy and losses add up, and no loss is negative") {
+TEST_CASE("work, elastic energy and losses add up, and no loss is negative but by a reversal") {
   RandomNumbers random;
   int slid = 0, damped = 0, unloaded = 0;
   for (int k = 0; k < kCases; ++k) {
@@ -56,13 +58,14 @@ TEST_CASE("work, elastic energy and losses add up, and no loss is negative") {
     const SpringStep out = spring_step(s.slider, s.old, s.displacement, s.h);
     const Real shrink =
         s.slider.stiffness < s.slider.stiffness0 ? s.slider.stiffness / s.slider.stiffness0 : 1;
-    const Real work =
-        dot(Real(0.5) * (shrink * s.old + out.spring) + (out.acting - out.spring), s.displacement);
+    const Real work = dot(Real(0.5) * (s.old + out.spring) + (out.acting - out.spring), s.displacement);
+    // A spring that weakens may lose less than nothing where the displacement reverses by more than it.
+    const Real reversed = (1 - shrink) / 2 * dot(s.old, s.displacement);
     const Real gain =
         spring_energy(out.spring, s.slider.stiffness) - spring_energy(s.old, s.slider.stiffness0);
     CHECK(near(work, gain + out.losses.sum(), {.absolute = kRoundOff}));
     CHECK(out.losses.dashpot >= -kUlp);
-    CHECK(out.losses.unloading >= -kUlp);
+    CHECK(out.losses.unloading >= std::min<Real>(reversed, 0) - kUlp);
     CHECK((out.losses.sliding >= 0 || norm(s.old) > s.slider.limit));
     slid += out.losses.sliding > 0, damped += out.losses.dashpot > 0, unloaded += out.losses.unloading > 0;
   }

@@ -86,7 +86,7 @@ ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 
         sphere_pair(-(2 - kOverlap) * neighbor.direction + (displacement - other), Real(2));
     const MovingPair pair{{geometry, {}, {1, 1, 1, 1}},
                           sphere_motion(geometry, displacement - other, {turn, 1, 1}, {turn, 1, 1}, 1)};
-    const ContactOutcome out = law.load(pair, {});
+    const ContactOutcome out = law.respond(pair, {});
     sum.force += out.load.force, sum.torque_i += out.load.torque_i;
   }
   return sum;

@@ -102,8 +102,8 @@ mass = 1.0
   balance.last.kinetic -= 300, balance.last.dissipated_contacts = 300;
   const std::string fine = text("1e-4"), coarse = text("4e-3");
   CAPTURE(fine, coarse);
-  CHECK(contains(fine, "20 J, 2 % of the 1000 J exchanged, are not accounted for: explicit steps integrate"));
-  CHECK(contains(fine, "the dissipation of contacts, 300 J here, to first order"));
+  CHECK(contains(fine, "20 J, 2 % of the 1000 J exchanged, are not accounted for"));
+  CHECK(contains(fine, "of the dissipation of contacts, 300 J here, explicit steps integrate"));
   CHECK(!contains(fine, "has changed the energy"));
   CHECK(contains(coarse, "has changed the energy by 20 J, 2 % of the 1000 J exchanged"));
   CHECK(contains(coarse, "shorten time.step: in these steps the energy of impacts is off by up to "));

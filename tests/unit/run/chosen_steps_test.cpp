@@ -64,6 +64,12 @@ std::string RandomDecks::law(bool spheres, Real radius, Real mass, Real speed) {
   if (maybe(0.3))
     return restitution + fmt::format("work_of_adhesion = {}\nadhesion = \"dmt\"\n", work) +
            (has_friction ? resistance() : "");
+  if (maybe(0.3))
+    return restitution +
+           fmt::format(
+               "bridge_volume = {}\nsurface_tension = {}\ncontact_angle = {}\nbridge_force = \"{}\"\n",
+               of_size(1e-5, 0.05), 1e-4 * stiffness, between(0, 0.9), maybe(0.5) ? "soulie" : "willett") +
+           resistance();
   return restitution + (has_friction ? resistance() : "");
 }
 
@@ -245,9 +251,9 @@ mass = 0.1
     CHECK((model.of("step") != nullptr) == (named == std::string("velocity-verlet")));
   }
   // The refusal of an integrator names both keys that require it.
-  CHECK(
-      contains(model_error(deck, {friction, "contact.pairs.0.rolling_friction=0.1", "time.control=adaptive"}),
-               "needs integrator.particles = \"velocity-verlet\""));
+  CHECK(contains(model_error(deck, {"contact.pairs.0.attraction=0.1", "contact.pairs.0.attraction_range=0.1",
+                                    "time.control=adaptive"}),
+                 "needs integrator.particles = \"velocity-verlet\""));
   CHECK(contains(model_error(deck, {"integrator.particles=hht", "time.control=fixed"}),
                  "time.step: missing; with control = \"fixed\" and implicit steps"));
 }

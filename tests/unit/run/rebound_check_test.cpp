@@ -230,13 +230,31 @@ TEST_CASE("the moment of inertia of a deck's particles is that of its trials") {
   }
 }
 
+namespace {
+
+// With a body lighter than the particles.
+const std::string kWithBody = kDeck +
+                              "[[bodies]]\nname = \"ram\"\nposition = [0.7, 0.7, 0.7]\nmass = 0.01\n"
+                              "inertia = 1e-5\nshapes = [{ radius = 0.05, material = \"floor\" }]\n"
+                              "[[contact.pairs]]\nmaterials = [\"floor\", \"floor\"]\nstiffness = 1e5\n";
+
+}  // namespace
+
+TEST_CASE("a trial on a light body has the pair's restitution") {
+  std::string deck = kWithBody;
+  const std::string damping = "damping = 20.0";
+  deck.replace(deck.find(damping), damping.size(), "restitution = 0.5");
+  for (const char* integrator : {"hht", "velocity-verlet"}) {
+    const StepTrial trial =
+        try_steps(model_of(deck, {std::string("integrator.particles=") + integrator, "time.step=1e-6"}))[2];
+    CHECK(near(trial.result.exact.restitution, 0.5, {.absolute = 1e-3}));
+    CHECK(near(trial.result.mean.restitution, 0.5, {.absolute = 2e-3}));
+  }
+}
+
 TEST_CASE("bodies are tried in implicit steps, and beside explicit particles with these alone") {
-  const std::string body = kDeck +
-                           "[[bodies]]\nname = \"ram\"\nposition = [0.7, 0.7, 0.7]\nmass = 0.01\n"
-                           "inertia = 1e-5\nshapes = [{ radius = 0.05, material = \"floor\" }]\n"
-                           "[[contact.pairs]]\nmaterials = [\"floor\", \"floor\"]\nstiffness = 1e5\n";
   const auto pairs = [&](const char* integrator) {
-    return try_steps(model_of(body, {std::string("integrator.particles=") + integrator})).size();
+    return try_steps(model_of(kWithBody, {std::string("integrator.particles=") + integrator})).size();
   };
   CHECK(pairs("hht") == 5);
   CHECK(pairs("velocity-verlet") == 4);

@@ -29,7 +29,8 @@ struct ContactSums {
   Real normal = 0;  // losses of the normal law [J]
   SpringLosses friction, rolling;
 
-  void add(const ContactOutcome& out, Real h) {
+  template <class Outcome>
+  void add(const Outcome& out, Real h) {
     normal += out.load.loss * h - out.friction.sum() - out.rolling.sum();
     friction += out.friction, rolling += out.rolling;
   }
@@ -43,7 +44,7 @@ struct PlaneRun {
   Vec3 gravity{};  // [m/s^2]
   Real h = 0;      // [s]
 
-  ContactOutcome outcome{};
+  typename Law::Outcome outcome{};
   GrainRates rates{};
   ContactSums sums{};
   bool closed = false;
@@ -59,7 +60,7 @@ struct PlaneRun {
     const PairState state = pair();
     const ContactMotion rest =
         face_motion(state.geometry, state.geometry.normal(), {}, {{}, grain.radius, grain.inertia}, {}, h);
-    kick(law.load({state, rest}, outcome.history), h / 2);
+    kick(law.respond({state, rest}, outcome.history), h / 2);
   }
   void step() {
     const Vec3 displacement = h * grain.velocity;
@@ -68,7 +69,7 @@ struct PlaneRun {
     const ContactMotion motion =
         face_motion(state.geometry, state.geometry.normal(), displacement, grain.partner(), {}, h);
     closed = law.closed(state, outcome.history);
-    outcome = law.load({state, motion}, outcome.history);
+    outcome = law.respond({state, motion}, outcome.history);
     sums.add(outcome, h);
     kick(outcome, h);
   }
@@ -77,7 +78,7 @@ struct PlaneRun {
   Vec3 spin() const { return grain.spin - (h / 2) * rates.spin_up; }
 
  private:
-  void kick(const ContactOutcome& out, Real time) {
+  void kick(const typename Law::Outcome& out, Real time) {
     rates.acceleration = (1 / grain.mass) * out.load.force + gravity;
     rates.spin_up = (1 / grain.inertia) * out.load.torque_i;
     grain.velocity += time * rates.acceleration, grain.spin += time * rates.spin_up;
@@ -90,15 +91,19 @@ struct PairRun {
   Law law;
   Grain i, j;
   Real h = 0;  // [s]
+  // Whether the law uses velocities predicted for the end of the step; else those of mid-step, as the
+  // program.
+  bool predicts = true;
 
-  ContactOutcome outcome{};
+  typename Law::Outcome outcome{};
   GrainRates rates_i{}, rates_j{};
   ContactSums sums{};
   bool closed = false;
 
   PairState pair() const {
+    const Real ahead = predicts ? h / 2 : 0;
     return {sphere_pair(i.position - j.position, i.radius + j.radius),
-            (i.velocity + (h / 2) * rates_i.acceleration) - (j.velocity + (h / 2) * rates_j.acceleration),
+            (i.velocity + ahead * rates_i.acceleration) - (j.velocity + ahead * rates_j.acceleration),
             {i.radius, j.radius, i.mass, j.mass}};
   }
   void step() {
@@ -107,7 +112,7 @@ struct PairRun {
     const PairState state = pair();
     const ContactMotion motion = sphere_motion(state.geometry, displacement, i.partner(), j.partner(), h);
     closed = law.closed(state, outcome.history);
-    outcome = law.load({state, motion}, outcome.history);
+    outcome = law.respond({state, motion}, outcome.history);
     sums.add(outcome, h);
     kick(i, rates_i, outcome.load.force, outcome.load.torque_i);
     kick(j, rates_j, -outcome.load.force, outcome.load.torque_j);

@@ -37,12 +37,12 @@ class Pack {
       force[i] += grains[i].mass * gravity_;
       for (std::size_t k = 0; k < planes.size(); ++k) {
         ContactOutcome& out = of_plane_[i * planes.size() + k];
-        out = law_.load(against_plane(i, planes[k]), out.history);
+        out = law_.respond(against_plane(i, planes[k]), out.history);
         force[i] += out.load.force, torque[i] += out.load.torque_i;
       }
       for (std::size_t j = 0; j < i; ++j) {
         ContactOutcome& out = of_pair_[i * grains.size() + j];
-        out = law_.load(between(i, j), out.history);
+        out = law_.respond(between(i, j), out.history);
         force[i] += out.load.force, force[j] -= out.load.force;
         torque[i] += out.load.torque_i, torque[j] += out.load.torque_j;
       }

@@ -13,6 +13,7 @@ namespace scree {
 namespace {
 
 constexpr Real kPhases[] = {0, 0.2, 0.4, 0.6, 0.8};
+constexpr int kManyPhases = 20;     // phases of which a mean is taken
 constexpr Real kConserved = 1e-13;  // of sums over hundreds of steps, relative
 
 template <class Run>
@@ -86,8 +87,47 @@ TEST_CASE("two spheres in space with a linear spring and slider") {
       const PairErrors coarse = at(100, true, planar), fine = at(200, true, planar);
       CHECK(keeps(coarse.motion.worst(), {.promise = 1e-2, .measured = 1.9e-3}));
       CHECK(keeps(fine.motion.worst(), {.promise = 5e-3, .measured = 1.1e-3}));
-      CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = 2.8e-5}));
+      CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = 1.4e-4}));
       CHECK(order_between(coarse.motion, fine.motion) > 0.9);
+    }
+  }
+}
+
+// Laws count the dissipation of dampers for velocities of mid-step, which the program uses.
+TEST_CASE("steps with mid-step velocities account for the dissipation to second order") {
+  const ReferenceTable table("contact/pair_oblique_3d.csv");
+  const auto at = [&]<class Impact>(Real parts, const std::string& law, bool tension) {
+    Errors errors;
+    for (const auto& row : table.rows()) {
+      if (row.word("law") != law || row["e"] == 1) continue;
+      Impact impact(row);
+      impact.law.normal.tension = tension;
+      Real mean = 0;  // over the phases
+      for (int k = 0; k < kManyPhases; ++k) {
+        auto run = pair_run(impact, parts, Real(k) / kManyPhases);
+        run.predicts = false;
+        const Real energy = run.i.energy() + run.j.energy();
+        REQUIRE(run_impact(run, static_cast<int>(100 * parts)));
+        const Real lost = run.sums.normal + run.sums.friction.sum();
+        mean += (energy - run.i.energy() - run.j.energy() - lost) / energy / kManyPhases;
+      }
+      errors.add(mean);
+    }
+    return errors;
+  };
+  for (const bool tension : {false, true}) {
+    CAPTURE(tension);
+    for (const std::string law : {"linear", "mindlin"}) {
+      CAPTURE(law);
+      const auto errors = [&](Real parts) {
+        return law == "linear" ? at.operator()<LinearPairImpact>(parts, law, tension)
+                               : at.operator()<MindlinPairImpact>(parts, law, tension);
+      };
+      const Errors coarse = errors(40), fine = errors(160);
+      CAPTURE(coarse.worst(), fine.worst());
+      CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 3.2e-4}));
+      CHECK(keeps(fine.worst(), {.promise = 1e-4, .measured = 1.9e-5}));
+      CHECK(order_between(coarse, fine) / 2 > 1.7);
     }
   }
 }
@@ -164,7 +204,7 @@ TEST_CASE("two spheres in space after Hertz and Mindlin") {
   const PairErrors coarse = at(100), fine = at(200);
   CHECK(keeps(coarse.motion.worst(), {.promise = 2e-3, .measured = 5.0e-4}));
   CHECK(keeps(fine.motion.worst(), {.promise = 1e-3, .measured = 2.3e-4}));
-  CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = 3.1e-5}));
+  CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = 2.9e-4}));
   CHECK(order_between(coarse.motion, fine.motion) > 0.9);
 }
 

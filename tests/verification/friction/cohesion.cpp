@@ -243,6 +243,42 @@ TEST_CASE("DMT: spheres rebound without loss, and rest where the spring carries 
     }
 }
 
+// At steps of a sixtieth and of a third of the impact's duration without adhesion, approximately.
+TEST_CASE("DMT and an attraction in implicit steps: rebound without loss, energy balance, rest") {
+  const ReferenceTable table("contact/dmt.csv");
+  for (const auto& row : table.rows())
+    for (const std::string more : {"", "friction = 0.5\n", "friction = 0.5\nrolling_friction = 0.1\n"})
+      for (const Real parts : {60.0, 3.0}) {
+        CAPTURE(more, parts);
+        GrainDeck deck = impact_deck_of(row, "adhesion = \"dmt\"\n" + more, parts, true);
+        deck.settings = implicit_steps(0);
+        SimulationRun run(model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""),
+                                   deck.settings));
+        run.run();
+        const std::vector<Particle> after = run.particles();
+        const Real rate = (after[1].velocity.z - after[0].velocity.z) / row["v"];
+        CHECK(run.particle_ledger().contacts == 0);
+        CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-9, .measured = 1e-13}));
+        CHECK(keeps(rate * rate - 1,
+                    {.promise = parts > 10 ? 2e-3 : 0.3, .measured = parts > 10 ? 6.6e-5 : 0.065}));
+      }
+  // A sphere that hangs from a wall by an attraction of twice its weight.
+  constexpr Real R = 0.01, mass = 0.01, g = 9.81, stiffness = 1e4;
+  for (const std::string more : {"", "friction = 0.5\n"}) {
+    GrainDeck deck{
+        .law = fmt::format("stiffness = {}\nattraction = {}\nrestitution = 0.5\n", stiffness, 2 * mass * g) +
+               more,
+        .grains = {{.position = {0, 0, R - 1e-9}, .radius = R, .mass = mass}},
+        .step = 2e-4,
+        .end = 0.5};
+    deck.gravity = {0, 0, g}, deck.settings = implicit_steps(-0.05);
+    SimulationRun run(
+        model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""), deck.settings));
+    run.run();
+    CHECK(near(R - run.particles()[0].position.z, mass * g / stiffness, {.relative = 1e-6}));
+  }
+}
+
 TEST_CASE("an attraction with a range holds two separated spheres, up to its energy") {
   // A = 1 N over 1 mm: 0.5 mJ beyond touch; two spheres of 0.1 kg, m* = 0.05 kg.
   const Real R = 0.01, escape = std::sqrt(2 * 0.5e-3 / 0.05);

@@ -17,8 +17,8 @@ namespace {
 constexpr Real kStiffness = 1e4, kDensity = 2500, kRadius = 0.01;
 
 // Spheres that fall and slide on a floor, half of their contacts sliding, undamped; phase_squared: sqrt(2 K /
-// m) h.
-StepCounts counts_of(Real phase_squared, Real friction) {
+// m) h; keys: of the pair.
+StepCounts counts_of(Real phase_squared, const std::string& keys) {
   const Real mass = kDensity * 4 / 3 * std::numbers::pi_v<Real> * kRadius * kRadius * kRadius;
   SimulationRun run(model_of(fmt::format(
       R"(
@@ -42,7 +42,7 @@ hht_alpha = -0.3
 residual_tolerance = 1e-9
 [[contact.pairs]]
 stiffness = {stiffness}
-{friction}
+{keys}
 [[particles]]
 name = "pack"
 kind = "lattice"
@@ -55,8 +55,7 @@ random_velocity = 0.1
 seed = 3
 )",
       fmt::arg("step", phase_squared / std::sqrt(2 * kStiffness / mass)), fmt::arg("stiffness", kStiffness),
-      fmt::arg("radius", kRadius), fmt::arg("density", kDensity),
-      fmt::arg("friction", friction > 0 ? fmt::format("friction = {}", friction) : std::string()))));
+      fmt::arg("radius", kRadius), fmt::arg("density", kDensity), fmt::arg("keys", keys))));
   run.run();
   return run.counts();
 }
@@ -69,24 +68,30 @@ Real per_step(std::int64_t count, const StepCounts& counts) {
 
 TEST_CASE("Newton iterations of a pack with friction") {
   struct Expected {
-    Real phase_squared, frictionless, frictional;  // iterations per step, without friction and with it
+    // Iterations per step, without friction, with it, and with rolling resistance too.
+    Real phase_squared, frictionless, frictional, rolling;
     bool freezes;
   };
-  for (const Expected& e : {Expected{0.63, 5.0, 4.5, false}, Expected{1.2, 6.0, 5.4, false},
-                            Expected{1.9, 6.9, 6.5, false}, Expected{6.3, 11.7, 44, true}}) {
-    const StepCounts frictionless = counts_of(e.phase_squared, 0),
-                     frictional = counts_of(e.phase_squared, 0.5);
-    const Real newton[2] = {per_step(frictionless.newton_iterations, frictionless),
-                            per_step(frictional.newton_iterations, frictional)};
+  for (const Expected& e : {Expected{0.63, 5.0, 4.5, 4.6, false}, Expected{1.2, 6.0, 5.4, 5.7, false},
+                            Expected{1.9, 6.9, 6.5, 6.7, false}, Expected{6.3, 11.7, 44, 44, true}}) {
+    const StepCounts frictionless = counts_of(e.phase_squared, ""),
+                     frictional = counts_of(e.phase_squared, "friction = 0.5"),
+                     rolling = counts_of(e.phase_squared, "friction = 0.5\nrolling_friction = 0.1");
+    const Real newton[3] = {per_step(frictionless.newton_iterations, frictionless),
+                            per_step(frictional.newton_iterations, frictional),
+                            per_step(rolling.newton_iterations, rolling)};
     INFO(fmt::format(
-        "sqrt(2K/m) h = {}: {:.1f} Newton iterations per step without friction, {:.1f} with it; {:.0f} "
+        "sqrt(2K/m) h = {}: {:.1f} Newton iterations per step without friction, {:.1f} with it, {:.2f} with "
+        "rolling resistance ({} of {} steps lagged, {} rejected); {:.0f} "
         "and {:.0f} products; limits frozen in {} of {} steps, {} steps rejected",
-        e.phase_squared, newton[0], newton[1], per_step(frictionless.linear_iterations, frictionless),
+        e.phase_squared, newton[0], newton[1], newton[2], rolling.lagged_steps, rolling.steps,
+        rolling.rejected_newton, per_step(frictionless.linear_iterations, frictionless),
         per_step(frictional.linear_iterations, frictional), frictional.lagged_steps, frictional.steps,
         frictional.rejected_newton));
     const std::string phase_squared = fmt::format("{}", e.phase_squared);
     CHECK(measured("newton/" + phase_squared + ", slick", "", at_most(newton[0], 1.1 * e.frictionless)));
     CHECK(measured("newton/" + phase_squared + ", frictional", "", at_most(newton[1], 1.1 * e.frictional)));
+    CHECK(measured("newton/" + phase_squared + ", rolling", "", at_most(newton[2], 1.1 * e.rolling)));
     note("newton/" + phase_squared + ", products", "", per_step(frictional.linear_iterations, frictional));
     note("newton/" + phase_squared + ", frozen", "%", per_step(100 * frictional.lagged_steps, frictional));
     note("newton/" + phase_squared + ", rejected", "%",

@@ -167,22 +167,23 @@ TEST_CASE("a body's sphere that resists rolling stays on an incline below its an
   constexpr Real kPush = 0.3, kEnd = 3, kRollingFriction = 0.2, kSteep = 0.25;
   const std::string rolling =
       fmt::format("rolling_friction = {}\nrolling_damping_ratio = 0.3\n", kRollingFriction);
-  for (const bool triangles : {false, true}) {
-    CAPTURE(triangles);
-    const Floor floor{.of_triangles = triangles};
-    const auto down = [&](Real slope) {
-      return model_on(floor, ball(floor, kPush), slope, kEnd, "velocity-verlet", rolling);
-    };
-    SimulationRun stays(down(0.15)), rolls(down(kSteep));
-    stays.run(), rolls.run_until(1);
-    const Real from = rolls.time();
-    const Vec3 before = velocity(rolls);
-    rolls.run();
-    CHECK(norm(velocity(stays)) < 1e-9);
-    CHECK(stays.particle_ledger().rotation.losses.of[kRollingLoss] > 0.5 * kMass * kPush * kPush);
-    const Real expected = 5.0 / 7 * kGravity * (std::sin(kSteep) - kRollingFriction * std::cos(kSteep));
-    CHECK(near((velocity(rolls).x - before.x) / (rolls.time() - from), expected, {.relative = 1e-6}));
-  }
+  for (const std::string& method : kMethods)
+    for (const bool triangles : {false, true}) {
+      CAPTURE(method, triangles);
+      const Floor floor{.of_triangles = triangles};
+      const auto down = [&](Real slope) {
+        return model_on(floor, ball(floor, kPush), slope, kEnd, method, rolling);
+      };
+      SimulationRun stays(down(0.15)), rolls(down(kSteep));
+      stays.run(), rolls.run_until(1);
+      const Real from = rolls.time();
+      const Vec3 before = velocity(rolls);
+      rolls.run();
+      CHECK(norm(velocity(stays)) < 1e-9);
+      CHECK(stays.particle_ledger().rotation.losses.of[kRollingLoss] > 0.5 * kMass * kPush * kPush);
+      const Real expected = 5.0 / 7 * kGravity * (std::sin(kSteep) - kRollingFriction * std::cos(kSteep));
+      CHECK(near((velocity(rolls).x - before.x) / (rolls.time() - from), expected, {.relative = 1e-6}));
+    }
 }
 
 }  // namespace scree

@@ -73,15 +73,19 @@ Real largest_move(const std::vector<Particle>& a, const std::vector<Particle>& b
 TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1e5 steps") {
   Real step = kStep, stirred = 1e-23;  // [J]: implicit steps leave residuals
   std::vector<std::string> settings;
+  std::string keys = "damping = 20.0\ntangential_damping_ratio = 0.5\n";
   SECTION("explicit ones") {}
+  SECTION("implicit ones, with rolling resistance") {
+    step = 5 * kStep, stirred = 7e-19, keys += "rolling_friction = 0.1\nrolling_damping_ratio = 0.3\n";
+    settings = {"integrator.particles=hht", "time.control=fixed", fmt::format("time.step={}", step)};
+  }
   SECTION("implicit ones") {
     step = 5 * kStep, stirred = 7e-19;
     settings = {"integrator.particles=hht", "time.control=fixed", fmt::format("time.step={}", step)};
   }
   constexpr Real kSettled = 6;
   const Real alone = 1e5 * step;
-  SimulationRun run(model_of(
-      heap_deck(2, 60, kSettled + alone, "damping = 20.0\ntangential_damping_ratio = 0.5"), settings));
+  SimulationRun run(model_of(heap_deck(2, 60, kSettled + alone, keys), settings));
   run.run_until(kSettled);
   const std::vector<Particle> before = run.particles();
   const ParticleLedger settled = run.particle_ledger();

@@ -45,14 +45,17 @@ std::string deck(const Grain& grain) {
          "]\nvelocity = " + text(grain.velocity) + fmt::format("\nradius = {}\nmass = {}\n", kRadius, kMass);
 }
 
-Model on_plane(const Grain& grain, Vec3 normal) {
-  return model_of(deck(grain) + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal));
+using Settings = std::vector<std::string>;
+Model on_plane(const Grain& grain, Vec3 normal, const Settings& settings = {}) {
+  return model_of(deck(grain) + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal),
+                  settings);
 }
 // The plane of on_plane() as triangles, 1 m wide.
-Model on_triangles(const Grain& grain, const Mat3& turn, int n) {
+Model on_triangles(const Grain& grain, const Mat3& turn, int n, const Settings& settings = {}) {
   Model model = model_of(deck(grain) +
-                         "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2, 2]\n[[walls]]\nname "
-                         "= \"floor\"\nmesh = \"floor\"\n");
+                             "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2, "
+                             "2]\n[[walls]]\nname = \"floor\"\nmesh = \"floor\"\n",
+                         settings);
   const TriangleMesh flat = mapped(jittered_grid(n, 3), [](Vec3 v) { return Vec3{v.x - 0.5, v.y - 0.5, 0}; });
   model.meshes[0].surface =
       std::make_shared<const SurfaceMesh>(build_surface_mesh(rotated(flat, turn), kFeatureAngle, true));
@@ -76,10 +79,15 @@ Grain laid(const Tilt& tilt, Real end) {
 
 // Angles of friction and of rolling friction: 0.38 and 0.29.
 TEST_CASE("a sphere on an incline of triangles below its angles of friction stays for 1e6 steps") {
-  constexpr Real kSettling = 4;                      // [s]
-  const Real time = tests_on_gpu() ? Real(2) : 100;  // where a step of one sphere costs a kernel launch
+  constexpr Real kSettling = 4;                // [s]
+  Real time = tests_on_gpu() ? Real(2) : 100;  // where a step of one sphere costs a kernel launch
+  Settings settings;
+  SECTION("in explicit steps") {}
+  SECTION("in implicit steps, a fifth of the time in steps that are twice as long") {
+    settings = {"integrator.particles=hht", "time.step=2e-4"}, time /= 5;
+  }
   const Tilt tilt(0.28 * kLevel);
-  SimulationRun run(on_triangles(laid(tilt, kSettling + time), tilt.turn, 300));
+  SimulationRun run(on_triangles(laid(tilt, kSettling + time), tilt.turn, 300, settings));
   run.run_until(kSettling);
   const Vec3 settled = run.particles()[0].position;
   CHECK(norm(settled) < 0.1);
@@ -94,9 +102,13 @@ TEST_CASE("a sphere on an incline of triangles below its angles of friction stay
 
 TEST_CASE(
     "a sphere on an incline of triangles above its angle of rolling friction rolls down as on the plane") {
+  Settings settings;
+  SECTION("in explicit steps") {}
+  SECTION("in implicit steps") { settings = {"integrator.particles=hht"}; }
   const Tilt tilt(0.31 * kLevel);
   const Grain grain = laid(tilt, 1);
-  SimulationRun mesh(on_triangles(grain, tilt.turn, 100)), plane(on_plane(grain, tilt.normal));
+  SimulationRun mesh(on_triangles(grain, tilt.turn, 100, settings)),
+      plane(on_plane(grain, tilt.normal, settings));
   mesh.run_until(0.5);
   const Vec3 before = mesh.particles()[0].velocity;
   mesh.run(), plane.run();

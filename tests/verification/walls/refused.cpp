@@ -44,9 +44,10 @@ TEST_CASE("motions of walls that mean nothing are refused, and the message names
   }
 }
 
-TEST_CASE("conveyors with cohesion are supported in explicit steps alone") {
+TEST_CASE("conveyors with cohesion beyond touch are supported in explicit steps alone") {
   WallDeck deck;
-  deck.grain = "positions = [[0, 0, 1]]\n", deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
+  deck.grain = "positions = [[0, 0, 1]]\n",
+  deck.contact = "stiffness = 1e4\nattraction = 0.1\nattraction_range = 0.1\n";
   deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n";
   CHECK(model_error(deck.text()).find("needs integrator.particles = \"velocity-verlet\"") !=
         std::string::npos);
