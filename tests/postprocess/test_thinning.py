@@ -120,7 +120,7 @@ class ThinTest(CommandTest):
 
     def test_what_is_refused(self):
         for words, text in ((("-o", DRUM), "holds the results themselves"),
-                            (("--from", 7), "no snapshot from 7 to inf s; they go from 0 to 0.2 s"),
+                            (("--from", 7), "no snapshot from 7 to inf s; they go from 0 to 0.16 s"),
                             (("--at-once", 0), "not above 0")):
             self.assertIn(text, self.command(WRONG, "thin", DRUM, *words))
 

@@ -140,8 +140,9 @@ def search(targets: Sequence[Target], measure: Callable[[tuple[float, float]], P
 
     # The mean square distance of the runs from the targets: a mean that is near by chance has a wide spread.
     def cost(point: Point) -> float:
-        tolerances = np.array(tolerances_of(points, targets))
-        return float(misfit(np.array(point.means), targets, tolerances) + np.sum((point.spreads / tolerances) ** 2))
+        tolerances = tolerances_of(points, targets)
+        spread = np.sum((np.array(point.spreads) / np.array(tolerances)) ** 2)
+        return float(misfit(np.array(point.means), targets, tolerances) + spread)
 
     def meets(point: Point) -> bool:
         wished = zip(point.means, point.spreads, targets, tolerances_of(points, targets))
