@@ -32,7 +32,7 @@ SurfaceStep random_contact(RandomNumbers& random) {
   SurfaceStep c{};
   c.touches = true;
   const Vec3 n = random_vector(random);
-  c.contact = {{random.normal(), random.uniform(), random.uniform()}, random.normal(), (1 / norm(n)) * n};
+  c.contact = {{random.normal(), random.uniform(), random.uniform()}, random.normal(), (1 / norm(n)) * n, {}};
   c.arm = random_vector(random);
   return c;
 }
