@@ -94,7 +94,8 @@ void take_plasticity(const DeckTable& table, NormalLawParameters& law) {
 
 // Adhesion of an elastic pair.
 void take_adhesion(const DeckTable& table, NormalLawParameters& law) {
-  if (table.has("adhesion_exponent")) table.fail("adhesion_exponent", "needs plasticity_ratio");
+  if (table.has("adhesion_exponent") && !table.has("plasticity_ratio"))
+    table.fail("adhesion_exponent", "needs plasticity_ratio");
   if (table.has("surface_energy") && table.has("work_of_adhesion"))
     table.fail("surface_energy", "stands beside work_of_adhesion; give one of the two");
   const char* key = table.has("surface_energy") ? "surface_energy" : "work_of_adhesion";

@@ -74,8 +74,10 @@ void take(const PairInDeck& pair, PairParameters& parameters) {
       if (table.has(key)) table.fail(key, "needs bridge_volume");
     return;
   }
-  if (!table.has("surface_tension"))
+  if (!table.has("surface_tension")) {
+    if (!is_positive(table, "bridge_volume")) return;
     table.fail("surface_tension", "missing; it must stand beside bridge_volume");
+  }
   const LiquidBridge liquid{.volume = table.real("bridge_volume"),
                             .surface_tension = table.real("surface_tension"),
                             .contact_angle = real_or(table, "contact_angle", 0),

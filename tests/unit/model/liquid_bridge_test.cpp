@@ -58,8 +58,8 @@ TEST_CASE("the keys of liquid bridges are the pair's, beside a linear law and He
           .own.value<BridgeParameters>()
           .liquid;
   CHECK((oil.contact_angle == 0.3 && oil.viscosity == 0.1 && oil.least_gap == 0.01 && oil.soulie));
-  for (const std::string dry :
-       {"bridge_volume = 0.0\nsurface_tension = 0.07\n", "bridge_volume = 1e-3\nsurface_tension = 0.0\n"}) {
+  for (const std::string dry : {"bridge_volume = 0.0\n", "bridge_volume = 0.0\nsurface_tension = 0.07\n",
+                                "bridge_volume = 1e-3\nsurface_tension = 0.0\n"}) {
     const Model model = model_of(linear(dry));
     CHECK((!model.is_cohesive() && !model.rotates() && model.contact.interaction_range == 0));
   }

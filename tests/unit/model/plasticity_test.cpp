@@ -74,7 +74,8 @@ TEST_CASE("plastic pairs have the law of their loading curve, with friction") {
   const Real damped =
       model_of(linear("plasticity_ratio = 0.6\nrestitution = 0.7\n")).contact.law(0, 0).damping_ratio;
   CHECK(damped == damping_ratio_of(0.7, true));
-  CHECK_FALSE(model_of(linear("plasticity_ratio = 0.0\n")).contact.law(0, 0).own);
+  for (const std::string exponent : {"", "adhesion_exponent = 2.0\n"})
+    CHECK_FALSE(model_of(linear("plasticity_ratio = 0.0\n" + exponent)).contact.law(0, 0).own);
 }
 
 TEST_CASE("the step of plastic pairs follows from the stiffness of unloading") {
