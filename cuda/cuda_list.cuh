@@ -35,6 +35,8 @@ class CudaList : public RankList {
   Real bound() const { return bound_; }  // upper bound of the displacement of any item since it was built [m]
   void set_bound(Real bound) { bound_ = bound, committed_ = false; }
   CudaOwners& owners() { return owners_; }
+  // Packs the contact history before particles are added or the list is built.
+  void pack_history();
   // The frame that displacement() refers to. open_run(): a run opens its first step of
   // length h [s]; follow(): steps were closed and others opened since then.
   const ListFrame& frame() const { return frame_; }
@@ -52,7 +54,6 @@ class CudaList : public RankList {
   // Phases of build(), in order.
   void plan_surfaces(Real skin);
   void commit_open_step();
-  void pack_history();
   void wrap_positions();
   void require_sound_positions();
   void sort_cells(Real skin, std::int64_t particles);

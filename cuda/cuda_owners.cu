@@ -5,6 +5,7 @@
 #include "base/countable.hpp"
 #include "cuda_owners.cuh"
 #include "dem/backend/rank_list.hpp"
+#include "dem/particles/births.hpp"
 
 namespace scree {
 namespace {
@@ -104,6 +105,19 @@ void CudaOwners::add_migrants(const std::vector<Particle>& arriving) {
            ArrivalItem{unpacked.data(), views_of(items_.now), items_.owned});
   items_.owned = owned;
   wait_for(items_.stream);  // the kernel reads `unpacked`
+}
+
+void CudaOwners::insert(const std::vector<Particle>& born) {
+  const std::vector<Particle> own = owned_by(items_.ranks, decomposition_, born);
+  const Index before = items_.owned;
+  add_migrants(own);
+  if (items_.history.exists())
+    items_.history.append(no_contacts(items_.history.content(), std::ssize(own)), before);
+  if (row_length_.size() == 0 || own.empty()) return;
+  const std::size_t rows = row_length_.size();
+  row_length_.grow(rows + own.size(), rows, items_.stream);
+  require_cuda(cudaMemsetAsync(row_length_.data() + rows, 0, own.size() * sizeof(Index), items_.stream),
+               "cudaMemsetAsync");
 }
 
 void CudaOwners::note_rows() {

@@ -22,6 +22,8 @@ class CudaOwners {
   void migrate();
   void arrived() { migrating_ = false; }
   bool migrating() const { return migrating_; }
+  // Appends those of these particles that this rank owns. The contact history must be packed.
+  void insert(const std::vector<Particle>& born);
 
   // After a list was built: stores the lengths of its rows as costs; the second one measures the load balance
   // from them.

@@ -6,6 +6,7 @@
 #include "cuda_particles.cuh"
 #include "dem/backend/device.hpp"
 #include "dem/backend/explicit_run.hpp"
+#include "dem/particles/births.hpp"
 #include "dem/particles/particle_store.hpp"
 
 namespace scree {
@@ -143,6 +144,26 @@ std::size_t CudaParticles::find_escaped_particles() {
                        items_.subdomain.period(), verlet_step(items_.model), escaped_particles_.data(),
                        static_cast<Index>(escaped_particles_.size()), count});
   return static_cast<std::size_t>(items_.results.fetch(&Results::escaped_particles));
+}
+
+std::vector<std::uint8_t> CudaParticles::overlapped(const CandidateGrid& candidates) {
+  const cudaStream_t stream = items_.stream;
+  DeviceArray<Index> starts, numbers;
+  DeviceArray<Vec4> spheres;
+  DeviceArray<std::uint8_t> found(static_cast<std::size_t>(candidates.size()));
+  starts.upload(candidates.starts(), stream), numbers.upload(candidates.numbers(), stream);
+  spheres.upload(candidates.spheres(), stream);
+  found.zero(stream);
+  for_each(items_.device(), items_.owned,
+           CandidateItem{candidates.views(starts.data(), spheres.data(), numbers.data()),
+                         items_.now.position.data(), items_.now.drifting.data(), found.data()});
+  return on_any_rank(items_.ranks, found.download(stream));
+}
+
+void CudaParticles::insert(const std::vector<Particle>& born) {
+  list_.pack_history();
+  items_.ranks.collectively([&] { list_.owners().insert(born); });
+  list_.outdate();
 }
 
 std::vector<EscapedParticle> CudaParticles::outside() {

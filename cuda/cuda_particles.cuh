@@ -29,6 +29,8 @@ class CudaParticles : public RankParticles {
   }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
+  std::vector<std::uint8_t> overlapped(const CandidateGrid& candidates) override;
+  void insert(const std::vector<Particle>& born) override;
   std::vector<EscapedParticle> outside() override;
   void remove_escaped(const std::vector<EscapedParticle>& escaped) override;
 

@@ -40,7 +40,8 @@ class DeviceHistory {
   HistoryViews surface_views_in_run(bool ahead);            // for surfaces only
   void closed(Index steps) { step_ = run_start_ + steps; }  // since the start of the run
   void accepted() { closed_last(), commit_next(); }
-  void closed_last() { step_ += 1; }   // one more than the last closed() reported
+  void closed_last() { step_ += 1; }  // one more than the last closed() reported
+  HistoryContent content() const { return content_; }
   Real step() const { return step_; }  // grows by one with each closed step, with or without a history
   // Makes the next history of contacts with surfaces the present one; in a run this happens when the
   // velocities of the open step are copied into the state.

@@ -24,14 +24,14 @@ void account_escaped(const std::vector<EscapedParticle>& escaped_particles, Outs
 }
 
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
-                   const MultibodyState& state, Real t) {
+                   const MultibodyState& state, Real t, Real carried_in) {
   Ledger out;
   out.kinetic = particles.kinetic;
   out.gravitational = particles.gravitational;
   out.elastic_contacts = particles.contact_elastic;
   out.dissipated_contacts = particles.contact_loss + carried_out.contact_loss;
   out.dissipated_integrator = particles.integrator_loss + carried_out.integrator_loss;
-  out.carried_out = carried_out.energy;
+  out.carried_out = carried_out.energy, out.carried_in = carried_in;
   out.driver_work = state.driver_work;
   if (bodies == nullptr) return out;
   const MultibodyEnergies energies = bodies->energies(state, t);

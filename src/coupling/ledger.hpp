@@ -18,13 +18,14 @@ struct Ledger {
   // Kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended when a
   // particle escaped.
   Real carried_out = 0;
+  Real carried_in = 0;  // kinetic and gravitational energy of particles born during the run
 
   Real mechanical() const { return kinetic + gravitational + elastic_force_elements + elastic_contacts; }
   Real accounted() const {
     return mechanical() + dissipated_force_elements + dissipated_contacts + dissipated_integrator +
-           carried_out - driver_work;
+           carried_out - driver_work - carried_in;
   }
-  std::array<Real, 9> entries() const {
+  std::array<Real, 10> entries() const {
     return {kinetic,
             gravitational,
             elastic_force_elements,
@@ -33,7 +34,8 @@ struct Ledger {
             dissipated_contacts,
             dissipated_integrator,
             driver_work,
-            carried_out};
+            carried_out,
+            carried_in};
   }
 };
 
@@ -53,9 +55,10 @@ struct CarriedOut {
 void account_escaped(const std::vector<EscapedParticle>& escaped_particles, OutsidePolicy policy,
                      CarriedOut& carried_out);
 
-// The ledger at time t [s]. bodies: null on ranks other than 0 and in models without bodies.
+// The ledger at time t [s]. carried_in: see Ledger. bodies: null on ranks other than 0 and in models without
+// bodies.
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
-                   const MultibodyState& state, Real t);
+                   const MultibodyState& state, Real t, Real carried_in = 0);
 
 // The ledger without particles outside the domain, as if ballistic particles had been removed when they
 // escaped. Without ballistic particles its bits are those of `all`.

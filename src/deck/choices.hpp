@@ -306,6 +306,26 @@ inline constexpr auto kWords<DistributionKind> =
                                            {"normal", DistributionKind::normal},
                                            {"table", DistributionKind::table}});
 
+// The region in which an inserter's particles are born.
+enum class InserterKind { box, cylinder, sphere, mesh, face };
+template <>
+inline constexpr auto kWords<InserterKind> =
+    std::to_array<Word<InserterKind>>({{"box", InserterKind::box},
+                                       {"cylinder", InserterKind::cylinder},
+                                       {"sphere", InserterKind::sphere},
+                                       {"mesh", InserterKind::mesh},
+                                       {"face", InserterKind::face}});
+
+// What happens to a particle that finds no free position when it is due.
+enum class BlockedPolicy {
+  wait,  // it is tried again at the inserter's next instants
+  drop,  // it is left out and counted
+  error  // the run ends
+};
+template <>
+inline constexpr auto kWords<BlockedPolicy> = std::to_array<Word<BlockedPolicy>>(
+    {{"wait", BlockedPolicy::wait}, {"drop", BlockedPolicy::drop}, {"error", BlockedPolicy::error}});
+
 // ---- ranks and devices ------------------------------------------------------------------------------------
 
 // How ghost data are sent between the GPUs of several ranks.

@@ -186,6 +186,7 @@ const TableKeys& joint_limit_keys();
 const TableKeys& joint_friction_keys();
 const TableKeys& coupler_keys();
 const TableKeys& particle_keys();
+const TableKeys& inserter_keys();
 const TableKeys& time_function_keys();
 const TableKeys& distribution_keys();
 

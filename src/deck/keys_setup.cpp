@@ -48,7 +48,8 @@ const TableKeys& deck_keys() {
        tables("joint_limits", joint_limit_keys()),
        tables("joint_frictions", joint_friction_keys()),
        tables("couplers", coupler_keys()),
-       tables("particles", particle_keys())},
+       tables("particles", particle_keys()),
+       tables("inserters", inserter_keys())},
       ""};
   return keys;
 }

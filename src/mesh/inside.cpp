@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/mesh_tree.hpp"
+
 namespace scree {
 namespace {
 
@@ -45,6 +47,16 @@ int crossings(const MeshView& mesh, int level, Index node, Vec3 p) {
 
 bool is_inside(const MeshView& mesh, Vec3 p) {
   return !mesh.sheet && crossings(mesh, mesh.levels - 1, 0, p) % 2 == 1;
+}
+
+bool contains_sphere(const MeshView& mesh, Vec3 p, Real radius) {
+  bool touches = false;
+  for_each_triangle_near(mesh, p, radius, [&](Index t) {
+    const Index* v = mesh.triangles[t].vertex;
+    touches = touches || squared_distance(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], p) <
+                             radius * radius;
+  });
+  return !touches && is_inside(mesh, p);
 }
 
 }  // namespace scree

@@ -12,5 +12,7 @@ namespace scree {
 // same cut. A ray through edges and vertices is therefore counted correctly, and so is one along faces. In
 // 2D p.z is 0, where the sides of a closed line are upright.
 bool is_inside(const MeshView& mesh, Vec3 p);
+// Whether a sphere at p, in the frame of the mesh, is inside it and touches no triangle [m].
+bool contains_sphere(const MeshView& mesh, Vec3 p, Real radius);
 
 }  // namespace scree

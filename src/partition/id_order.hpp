@@ -16,8 +16,8 @@ namespace scree {
 // are all particles in the order of their ids. No rank holds more than its range and its original data.
 class IdOrder {
  public:
-  // count: all ids are below it, equal on every rank; ids: of this rank's particles in any order, each id
-  // once over all ranks. Collective.
+  // count: the end of the ranges, equal on every rank; ids above it go to the last rank. ids: of this rank's
+  // particles in any order, each id once over all ranks. Collective.
   IdOrder(const Ranks& ranks, std::int64_t count, std::span<const GlobalId> ids);
 
   // values: one per particle, in the order of the constructor's ids. Returns those of this rank's range of

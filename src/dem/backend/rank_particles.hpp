@@ -8,6 +8,7 @@
 #include "dem/host/host_surfaces.hpp"
 #include "dem/particles/particle_fields.hpp"
 #include "dem/reports/escape_items.hpp"
+#include "dem/search/candidate_grid.hpp"
 #include "model/data/body_exchange.hpp"
 
 namespace scree {
@@ -40,6 +41,14 @@ class RankParticles {
   virtual void initial_forces() = 0;
   // Contact wrenches on the bodies, from initial_forces(). On rank 0; zero elsewhere.
   virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
+
+  // Whether each sphere of the grid overlaps a particle that has not escaped: 1 or 0 per sphere, on every
+  // rank.
+  virtual std::vector<std::uint8_t> overlapped(const CandidateGrid& candidates) = 0;
+  // Adds particles between steps, after the first list. born: equal on every rank, inside the periodic box
+  // and with their accelerations and forces; each is added on the rank that owns its position. The list must
+  // be rebuilt.
+  virtual void insert(const std::vector<Particle>& born) = 0;
 
   // Particles that have escaped from the domain and were not yet removed, ordered by global id.
   virtual std::vector<EscapedParticle> outside() = 0;

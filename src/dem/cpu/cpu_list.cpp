@@ -7,6 +7,7 @@
 
 #include "base/countable.hpp"
 #include "base/host_memory.hpp"
+#include "dem/particles/births.hpp"
 #include "model/derived/choose_law.hpp"
 
 namespace scree {
@@ -255,6 +256,14 @@ void CpuList::limit_skin() {
              free = kMemoryShare * std::min(memory.host.bytes / items_.ranks.size(), memory.process.bytes);
   const Real limit = choice_.limit_in_memory(free, static_cast<Real>(entries()), per_entry);
   choice_.limit_to(1 / items_.ranks.max(1 / limit));  // the smallest limit of all ranks
+}
+
+void CpuList::append_rows(std::size_t particles) {
+  if (!row_length_.empty()) row_length_.resize(row_length_.size() + particles, 0);
+}
+
+std::vector<Particle> CpuList::owned(const std::vector<Particle>& particles) const {
+  return owned_by(items_.ranks, decomposition_, particles);
 }
 
 void CpuList::retain_rows(const std::vector<Index>& remaining) {

@@ -30,10 +30,15 @@ class CpuList : public RankList {
   void outdate() { current_ = false; }
   // Keeps the row lengths of these owned particles, in this order.
   void retain_rows(const std::vector<Index>& remaining);
+  // Follows particles that are appended to the owned ones.
+  void append_rows(std::size_t particles);
+  // Those of these particles that this rank owns.
+  std::vector<Particle> owned(const std::vector<Particle>& particles) const;
+  // Packs the contact history before particles are added or the list is built.
+  void pack_history();
 
  private:
   // Parts of build, in this order.
-  void pack_history();
   void wrap_positions();
   void migrate();
   void decompose();

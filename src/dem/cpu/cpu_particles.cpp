@@ -5,6 +5,7 @@
 
 #include "base/for_each.hpp"
 #include "dem/backend/explicit_run.hpp"
+#include "dem/particles/births.hpp"
 #include "dem/reports/ledger_items.hpp"
 
 namespace scree {
@@ -53,6 +54,23 @@ void CpuParticles::initial_forces() {
     items_.side.accumulate_losses(0);
   else
     std::fill(store.loss_power.begin(), store.loss_power.end(), 0);
+}
+
+std::vector<std::uint8_t> CpuParticles::overlapped(const CandidateGrid& candidates) {
+  std::vector<std::uint8_t> found(static_cast<std::size_t>(candidates.size()), 0);
+  const ParticleStore& store = items_.store;
+  for_each(Serial{}, store.owned,
+           CandidateItem{candidates.views(), store.position.data(), store.drifting.data(), found.data()});
+  return on_any_rank(items_.ranks, std::move(found));
+}
+
+void CpuParticles::insert(const std::vector<Particle>& born) {
+  list_.pack_history();
+  const std::vector<Particle> own = list_.owned(born);
+  for (const Particle& particle : own) items_.store.add(particle);
+  items_.history.append_empty(static_cast<std::int64_t>(own.size()));
+  list_.append_rows(own.size());
+  list_.outdate();
 }
 
 std::vector<EscapedParticle> CpuParticles::outside() {

@@ -25,6 +25,8 @@ class CpuParticles : public RankParticles {
   std::vector<std::int64_t> works() override;
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
+  std::vector<std::uint8_t> overlapped(const CandidateGrid& candidates) override;
+  void insert(const std::vector<Particle>& born) override;
   std::vector<EscapedParticle> outside() override;
   void remove_escaped(const std::vector<EscapedParticle>& escaped_particles) override;
 

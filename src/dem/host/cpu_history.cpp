@@ -108,6 +108,10 @@ void CpuHistory::reorder(const std::vector<Index>& from) {
   if (exists()) packed_ = packed_.rows(from);
 }
 
+void CpuHistory::append_empty(std::int64_t particles) {
+  if (exists()) packed_.append(no_contacts(content_, particles));
+}
+
 void CpuHistory::migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& departing,
                          const std::vector<Index>& remaining) {
   if (!exists()) return;

@@ -49,6 +49,7 @@ class CpuHistory {
   // While packed, the history follows the particles: loading, reordering, migration to other ranks.
   void load(const PackedHistory& contacts, Index owned);
   void reorder(const std::vector<Index>& from);
+  void append_empty(std::int64_t particles);  // without contacts
   // departing[r]: particles for rank r; `remaining` ones keep their order, and arriving ones are appended.
   // Collective.
   void migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& departing,

@@ -75,6 +75,7 @@ std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& s
 
 void take_constants(const ParticleSet& set, std::span<Particle> records) {
   for (Particle& p : records) {
+    if (p.global_id >= set.ids().last) continue;
     const auto at = static_cast<std::size_t>(p.global_id - set.first_id);
     p.radius = set.radius[at], p.mass = set.mass[at], p.material = set.material[at];
     p.moment_of_inertia = moment_of_inertia(set.inertia_factor_of(at), p.mass, p.radius);

@@ -37,7 +37,7 @@ Index count_on_rank(std::size_t particles, const ParticleTotals& of_all);
 
 // Initial state: positions, velocities and constants of the model; all other fields are zero.
 std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& subdomain);
-// Sets the constants of particles from the set.
+// Sets the constants of particles from the set; those that are not in it, born during a run, keep theirs.
 void take_constants(const ParticleSet& set, std::span<Particle> records);
 
 }  // namespace scree

@@ -79,6 +79,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     build_bushings(root, model, names);
     build_joint_forces(root, model, names);
     build_particles(root, model, names, size, share, log);
+    build_inserters(root, model, names, log);
     build_contact(root, model, names);
     choose_integrator(root, model, share, chosen);
     check_integrator(root, model);
@@ -163,7 +164,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   }
   const std::int64_t count = model.particles.totals.count;
   for (const std::int64_t id : table.integers("history_particles")) {
-    if (id >= count) {
+    if (id >= count && model.inserters.empty()) {
       table.fail(
           "history_particles",
           fmt::format("there is no particle {}; the deck has {} particles, counted from 0", id, count));

@@ -13,7 +13,7 @@
 #include "model/checks/plausibility.hpp"
 #include "model/derived/connections.hpp"
 #include "model/derived/generators.hpp"
-#include "model/derived/start_meshes.hpp"
+#include "model/derived/posed_meshes.hpp"
 #include "physics/particle_mass.hpp"
 
 namespace scree {
@@ -210,7 +210,7 @@ void Group::place_lattice() {
 void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
   const FillRegion region(table_, model_, names_);
   PackingBox box = region.packing(table_.real("gap"), table_.integer("tries"));
-  const StartMeshes meshes(model_);
+  const PosedMeshes meshes(model_);
   const auto clear = [&](Vec3 p, Real r, Real gap) {
     return is_clear_of_planes(model_, p, r) && meshes.is_clear(p, r, gap);
   };

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "mesh/convex_hull.hpp"
 #include "mesh/inside.hpp"
-#include "mesh/mesh_tree.hpp"
+#include "mesh/mesh_mass.hpp"
 #include "mesh/surface_mesh.hpp"
 #include "model/derived/connections.hpp"
 
@@ -78,17 +78,6 @@ bool is_matter(const Model& model, int mesh) {
          (std::ranges::any_of(model.walls, has_mesh) ||
           std::ranges::any_of(model.bodies,
                               [&](const Body& body) { return std::ranges::any_of(body.meshes, has_mesh); }));
-}
-
-// Whether a sphere at p, in the frame of the mesh, is inside and touches no triangle.
-bool lies_inside(const MeshView& mesh, Vec3 p, Real radius) {
-  bool reaches = false;
-  for_each_triangle_near(mesh, p, radius, [&](Index t) {
-    const Index* v = mesh.triangles[t].vertex;
-    reaches = reaches || squared_distance(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], p) <
-                             radius * radius;
-  });
-  return !reaches && is_inside(mesh, p);
 }
 
 // The points whose convex hull bounds a body's inside, in its frame [m]: the centres of its shapes and the
@@ -247,24 +236,14 @@ void FillRegion::add_cylinder(const DeckTable& table) {
 }
 
 void FillRegion::add_mesh(const DeckTable& table, const Model& model, const ModelNames& names) {
-  const int number = find_name(names.meshes, table, "mesh", "mesh");
-  const SurfaceMesh& surface = *model.meshes[static_cast<std::size_t>(number)].surface;
-  if (!is_closed(names.triangles[static_cast<std::size_t>(number)].mesh))
-    table.fail("mesh", "is open and has no inside; a closed mesh is needed, or the key body in its place");
-  if (is_matter(model, number))
-    table.fail(
-        "mesh",
-        "is a closed solid that collides: its inside is matter; of a file, sheet = true makes a shell of "
-        "it, which may hold particles");
-  const MeshOnBody on = mesh_on_body(table, model, names, number);
-  MeshView view = surface.view();
+  const ClosedMesh closed = closed_mesh(table, model, names);
+  MeshView view = model.meshes[static_cast<std::size_t>(closed.mesh)].surface->view();
   view.sheet = false;
   const Model* const of = &model;
-  parts_.emplace_back(
-      [=](Vec3 p, Real r) { return lies_inside(view, to_body_point(*of, on.body, p) - on.offset, r); });
-  std::vector<Vec3> corners;
-  for (const Vec3 v : surface.vertices) corners.push_back(to_global_point(model, on.body, on.offset + v));
-  stay_within_points(corners);
+  parts_.emplace_back([=](Vec3 p, Real r) {
+    return contains_sphere(view, to_body_point(*of, closed.body, p) - closed.offset, r);
+  });
+  stay_within(closed.min, closed.max);
 }
 
 void FillRegion::add_body(const DeckTable& table, const Model& model, const ModelNames& names) {
@@ -287,6 +266,28 @@ void FillRegion::add_body(const DeckTable& table, const Model& model, const Mode
   std::vector<Vec3> corners;
   for (const Vec3 p : points) corners.push_back(to_global_point(model, number, p));
   stay_within_points(corners);
+}
+
+ClosedMesh closed_mesh(const DeckTable& table, const Model& model, const ModelNames& names) {
+  ClosedMesh closed;
+  closed.mesh = find_name(names.meshes, table, "mesh", "mesh");
+  const TriangleMesh& triangles = names.triangles[static_cast<std::size_t>(closed.mesh)].mesh;
+  if (!is_closed(triangles))
+    table.fail("mesh", "is open and has no inside; a closed mesh is needed, or the key body in its place");
+  if (is_matter(model, closed.mesh))
+    table.fail(
+        "mesh",
+        "is a closed solid that collides: its inside is matter; of a file, sheet = true makes a shell of "
+        "it, which may hold particles");
+  const MeshOnBody on = mesh_on_body(table, model, names, closed.mesh);
+  closed.body = on.body, closed.offset = on.offset, closed.volume = std::abs(mesh_volume(triangles));
+  closed.min = {kInfinity, kInfinity, kInfinity}, closed.max = -closed.min;
+  for (const Vec3 v : model.meshes[static_cast<std::size_t>(closed.mesh)].surface->vertices) {
+    const Vec3 p = to_global_point(model, on.body, on.offset + v);
+    closed.min = smaller(closed.min, p), closed.max = larger(closed.max, p);
+  }
+  if (model.space.dimension == 2) closed.min.z = closed.max.z = 0;
+  return closed;
 }
 
 bool is_clear_of_planes(const Model& model, Vec3 p, Real radius) {

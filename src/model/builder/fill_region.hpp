@@ -51,6 +51,18 @@ class FillRegion {
   std::string name_;
 };
 
+// A closed mesh of the deck whose inside may hold particles, at t = 0.
+struct ClosedMesh {
+  int mesh = -1;       // index into Model::meshes
+  int body = kGround;  // that has it
+  Vec3 offset;         // of its origin in the body's frame, or in the global one [m]
+  Vec3 min, max;       // bounding box in the global frame [m]
+  Real volume = 0;     // [m^3]
+};
+// The mesh of the table's keys mesh and, where it has one, body. Throws InputError where the mesh is open or
+// its inside is matter.
+ClosedMesh closed_mesh(const DeckTable& table, const Model& model, const ModelNames& names);
+
 // Whether spheres do not overlap the planes of the model, except for round-off.
 bool is_clear_of_planes(const Model& model, Vec3 p, Real radius);
 

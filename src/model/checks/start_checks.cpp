@@ -17,9 +17,9 @@
 #include "model/derived/frames.hpp"
 #include "model/derived/mesh_corners.hpp"
 #include "model/derived/point_bins.hpp"
+#include "model/derived/posed_meshes.hpp"
 #include "model/derived/shape_positions.hpp"
 #include "model/derived/space_box.hpp"
-#include "model/derived/start_meshes.hpp"
 #include "model/derived/touching.hpp"
 #include "physics/step_limits.hpp"
 
@@ -35,7 +35,7 @@ std::string point_text(const Space& space, Vec3 p) {
 // Numbering of items: particles by their ids, then shapes, then walls, then meshes of bodies.
 class ItemNames {
  public:
-  explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.count) {
+  explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.at_start) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       body_.insert(body_.end(), model.bodies[b].shapes.size(), static_cast<int>(b));
       for (const MeshShape& shape : model.bodies[b].meshes) meshes_.emplace_back(b, shape.mesh);
@@ -123,7 +123,7 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   for (std::size_t i = 0; i < particles.size(); ++i)
     items.push_back({particles.position[i], particles.radius[i],
                      particles.first_id + static_cast<std::int64_t>(i), particles.material[i]});
-  std::int64_t number = particles.totals.count;
+  std::int64_t number = particles.totals.at_start;
   for (std::size_t b = 0; b < model.bodies.size() && share.rank() == share.size() - 1; ++b)
     for (const Shape& shape : model.bodies[b].shapes)
       items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius, number++,
@@ -148,7 +148,7 @@ std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
 // The deck's table of the particle's group.
 const DeckTable& group_of(const DeckTable& deck, const Model& model, GlobalId id) {
   const GlobalId ids[] = {id};
-  return deck.tables("particles")[static_cast<std::size_t>(groups_of(model.particles.groups, ids).front())];
+  return deck.tables("particles")[static_cast<std::size_t>(groups_of(model.particles, ids).front())];
 }
 
 void check_particles_inside(const DeckTable& deck, const Model& model) {
@@ -213,10 +213,10 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
 
 void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items, Overlaps& overlaps) {
   const ItemNames names(model);
-  const StartMeshes meshes(model);
+  const PosedMeshes meshes(model);
   const TouchRule rule(model);
   std::int64_t of_bodies = names.first_mesh();
-  for (const StartMesh& mesh : meshes.all()) {
+  for (const PosedMesh& mesh : meshes.all()) {
     const std::int64_t number = mesh.wall < 0 ? of_bodies++ : names.first_wall() + mesh.wall;
     for (const StartItem& item : items)
       if (rule.may_touch(names.body(item.number), mesh.body) &&

@@ -22,11 +22,12 @@ inline IdRange id_range(std::int64_t count, int rank, int ranks) {
   return {start(rank), start(rank + 1)};
 }
 
-// The rank whose range contains an id.
+// The rank whose range contains an id; the last one for ids above all ranges.
 inline int id_owner(std::int64_t count, GlobalId id, int ranks) {
   const std::int64_t each = count / ranks, more = count % ranks, longer = more * (each + 1);
-  return static_cast<int>(id < longer ? id / (each + 1)
-                                      : more + (id - longer) / std::max<std::int64_t>(each, 1));
+  const std::int64_t rank =
+      id < longer ? id / (each + 1) : more + (id - longer) / std::max<std::int64_t>(each, 1);
+  return static_cast<int>(std::min<std::int64_t>(rank, ranks - 1));
 }
 
 }  // namespace scree

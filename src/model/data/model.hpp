@@ -12,6 +12,7 @@
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
 #include "model/data/bodies.hpp"
+#include "model/data/inserters.hpp"
 #include "model/data/joint_forces.hpp"
 #include "model/data/particles.hpp"
 #include "physics/contact_parameters.hpp"
@@ -188,6 +189,7 @@ struct Model {
   std::vector<Wall> walls;  // the planes of the deck, then the sides of the domain that are walls
   std::vector<ModelMesh> meshes;
   ParticleSet particles;  // initial state of this rank's particles
+  std::vector<Inserter> inserters;
   DiscThickness disc_thickness;
   std::vector<Body> bodies;
   std::vector<Joint> joints;

@@ -20,16 +20,42 @@ Real smallest_of_all(const Share& share, Real value) {
 
 }  // namespace
 
-std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids) {
+std::vector<int> groups_of(const ParticleSet& particles, std::span<const GlobalId> ids) {
+  const std::vector<ParticleGroup>& groups = particles.groups;
+  const std::int64_t at_start = particles.totals.at_start, in_deck = std::ssize(groups) - particles.inserters;
   std::vector<int> numbers;
   numbers.reserve(ids.size());
   int group = 0;
   for (const GlobalId id : ids) {
-    while (group + 1 < std::ssize(groups) && groups[static_cast<std::size_t>(group) + 1].first_id <= id)
-      ++group;
+    if (id >= at_start && particles.inserters > 0) {
+      numbers.push_back(static_cast<int>(in_deck + (id - at_start) % particles.inserters));
+      continue;
+    }
+    while (group + 1 < in_deck && groups[static_cast<std::size_t>(group) + 1].first_id <= id) ++group;
     numbers.push_back(group);
   }
   return numbers;
+}
+
+void add_births(ParticleTotals& totals, const BornParticles& born) {
+  const bool first = totals.largest_radius == 0;
+  const auto widen = [first](Real& smallest, Real& largest, Real low, Real high) {
+    smallest = first ? low : std::min(smallest, low), largest = std::max(largest, high);
+  };
+  widen(totals.smallest_radius, totals.largest_radius, born.smallest_radius, born.largest_radius);
+  widen(totals.smallest_mass, totals.largest_mass, born.smallest_mass, born.largest_mass);
+  widen(totals.smallest_density, totals.largest_density, born.smallest_density, born.largest_density);
+  totals.most_radii_per_second =
+      std::max(totals.most_radii_per_second, born.most_speed / born.smallest_radius);
+  for (Real Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})
+    widen(totals.lowest.*axis, totals.highest.*axis, born.lowest.*axis, born.highest.*axis);
+  ParticleTotals::OfMaterial& of = totals.materials[static_cast<std::size_t>(born.material)];
+  const auto smaller = [&of](Real& smallest, Real value) {
+    smallest = of.count == 0 ? value : std::min(smallest, value);
+  };
+  smaller(of.smallest_radius, born.smallest_radius), smaller(of.smallest_mass, born.smallest_mass);
+  smaller(of.smallest_inertia_factor, born.smallest_inertia_factor);
+  of.count += born.count;
 }
 
 void count_particles(ParticleSet& particles, int materials, const Share& share) {
@@ -50,7 +76,7 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
     radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
     factor_of[material].add(particles.inertia_factor_of(i));
   }
-  totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
+  totals.at_start = totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
   totals.smallest_radius = smallest_of_all(share, radius.smallest);
   totals.largest_radius = share.max(radius.largest);
   totals.smallest_mass = smallest_of_all(share, mass.smallest);

@@ -12,14 +12,16 @@
 
 namespace scree {
 
-// Totals over the particles of all ranks; lengths and masses are 0 where there are none.
+// Totals over the particles of all ranks, those that inserters may add until the end of the run included;
+// lengths and masses are 0 where there are none.
 struct ParticleTotals {
   struct OfMaterial {
     std::int64_t count = 0;
     Real smallest_radius = 0, smallest_mass = 0;  // [m], [kg]
     Real smallest_inertia_factor = 0;             // I / (m R^2)
   };
-  std::int64_t count = 0;
+  std::int64_t at_start = 0;                       // particles at t = 0
+  std::int64_t count = 0;                          // the most particles that can exist
   Real smallest_radius = 0, largest_radius = 0;    // [m]
   Real smallest_mass = 0, largest_mass = 0;        // [kg]
   Real smallest_density = 0, largest_density = 0;  // of spheres with these radii and masses [kg/m^3]
@@ -28,13 +30,11 @@ struct ParticleTotals {
   std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 
-// A group of the deck; its ids extend to the first id of the next group.
+// A group of the deck, whose ids extend to the first id of the next group, or an inserter.
 struct ParticleGroup {
   std::string name;       // its number where the deck gives no name
   GlobalId first_id = 0;  // of its first particle
 };
-// Number of the group of each particle. ids: in ascending order.
-std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids);
 
 // Structure of arrays with one entry per particle of this rank: global ids from first_id on. The global id is
 // the particle's index in the deck's order, from 0.
@@ -49,14 +49,37 @@ struct ParticleSet {
   int dimension = 3;                   // 2: discs
   GlobalId first_id = 0;
   ParticleTotals totals;
-  std::vector<ParticleGroup> groups;  // of all ranks' particles, in the deck's order
+  std::vector<ParticleGroup> groups;  // of all ranks' particles, in the deck's order, then the inserters
+  int inserters = 0;                  // number of inserters
 
   std::size_t size() const { return position.size(); }
   Real inertia_factor_of(std::size_t i) const {
     return inertia_factor.empty() ? solid_inertia_factor(dimension) : inertia_factor[i];
   }
+  // Id of the n-th particle of an inserter, n from 0: the inserters' ids alternate, so that an id depends
+  // neither on the births of other inserters nor on the particles that have been removed.
+  GlobalId id_of_birth(int inserter, std::int64_t n) const {
+    return totals.at_start + n * inserters + inserter;
+  }
   IdRange ids() const { return {first_id, first_id + static_cast<GlobalId>(size())}; }
 };
+
+// Number of the group of each particle. ids: in ascending order.
+std::vector<int> groups_of(const ParticleSet& particles, std::span<const GlobalId> ids);
+
+// The particles of one material that an inserter adds.
+struct BornParticles {
+  std::int64_t count = 0;                          // until the end of the run
+  Real smallest_radius = 0, largest_radius = 0;    // [m]
+  Real smallest_mass = 0, largest_mass = 0;        // [kg]
+  Real smallest_density = 0, largest_density = 0;  // as in ParticleTotals [kg/m^3]
+  Real smallest_inertia_factor = 0;                // I / (m R^2)
+  Real most_speed = 0;                             // at birth [m/s]
+  Vec3 lowest, highest;                            // corners of the box around the births [m]
+  int material = 0;
+};
+// Widens the ranges of the totals by these particles, and adds them to those of their material.
+void add_births(ParticleTotals& totals, const BornParticles& born);
 
 // Recomputes the totals after particles were changed. materials: their number. Collective.
 void count_particles(ParticleSet& particles, int materials, const Share& share = Share());

@@ -113,7 +113,7 @@ void add_snapshots(const Model& model, DiskUse& use) {
   const Sample one = sample_of(model);
   SeriesOptions options = series_options(model);
   if (!model.meshes.empty()) options.triangles = MeshSurfaces(model).triangles();
-  const ContactNetwork no_contacts(model, {}, {});
+  const ContactNetwork no_contacts(model, {}, 0, {});
   WantedLines lines{false, ContactNetwork::field_names(model), model.particles.totals.count};
   if (model.output.links && !model.bodies.empty()) lines.links = JointLines(model).names();
   const SnapshotCounts counts = counts_of(model, std::ssize(lines.links));

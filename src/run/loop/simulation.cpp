@@ -41,6 +41,7 @@ class Simulation {
         backend_(choose_backend(model, ranks_, options.backend, log)),
         body_coupling_(model, ranks_),
         step_(model, *backend_, body_coupling_, timers_),
+        births_(model),
         live_(model, options, backend_->description(), log),
         book_(restart_.starts, state_, live_.started(), backend_->description(), ranks_.size()),
         surfaces_outside_(model) {
@@ -68,10 +69,11 @@ class Simulation {
   void start_or_resume();
   void check_end() const;
   void load_state();
+  void insert_at_start();
   void prepare_timeline();
   std::string start_change() const;
   bool continues_files() const;
-  void bring_into_id_order(State& state) const;
+  void bring_into_id_order(State& state, GlobalId bound) const;
   // Moves the state's particles out.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
@@ -97,6 +99,7 @@ class Simulation {
   std::unique_ptr<Backend> backend_;
   BodyCoupling body_coupling_;
   CoupledStep step_;
+  const Births births_;
   std::unique_ptr<Recorder> recorder_;
   LiveStatus live_;
   StartRecord book_;
@@ -111,6 +114,7 @@ void Simulation::start_or_resume() {
     state_.clock = StepClock(model_).state();
     backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
+    insert_at_start();
     for (const std::string& finding : body_coupling_.start_warnings()) log_.warning(finding);
     for (const std::string& line : start_lines(body_coupling_.multibody())) log_.info(line);
   } else {
@@ -121,6 +125,16 @@ void Simulation::start_or_resume() {
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
+}
+
+// Births at t = 0.
+void Simulation::insert_at_start() {
+  state_.population = births_.start();
+  const std::vector<Particle> born =
+      births_.births_at(state_.clock.time, body_coupling_.motion(), backend_->particles(), state_.population);
+  if (born.empty()) return;
+  backend_->particles().insert(born);
+  step_.rebuild_list();
 }
 
 // The file is written once without steps, so that a path that is wrong ends the run here.
@@ -146,7 +160,7 @@ void Simulation::check_end() const {
 
 // Takes over the checkpoint's particles, which are complete, and the constants of the deck if it has changed.
 void Simulation::load_state() {
-  bring_into_id_order(state_);
+  bring_into_id_order(state_, model_.particles.totals.at_start);
   if (restart_.changed) take_constants(model_.particles, state_.particles);
   backend_->particles().load(state_.particles, state_.shapes);
   backend_->particles().load_contacts(state_.contacts);
@@ -168,11 +182,12 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// Distributes the particles by ids: each rank gets its range, as for writing and in its part of the model.
-void Simulation::bring_into_id_order(State& state) const {
+// Distributes the particles by ids: each rank gets its range of [0, bound), and the last one also those above
+// it. With the number of particles at t = 0 the ranges are those of the model's parts.
+void Simulation::bring_into_id_order(State& state, GlobalId bound) const {
   std::vector<GlobalId> ids;
   for (const Particle& p : state.particles) ids.push_back(p.global_id);
-  const IdOrder order(ranks_, model_.particles.totals.count, ids);
+  const IdOrder order(ranks_, bound, ids);
   state.particles = order.apply(std::move(state.particles));
   state.contacts = in_order(order, std::move(state.contacts));
 }
@@ -181,7 +196,7 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
   state.works = all_works(std::move(state.works), ranks_);
   state_hash_ = hash_of_all(state, ranks_);
-  bring_into_id_order(state);
+  bring_into_id_order(state, id_bound(model_.particles, state.population));
   Checkpoint out = pack(state);
   add_restart_texts(out, options_, state_hash_, restart_.changes, book_.starts(state));
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
@@ -236,7 +251,7 @@ ExitCode Simulation::run_to_the_end() {
   show_status("running");
   log_.info(
       fmt::format("{}, {}, backend {}, multibody solver {}",
-                  counted(model_.particles.totals.count, "particle", "particles"),
+                  counted(particles_so_far(model_.particles, state_.population), "particle", "particles"),
                   counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
                   body_coupling_.multibody() ? body_coupling_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_,
@@ -249,7 +264,8 @@ ExitCode Simulation::run_to_the_end() {
                         [this](const std::vector<EscapedParticle>& escaped_particles) {
                           watch_escaped_particles(escaped_particles);
                         },
-                        timeline_.get()};
+                        timeline_.get(),
+                        model_.inserters.empty() ? nullptr : &births_};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {
@@ -361,7 +377,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
                    {"rebalances", balance.rebalances},
                    {"migrated", migrated_},
-                   {"particles", model_.particles.totals.count},
+                   {"particles", particles_so_far(model_.particles, state_.population)},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"particles_escaped", state_.carried_out.left},
                    {"bodies_outside", bodies_outside(model_, state_.bodies).count},

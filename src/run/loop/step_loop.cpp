@@ -113,7 +113,8 @@ void StepLoop::reject(const StepOutcome& outcome) {
 
 // Takes equal steps up to the next output, until signals and progress are due, and none that begins at
 // `until` or later. A batch ends where the energies are sampled. Not so in mixed precision, where the ends of
-// batches affect the bits: there the energies are sampled at the end of the batch.
+// batches affect the bits: there the energies are sampled at the end of the batch. A step that reaches an
+// instant of births is the last one of its batch.
 void StepLoop::take_explicit_steps(Real h, Real until) {
   const bool mixed = parts_.backend.is_mixed();
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
@@ -122,7 +123,8 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
   if (!mixed && parts_.timeline != nullptr)
     most = std::min(most, as_size(parts_.timeline->most_steps(steps)));
   std::vector<Real> times = clock_.equal_steps(most);
-  times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
+  const Real stop = std::min(until, next_births());
+  times.erase(std::lower_bound(times.begin() + 1, times.end(), stop), times.end());
   const double start = parts_.seconds();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
   step_seconds_ = (parts_.seconds() - start) / static_cast<double>(taken);
@@ -133,21 +135,36 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
 
 void StepLoop::close_step(Real h) {
   state_.clock = clock_.state();
-  leave();
+  const bool left = leave(), inserted = insert();
+  if (left || inserted) parts_.step.rebuild_list();  // measures stages of its own
   output(h);
 }
 
-// Handles particles outside the domain: an error, or no contact detection from the next step on.
-void StepLoop::leave() {
-  {
-    const auto scope = parts_.timers.time(Stage::migrate);
-    const std::vector<EscapedParticle> escaped_particles = parts_.step.check_inside();
-    if (escaped_particles.empty()) return;
-    parts_.leaving(escaped_particles);
-    parts_.backend.particles().remove_escaped(escaped_particles);
-    account_escaped(escaped_particles, parts_.model.space.leaving, state_.carried_out);
-  }
-  parts_.step.rebuild_list();  // measures stages of its own
+// Handles particles outside the domain: an error, or no contact detection from the next step on. Returns
+// whether there are any.
+bool StepLoop::leave() {
+  const auto scope = parts_.timers.time(Stage::migrate);
+  const std::vector<EscapedParticle> escaped_particles = parts_.step.check_inside();
+  if (escaped_particles.empty()) return false;
+  parts_.leaving(escaped_particles);
+  parts_.backend.particles().remove_escaped(escaped_particles);
+  account_escaped(escaped_particles, parts_.model.space.leaving, state_.carried_out);
+  return true;
+}
+
+// Adds the particles that are born at the end of the step. Returns whether there are any.
+bool StepLoop::insert() {
+  if (parts_.births == nullptr) return false;
+  const auto scope = parts_.timers.time(Stage::migrate);
+  RankParticles& particles = parts_.backend.particles();
+  const std::vector<Particle> born =
+      parts_.births->births_at(clock_.time(), parts_.link.motion(), particles, state_.population);
+  if (!born.empty()) particles.insert(born);
+  return !born.empty();
+}
+
+Real StepLoop::next_births() const {
+  return parts_.births != nullptr ? parts_.births->next(state_.population) : kInfinity;
 }
 
 void StepLoop::output(Real h) {

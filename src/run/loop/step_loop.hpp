@@ -10,6 +10,7 @@
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
+#include "run/population/births.hpp"
 #include "run/record/timeline.hpp"
 #include "run/state/records.hpp"
 #include "run/state/state.hpp"
@@ -34,7 +35,8 @@ struct LoopParts {
   // Called with the particles that leave the domain, after the step in which they do.
   std::function<void(const std::vector<EscapedParticle>&)> leaving = [](const std::vector<EscapedParticle>&) {
   };
-  Timeline* timeline = nullptr;  // of some steps, or none
+  Timeline* timeline = nullptr;    // of some steps, or none
+  const Births* births = nullptr;  // of a model with inserters
 };
 
 // Number of explicit steps of the bodies in one batch. step_seconds: wall time per step of the last batch;
@@ -66,7 +68,9 @@ class StepLoop {
   void reject(const StepOutcome& outcome);
   void take_explicit_steps(Real h, Real until);
   void close_step(Real h);
-  void leave();
+  bool leave();
+  bool insert();
+  Real next_births() const;
   void output(Real h);
   void save_good_state();
   const Ranks& ranks() const { return parts_.link.ranks(); }

@@ -7,9 +7,9 @@
 
 namespace scree {
 
-ContactNetwork::ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines)
+ContactNetwork::ContactNetwork(const Model& model, const Ranks& ranks, GlobalId bound, ContactLines lines)
     : friction_steps_(model.rotates()) {
-  const IdOrder order(ranks, model.particles.totals.count, lines.global_id);
+  const IdOrder order(ranks, bound, lines.global_id);
   const SurfaceSet surfaces(model);
   for (const ContactLine& line : lines.of_bodies) add(line, surfaces);
   for (const ContactLine& line : order.apply(std::move(lines.lines), std::move(lines.counts)))

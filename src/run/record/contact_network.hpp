@@ -19,8 +19,8 @@ enum class ContactKind : int { particle, wall, body };
 class ContactNetwork {
  public:
   ContactNetwork() = default;
-  // lines: the contacts of this rank's particles. Collective.
-  ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines);
+  // bound: above the ids of all particles; lines: the contacts of this rank's particles. Collective.
+  ContactNetwork(const Model& model, const Ranks& ranks, GlobalId bound, ContactLines lines);
   // Views of this object's columns.
   LineSnapshot snapshot() const;
   // The names of the fields that snapshot() has for the model.

@@ -56,7 +56,23 @@ void step_columns(Group step) {
                  [](const Sample& s) { return s.bodies_outside; });
 }
 
-void energy_columns(Group energy) {
+void particle_counts(Group step) {
+  step.add_count("particles", "particles in the run: those at t = 0 and born so far, less removed ones",
+                 [](const Sample& s) { return s.population.particles; });
+  step.add("born_mass", "kg", "mass of the particles born so far",
+           [](const Sample& s) { return s.population.born_mass; });
+}
+
+// i: index of the inserter.
+void inserter_columns(Group inserter, std::size_t i) {
+  inserter.add_count("born", "particles born so far", [i](const Sample& s) { return s.population.born[i]; });
+  inserter.add_count("waiting", "particles that are due and wait for a free position",
+                     [i](const Sample& s) { return s.population.waiting[i]; });
+  inserter.add_count("dropped", "particles left out so far because no position was free",
+                     [i](const Sample& s) { return s.population.dropped[i]; });
+}
+
+void energy_columns(Group energy, bool has_births) {
   const auto entry = [&](const char* name, const char* text, Real Ledger::*value) {
     energy.add(name, "J", text, [value](const Sample& s) { return s.ledger.*value; });
   };
@@ -78,11 +94,14 @@ void energy_columns(Group energy) {
         "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended "
         "when a particle escaped",
         &Ledger::carried_out);
+  if (has_births)
+    entry("carried_in", "kinetic and gravitational energy of the particles born so far, at birth",
+          &Ledger::carried_in);
   energy.add("total", "J", "kinetic, gravitational and elastic energy",
              [](const Sample& s) { return s.ledger.mechanical(); });
   energy.add("balance_error", "J",
-             "total + dissipated + carried out - driver work, less its value at t = 0, without particles "
-             "outside the domain; with velocity-Verlet this is the effect of its steps on contacts",
+             "total + dissipated + carried out - driver work - carried in, less its value at t = 0, without "
+             "particles outside the domain; with velocity-Verlet this is the effect of its steps on contacts",
              [](const Sample& s) { return s.balance_error; });
   energy.add(
       "exchanged", "J",
@@ -272,14 +291,28 @@ void particle_columns(Group particle, bool rotates, std::size_t k) {
 
 }  // namespace
 
+PopulationSample population_sample(const Model& model, const State& state) {
+  const PopulationState& population = state.population;
+  PopulationSample sample;
+  for (int i = 0; i < std::ssize(population.due); ++i) {
+    sample.born.push_back(population.born_of(i)), sample.waiting.push_back(population.waiting_of(i));
+    sample.dropped.push_back(population.dropped[as_size(i)]);
+  }
+  sample.particles = particles_so_far(model.particles, population) - state.carried_out.removed;
+  sample.born_mass = population.born_mass();
+  return sample;
+}
+
 std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
                                             const std::vector<JointEffortSample>& efforts,
                                             const std::vector<JointReading>& coordinates,
                                             const std::vector<BushingSample>& bushings) {
   std::vector<RecordedColumn> out;
   const Output& output = model.output;
+  const bool has_births = !model.inserters.empty();
   step_columns({"step", out});
-  energy_columns({"energy", out});
+  if (has_births) particle_counts({"step", out});
+  energy_columns({"energy", out}, has_births);
   if (model.is_cohesive()) cohesion_columns({"energy", out});
   if (model.rotates()) rotation_columns({"rotation", out}, model.rolls());
   momentum_columns({"momentum", out});
@@ -292,6 +325,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   for (std::size_t k = 0; k < bushings.size(); ++k) bushing_columns({"bushings/" + bushings[k].name, out}, k);
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
+  for (std::size_t i = 0; i < model.inserters.size(); ++i)
+    inserter_columns({"inserters/" + model.inserters[i].name, out}, i);
   for (const int body : output.history_bodies) {
     const auto b = as_size(body);
     body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);

@@ -12,8 +12,17 @@
 #include "mbs/multibody.hpp"
 #include "model/data/model.hpp"
 #include "output/history.hpp"
+#include "run/state/state.hpp"
 
 namespace scree {
+
+// Particles of the inserters up to one instant, per inserter.
+struct PopulationSample {
+  std::vector<std::int64_t> born, waiting, dropped;
+  std::int64_t particles = 0;  // in the run: those at t = 0 and born, less removed ones
+  Real born_mass = 0;          // of all inserters [kg]
+};
+PopulationSample population_sample(const Model& model, const State& state);
 
 // The quantities of one instant, complete on rank 0.
 struct HistorySample {
@@ -24,13 +33,14 @@ struct HistorySample {
   Real balance_error = 0, exchanged = 0;      // [J]
   TangentialLosses losses{};                  // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // escaped particles; bodies outside the domain
-  std::vector<Reaction> reactions;            // of the recorded joints and drivers
-  std::vector<JointEffortSample> efforts;     // of the recorded elements on joints
-  std::vector<JointReading> coordinates;      // of the recorded joints
-  std::vector<BushingSample> bushings;        // of the recorded bushings
-  std::vector<ContactSum> contacts;           // per entry of Output::history_contacts
-  std::vector<BodyMotion> bodies;             // all bodies, if some are recorded
-  std::vector<TracedParticle> traced;         // per entry of Output::history_particles; NaN: removed particle
+  PopulationSample population;
+  std::vector<Reaction> reactions;         // of the recorded joints and drivers
+  std::vector<JointEffortSample> efforts;  // of the recorded elements on joints
+  std::vector<JointReading> coordinates;   // of the recorded joints
+  std::vector<BushingSample> bushings;     // of the recorded bushings
+  std::vector<ContactSum> contacts;        // per entry of Output::history_contacts
+  std::vector<BodyMotion> bodies;          // all bodies, if some are recorded
+  std::vector<TracedParticle> traced;      // per entry of Output::history_particles; NaN: removed particle
 };
 
 struct RecordedColumn {

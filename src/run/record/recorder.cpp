@@ -63,9 +63,10 @@ std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Ba
   return traced;
 }
 
-// This rank's part of the output in the order of the ids, with the fields that are functions of the id.
-ParticleOutput in_id_order(const Ranks& ranks, const Model& model, ParticleOutput p) {
-  const IdOrder order(ranks, model.particles.totals.count, p.global_id);
+// This rank's part of the output in the order of the ids, which are below `bound`, with the fields that are
+// functions of the id.
+ParticleOutput in_id_order(const Ranks& ranks, const Model& model, GlobalId bound, ParticleOutput p) {
+  const IdOrder order(ranks, bound, p.global_id);
   p.global_id = order.apply(std::move(p.global_id)), p.position = order.apply(std::move(p.position));
   for (OutputValues& of_field : p.fields)
     std::visit([&](auto& values) { values = order.apply(std::move(values)); }, of_field);
@@ -73,7 +74,7 @@ ParticleOutput in_id_order(const Ranks& ranks, const Model& model, ParticleOutpu
   for (std::size_t k = 0; k < wanted.size(); ++k)
     if (wanted[k].of_id)
       p.fields.insert(p.fields.begin() + static_cast<std::ptrdiff_t>(k),
-                      groups_of(model.particles.groups, p.global_id));
+                      groups_of(model.particles, p.global_id));
   return p;
 }
 
@@ -135,6 +136,7 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.counts = state.counts;
   balance(state, sample);
   sample.left = state.carried_out.left;
+  sample.population = population_sample(model_, state);
   sample.bodies_outside = bodies_outside(model_, state.bodies).count;
   sample.reactions = reactions_of(model_, body_coupling_, state);
   sample.efforts = efforts_of(model_, body_coupling_, state);
@@ -163,7 +165,7 @@ void Recorder::rebase_balance(State& state) {
 void Recorder::take_energies(const State& state, HistorySample& sample) const {
   sample.particles = backend_.reports().ledger(verlet_step(model_));
   sample.ledger = make_ledger(sample.particles, state.carried_out, body_coupling_.multibody(), state.bodies,
-                              state.clock.time);
+                              state.clock.time, state.population.born_energy());
   sample.inside = inside_ledger(sample.ledger, sample.particles, state.carried_out);
   // The check is left out at the start, where the first step gives a more specific error.
   if (state.balance.open && body_coupling_.ranks().any(!std::isfinite(sample.ledger.mechanical())))
@@ -183,7 +185,7 @@ void Recorder::snapshot(State& state) {
   write_pending();
   const Reports::Instant now(backend_.reports());
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, {}, {}, {}, {}};
+  PendingSnapshot next{state.clock.time, id_bound(model_.particles, state.population), {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = body_coupling_.motion();
   if (!model_.bodies.empty()) {
     const ShapePack shapes = backend_.reports().pack_shapes();
@@ -209,10 +211,12 @@ void Recorder::snapshot(State& state) {
 void Recorder::write_pending() {
   if (!pending_) return;
   PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticleOutput p = in_id_order(body_coupling_.ranks(), model_, backend_.reports().output());
+  const ParticleOutput p =
+      in_id_order(body_coupling_.ranks(), model_, snapshot.id_bound, backend_.reports().output());
   ContactNetwork contacts;
   if (model_.output.contacts)
-    contacts = ContactNetwork(model_, body_coupling_.ranks(), std::move(snapshot.contacts));
+    contacts =
+        ContactNetwork(model_, body_coupling_.ranks(), snapshot.id_bound, std::move(snapshot.contacts));
   const MeshSurfaces::Sample& surfaces = snapshot.surfaces;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p.fields)},
                      snapshot.bodies.view(),

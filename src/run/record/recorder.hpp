@@ -51,6 +51,7 @@ class Recorder : public Records {
   // A snapshot taken but not written; its particles stay in the backend until then.
   struct PendingSnapshot {
     Real time;
+    GlobalId id_bound;              // above the ids of its particles
     BodyPoints bodies;              // on rank 0
     MeshSurfaces::Sample surfaces;  // on rank 0, with meshes
     ContactLines contacts;          // if the output has them

@@ -9,8 +9,8 @@
 #include "base/index.hpp"
 #include "coupling/wall_motion.hpp"
 #include "mesh/surface_mesh.hpp"
+#include "model/derived/posed_meshes.hpp"
 #include "model/derived/space_box.hpp"
-#include "model/derived/start_meshes.hpp"
 
 namespace scree {
 namespace {

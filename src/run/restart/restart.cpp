@@ -264,7 +264,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     restart.starts = starts_in(checkpoint.text("starts"), options.restart);
   });
   restart.state = unpack(checkpoint, ranks);
-  check_state(restart.state, options.restart, model.particles.totals.count, ranks);
+  check_state(restart.state, options.restart, model.particles, ranks);
   ranks.collectively([&] {
     if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
   });

@@ -44,12 +44,26 @@ void visit_ledger(Visitor& visit, LedgerType& ledger) {
   visit("balance/dissipated_integrator", ledger.dissipated_integrator);
   visit("balance/driver_work", ledger.driver_work);
   visit("balance/carried_out", ledger.carried_out);
+  visit.if_any("balance/carried_in", ledger.carried_in);
 }
 
 // Names in the order of LossKind.
 #define SCREE_LOSS_CARRIED(of, kind, field, ...) "carried_out/" #field,
 constexpr std::array<const char*, kLossKinds> kCarriedLosses = {SCREE_LOSS_KINDS(SCREE_LOSS_CARRIED, )};
 #undef SCREE_LOSS_CARRIED
+
+template <class Visitor, class StateType>
+void visit_population(Visitor& visit, StateType& population) {
+  visit.if_any("population/due", population.due);
+  visit.if_any("population/dropped", population.dropped);
+  visit.if_any("population/tried", population.tried);
+  visit.if_any("population/instants", population.instants);
+  visit.if_any("population/classes", population.classes);
+  visit.if_any("population/amounts", population.amounts);
+  visit.if_any("population/waiting", population.waiting);
+  visit.if_any("population/mass", population.mass);
+  visit.if_any("population/energy", population.energy);
+}
 
 template <class Visitor, class StateType>
 void visit_state(Visitor& visit, StateType& state) {
@@ -90,6 +104,7 @@ void visit_state(Visitor& visit, StateType& state) {
       visit(kCarriedLosses[kind], state.carried_out.losses.of[kind]);
   visit("carried_out/drifting_energy", state.carried_out.ballistic_energy);
   visit("carried_out/drifting_integrator_loss", state.carried_out.ballistic_integrator_loss);
+  visit_population(visit, state.population);
   visit("bodies/least_kinetic", state.bodies.min_kinetic);
   visit("bodies/most_kinetic", state.bodies.max_kinetic);
   visit("balance/open", state.balance.open);
@@ -269,11 +284,11 @@ bool is_finite(const Particle& p) {
   return finite;
 }
 
-void check_particles(const State& state, const std::string& path, std::int64_t particles) {
+void check_particles(const State& state, const std::string& path, GlobalId bound) {
   const Particle* before = nullptr;
   for (const Particle& p : state.particles) {
-    if (p.global_id < 0 || p.global_id >= particles)
-      refuse(path, fmt::format("particle id {}; the deck has the ids 0 to {}", p.global_id, particles - 1));
+    if (p.global_id < 0 || p.global_id >= bound)
+      refuse(path, fmt::format("particle id {}; the deck has the ids 0 to {}", p.global_id, bound - 1));
     if (before != nullptr) check_ids_increase(path, before->global_id, p.global_id);
     before = &p;
     if (!is_finite(p)) refuse(path, fmt::format("a value of particle {} is not finite", p.global_id));
@@ -282,17 +297,34 @@ void check_particles(const State& state, const std::string& path, std::int64_t p
 
 }  // namespace
 
-void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks) {
-  const std::int64_t found = ranks.sum(std::ssize(state.particles)), removed = state.carried_out.removed;
-  if (found != particles - removed)
+std::int64_t particles_so_far(const ParticleSet& particles, const PopulationState& population) {
+  return particles.totals.at_start + population.born();
+}
+
+GlobalId id_bound(const ParticleSet& particles, const PopulationState& population) {
+  GlobalId bound = particles.totals.at_start;
+  for (int i = 0; i < std::ssize(population.due); ++i)
+    bound = std::max(bound, particles.id_of_birth(i, population.due[as_size(i)]));
+  return bound;
+}
+
+void check_state(const State& state, const std::string& path, const ParticleSet& particles,
+                 const Ranks& ranks) {
+  if (std::ssize(state.population.due) != particles.inserters)
+    refuse(path, fmt::format("it has {} inserters; the deck has {}", state.population.due.size(),
+                             particles.inserters));
+  const std::int64_t found = ranks.sum(std::ssize(state.particles)), removed = state.carried_out.removed,
+                     so_far = particles_so_far(particles, state.population);
+  if (found != so_far - removed)
     refuse(path,
-           fmt::format("{} particles; the deck has {}, of which {} were removed", found, particles, removed));
+           fmt::format("{} particles; the deck has {}, of which {} were removed", found, so_far, removed));
+  const GlobalId bound = id_bound(particles, state.population);
   ranks.collectively([&] {
     FiniteCheck finite;
     visit_state(finite, state);
     if (!finite.name().empty()) refuse(path, "'" + finite.name() + "' is not finite");
-    check_particles(state, path, particles);
-    const std::string wrong = contacts_error(state.contacts, state.particles, particles);
+    check_particles(state, path, bound);
+    const std::string wrong = contacts_error(state.contacts, state.particles, bound);
     if (!wrong.empty()) refuse(path, wrong);
   });
   std::vector<GlobalId> ends;  // first and last id of each rank's part

@@ -9,6 +9,7 @@
 #include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
 #include "output/checkpoint.hpp"
+#include "run/population/population_state.hpp"
 #include "run/state/step_clock.hpp"
 
 namespace scree {
@@ -47,6 +48,7 @@ struct State {
   // over all ranks. Between checkpoints it is in the backend.
   std::vector<std::int64_t> works;
   CarriedOut carried_out;
+  PopulationState population;
   BalanceState balance;
   // Numbers recorded so far. All of them are on disk before a checkpoint with these numbers.
   std::int64_t history_rows = 0, snapshots = 0;
@@ -76,10 +78,14 @@ std::uint64_t state_hash(const State& state, bool with_rest);
 // The state of a checkpoint, with the particles of this rank's rows. Throws IoError naming what is missing,
 // on every rank. Collective.
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks = {});
-// Checks a state that was read against the number of particles of the deck. Throws IoError naming the file,
-// on every rank, if ids do not increase from particle to particle and from rank to rank, are outside [0,
-// particles), or are missing without a removal, or if a value is not finite. Collective.
-void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks);
+// Number of particles that have existed, and a bound above their ids.
+std::int64_t particles_so_far(const ParticleSet& particles, const PopulationState& population);
+GlobalId id_bound(const ParticleSet& particles, const PopulationState& population);
+// Checks a state that was read against the particles of the deck. Throws IoError naming the file, on every
+// rank, if ids do not increase from particle to particle and from rank to rank, are outside [0, id_bound()),
+// or are missing without a removal, or if a value is not finite. Collective.
+void check_state(const State& state, const std::string& path, const ParticleSet& particles,
+                 const Ranks& ranks);
 // Throws IoError likewise if the radius, mass or material of a particle is outside the range of the deck.
 void check_constants(const State& state, const std::string& path, const ParticleTotals& deck);
 

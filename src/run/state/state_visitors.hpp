@@ -34,6 +34,9 @@ class Writer {
   void if_any(const char* name, const std::vector<std::int64_t>& values) {
     if (!values.empty()) out_.integers[name] = values;
   }
+  void if_any(const char* name, const Real& value) {
+    if (value != 0) (*this)(name, value);
+  }
   void if_any(const char* name, const TangentialLosses& losses) {
     if (losses != TangentialLosses{}) out_.reals[name] = {std::begin(losses.of), std::end(losses.of)};
   }
@@ -64,6 +67,9 @@ class Reader {
   }
   void if_any(const char* name, std::vector<std::int64_t>& values) {
     if (in_.integers.count(name) > 0) values = in_.integer_array(name);
+  }
+  void if_any(const char* name, Real& value) {
+    if (in_.reals.count(name) > 0) (*this)(name, value);
   }
   void if_any(const char* name, TangentialLosses& losses) {
     if (in_.reals.count(name) == 0) return;
@@ -111,6 +117,9 @@ class Hasher {
   void if_any(const char*, const std::vector<std::int64_t>& values) {
     for (const std::int64_t value : values) hash_.add(value);
   }
+  void if_any(const char*, const Real& value) {
+    if (value != 0) hash_.add(value);
+  }
   void if_any(const char*, const TangentialLosses& losses) {
     if (losses != TangentialLosses{})
       for (const Real value : losses.of) hash_.add(value);
@@ -143,6 +152,7 @@ class FiniteCheck {
     for (const Real value : values) check(name, value);
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
+  void if_any(const char* name, const Real& value) { check(name, value); }
   void if_any(const char*, const std::vector<std::int64_t>&) {}
   void if_any(const char* name, const TangentialLosses& losses) {
     for (const Real value : losses.of) check(name, value);

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "model/derived/start_meshes.hpp"
+#include "model/derived/posed_meshes.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -56,7 +56,7 @@ Real largest_overlap(const Model& model) {
 }
 
 void check_free(const Model& model) {
-  const StartMeshes meshes(model);
+  const PosedMeshes meshes(model);
   CHECK(largest_overlap(model) <= kRoundOff);
   for (std::size_t i = 0; i < model.particles.size(); ++i) {
     REQUIRE(meshes.is_clear(model.particles.position[i], (1 - kRoundOff) * model.particles.radius[i], 0));

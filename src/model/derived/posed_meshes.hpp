@@ -1,15 +1,17 @@
-// The meshes of walls and bodies in their poses at t = 0, and the overlaps of spheres with them.
+// The meshes of walls and bodies in their poses at one instant, and the overlaps of spheres with them.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/spatial_velocity.hpp"
 #include "mesh/mesh_view.hpp"
+#include "model/data/body_exchange.hpp"
 #include "model/data/model.hpp"
 
 namespace scree {
 
-struct StartMesh {
+struct PosedMesh {
   MeshView mesh;
   int body = kGround, wall = -1;  // its owner: index into Model::bodies or Model::walls
   int material = 0;
@@ -33,18 +35,23 @@ Vec3 periods_of(const Space& space);
 std::vector<Vec3> image_shifts(Vec3 periods);
 
 // Must not outlive its model.
-class StartMeshes {
+class PosedMeshes {
  public:
-  explicit StartMeshes(const Model& model);
+  // At t = 0.
+  explicit PosedMeshes(const Model& model);
+  // motion: of the bodies, then of the walls with a pose.
+  PosedMeshes(const Model& model, std::span<const BodyMotion> motion);
 
   // Meshes of bodies in their order, then meshes of walls.
-  const std::vector<StartMesh>& all() const { return meshes_; }
+  const std::vector<PosedMesh>& all() const { return meshes_; }
   // Whether a sphere has a distance of at least `gap` to all meshes.
   bool is_clear(Vec3 p, Real radius, Real gap) const;
 
  private:
+  void add(PosedMesh mesh, const SurfaceMesh& surface);
+
   const Space& space_;
-  std::vector<StartMesh> meshes_;
+  std::vector<PosedMesh> meshes_;
 };
 
 }  // namespace scree

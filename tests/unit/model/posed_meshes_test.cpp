@@ -1,5 +1,5 @@
 // Overlaps with meshes at the start, and random groups clear of them.
-#include "model/derived/start_meshes.hpp"
+#include "model/derived/posed_meshes.hpp"
 
 #include <fmt/format.h>
 
@@ -160,7 +160,7 @@ min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
 )";
   const Model model = model_of(kSpace + kRock + kTurned + group);
-  const StartMeshes meshes(model);
+  const PosedMeshes meshes(model);
   REQUIRE(meshes.all().size() == 3);
   REQUIRE(model.particles.size() == 800);
   int clear = 0, near = 0;

@@ -1,4 +1,4 @@
-#include "model/derived/start_meshes.hpp"
+#include "model/derived/posed_meshes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ Real beside(Real middle, Real x, Real period) {
 
 }  // namespace
 
-Real StartMesh::overlap(Vec3 p, Real radius) const {
+Real PosedMesh::overlap(Vec3 p, Real radius) const {
   const Vec3 q{beside(middle.x, p.x, spanned.x), beside(middle.y, p.y, spanned.y),
                beside(middle.z, p.z, spanned.z)};
   Real largest = 0;
@@ -85,30 +85,52 @@ std::vector<Vec3> image_shifts(Vec3 periods) {
   return shifts;
 }
 
-StartMeshes::StartMeshes(const Model& model) : space_(model.space) {
-  const Vec3 periods = periods_of(space_);
-  const auto add = [&](int number, int body, int wall, int material, Vec3 point, const Mat3& axes) {
-    const SurfaceMesh& mesh = *model.meshes[static_cast<std::size_t>(number)].surface;
-    const Vec3 place = in_periodic_box(space_, point),
-               middle = transposed_times(axes, Real(0.5) * (mesh.box.min + mesh.box.max));
-    const Vec3 spanned = spanned_by(mesh.box, axes, periods);
-    meshes_.push_back({mesh.view(), body, wall, material, place, axes, place + middle, spanned,
-                       image_shifts(periods - spanned)});
-  };
+PosedMeshes::PosedMeshes(const Model& model) : space_(model.space) {
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     for (const MeshShape& shape : model.bodies[static_cast<std::size_t>(b)].meshes)
-      add(shape.mesh, b, -1, shape.material, to_global_point(model, b, shape.offset),
-          global_frame(model, b, {}));
+      add({{}, b, -1, shape.material, to_global_point(model, b, shape.offset), global_frame(model, b, {})},
+          *model.meshes[static_cast<std::size_t>(shape.mesh)].surface);
   for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
     const Wall& wall = model.walls[static_cast<std::size_t>(w)];
-    if (wall.mesh >= 0) add(wall.mesh, kGround, w, wall.material, wall.point, identity3());
+    if (wall.mesh >= 0)
+      add({{}, kGround, w, wall.material, wall.point, identity3()},
+          *model.meshes[static_cast<std::size_t>(wall.mesh)].surface);
   }
 }
 
-bool StartMeshes::is_clear(Vec3 p, Real radius, Real gap) const {
+PosedMeshes::PosedMeshes(const Model& model, std::span<const BodyMotion> motion) : space_(model.space) {
+  const auto axes = [](const BodyMotion& of) { return transposed(rotation_matrix(orientation(of))); };
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const BodyMotion& of = motion[static_cast<std::size_t>(b)];
+    for (const MeshShape& shape : model.bodies[static_cast<std::size_t>(b)].meshes)
+      add({{}, b, -1, shape.material, point_motion(of, shape.offset).position, axes(of)},
+          *model.meshes[static_cast<std::size_t>(shape.mesh)].surface);
+  }
+  std::size_t parent = model.bodies.size();
+  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
+    const Wall& wall = model.walls[static_cast<std::size_t>(w)];
+    if (!wall.has_pose()) continue;
+    const BodyMotion& of = motion[parent++];
+    if (wall.mesh >= 0)
+      add({{}, kGround, w, wall.material, of.position, axes(of)},
+          *model.meshes[static_cast<std::size_t>(wall.mesh)].surface);
+  }
+}
+
+// Completes the mesh with its surface and its images.
+void PosedMeshes::add(PosedMesh mesh, const SurfaceMesh& surface) {
+  const Vec3 periods = periods_of(space_);
+  mesh.mesh = surface.view(), mesh.point = in_periodic_box(space_, mesh.point);
+  mesh.middle = mesh.point + transposed_times(mesh.axes, Real(0.5) * (surface.box.min + surface.box.max));
+  mesh.spanned = spanned_by(surface.box, mesh.axes, periods);
+  mesh.shifts = image_shifts(periods - mesh.spanned);
+  meshes_.push_back(std::move(mesh));
+}
+
+bool PosedMeshes::is_clear(Vec3 p, Real radius, Real gap) const {
   const Vec3 q = in_periodic_box(space_, p);
   return std::ranges::all_of(meshes_,
-                             [&](const StartMesh& mesh) { return !(mesh.overlap(q, radius + gap) > 0); });
+                             [&](const PosedMesh& mesh) { return !(mesh.overlap(q, radius + gap) > 0); });
 }
 
 }  // namespace scree
