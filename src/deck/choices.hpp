@@ -298,12 +298,14 @@ inline constexpr auto kWords<GroupKind> = std::to_array<Word<GroupKind>>({{"list
                                                                           {"random", GroupKind::random},
                                                                           {"file", GroupKind::file}});
 
-enum class DistributionKind { constant, uniform, normal, table };
+enum class DistributionKind { constant, uniform, normal, lognormal, rosin_rammler, table };
 template <>
 inline constexpr auto kWords<DistributionKind> =
     std::to_array<Word<DistributionKind>>({{"constant", DistributionKind::constant},
                                            {"uniform", DistributionKind::uniform},
                                            {"normal", DistributionKind::normal},
+                                           {"lognormal", DistributionKind::lognormal},
+                                           {"rosin_rammler", DistributionKind::rosin_rammler},
                                            {"table", DistributionKind::table}});
 
 // The region in which an inserter's particles are born.
@@ -325,6 +327,18 @@ enum class BlockedPolicy {
 template <>
 inline constexpr auto kWords<BlockedPolicy> = std::to_array<Word<BlockedPolicy>>(
     {{"wait", BlockedPolicy::wait}, {"drop", BlockedPolicy::drop}, {"error", BlockedPolicy::error}});
+
+// What a distribution, or the shares of a mixture, count.
+enum class CountedBy { number, mass };
+template <>
+inline constexpr auto kWords<CountedBy> = std::to_array<Word<CountedBy>>({{"number", CountedBy::number},
+                                                                          {"mass", CountedBy::mass}});
+
+// How the components of a mixture follow each other: each as close to its share as possible, or at random.
+enum class MixtureShares { exact, drawn };
+template <>
+inline constexpr auto kWords<MixtureShares> =
+    std::to_array<Word<MixtureShares>>({{"exact", MixtureShares::exact}, {"drawn", MixtureShares::drawn}});
 
 // ---- ranks and devices ------------------------------------------------------------------------------------
 

@@ -189,6 +189,11 @@ const TableKeys& particle_keys();
 const TableKeys& inserter_keys();
 const TableKeys& time_function_keys();
 const TableKeys& distribution_keys();
+// Keys of one component of a mixture of particles, and those of a table that may have a mixture: the list
+// "mixture", how its shares are kept, and the keys of a component without a share, for a table whose
+// particles are of one kind. read_mixture() (model/builder/read_mixture.hpp) reads both forms.
+const TableKeys& mixture_keys();
+std::vector<Key> mixture_list_keys();
 
 // The values that a key accepts, for messages and the manual: "a number above 0 [s]". dimension: of the
 // domain, or 0 where it is not known.

@@ -151,6 +151,7 @@ const TableKeys& inserter_keys() {
         "kind"};
     add(all.keys, region_keys());
     add(all.keys, amount_keys());
+    add(all.keys, mixture_list_keys());
     add(all.keys, birth_keys());
     return all;
   }();

@@ -122,43 +122,4 @@ const TableKeys& particle_keys() {
   return keys;
 }
 
-const TableKeys& distribution_keys() {
-  using Kind = DistributionKind;
-  static const TableKeys keys{
-      "A positive quantity per particle: a number, or a table such as { kind = \"uniform\", min = 0.01, max "
-      "= 0.02 }.",
-      {choice<Kind>("kind").required().about(
-           "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min and "
-           "max. Table: one of values, with probabilities in proportion to weights."),
-       real("value", kQuantityUnit).only_for({Kind::constant}).above(0).required().about("Value."),
-       real("mean", kQuantityUnit)
-           .only_for({Kind::normal})
-           .above(0)
-           .required()
-           .about("Mean before truncation."),
-       real("sd", kQuantityUnit)
-           .only_for({Kind::normal})
-           .above(0)
-           .required()
-           .about("Standard deviation before truncation."),
-       real("min", kQuantityUnit)
-           .only_for({Kind::uniform, Kind::normal})
-           .above(0)
-           .required()
-           .about("Smallest."),
-       real("max", kQuantityUnit)
-           .only_for({Kind::uniform, Kind::normal})
-           .above(0)
-           .required()
-           .about("Largest."),
-       reals("values", kQuantityUnit).only_for({Kind::table}).above(0).required().about("Possible values."),
-       reals("weights", "")
-           .only_for({Kind::table})
-           .above(0)
-           .left_out("equal")
-           .about("Weight of each value.")},
-      "kind"};
-  return keys;
-}
-
 }  // namespace scree

@@ -9,6 +9,7 @@
 #include "base/mat3.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/builder/fill_region.hpp"
+#include "model/builder/read_mixture.hpp"
 #include "model/derived/connections.hpp"
 #include "model/derived/frames.hpp"
 #include "model/derived/mixture.hpp"
