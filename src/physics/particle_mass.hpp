@@ -18,6 +18,11 @@ SCREE_HD Real disc_mass(Real radius, Real thickness, Real density) {
   return density * thickness * std::numbers::pi_v<Real> * radius * radius;
 }
 
+// Volume of a sphere [m^3], in 2D the area of a disc [m^2]; radius [m].
+SCREE_HD Real solid_size(Real radius, int dimension) {
+  return dimension == 2 ? disc_mass(radius, 1, 1) : sphere_mass(radius, 1);
+}
+
 // Moment of inertia about the centre over m R^2, of a solid sphere (2D: disc). A hollow sphere has 2/3, a
 // ring 1.
 SCREE_HD Real solid_inertia_factor(int dimension) { return dimension == 2 ? Real(0.5) : Real(0.4); }

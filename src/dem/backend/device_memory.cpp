@@ -152,8 +152,10 @@ Sizes sizes_of(const Model& model) {
     sizes.groups = static_cast<double>(rows.groups.size());
     sizes.triangles = static_cast<double>(rows.triangles.size());
   }
-  if (equal) return sizes;
-  sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
+  if (!equal) sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
+  // Inserters' particles, as if all of them were on this rank.
+  const double born = static_cast<double>(model.particles.totals.count - model.particles.totals.at_start);
+  sizes.particles += born, sizes.items += born, sizes.slots += slots_per_particle(model) * born;
   return sizes;
 }
 

@@ -13,6 +13,7 @@
 #include "model/derived/connections.hpp"
 #include "model/derived/frames.hpp"
 #include "model/derived/mixture.hpp"
+#include "physics/particle_mass.hpp"
 
 namespace scree {
 
@@ -300,11 +301,6 @@ void declare(const Inserter& inserter, Model& model) {
 }
 
 }  // namespace
-
-Real solid_size(Real radius, int dimension) {
-  constexpr Real pi = std::numbers::pi_v<Real>;
-  return dimension == 2 ? pi * radius * radius : Real(4) / 3 * pi * radius * radius * radius;
-}
 
 void build_inserters(const DeckTable& deck, Model& model, const ModelNames& names, Log& log) {
   for (const DeckTable& table : deck.tables("inserters")) {

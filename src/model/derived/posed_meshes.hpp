@@ -19,8 +19,8 @@ struct PosedMesh {
   Mat3 axes;   // rows: its axes in the global frame
   // As in a run: along an axis on which the mesh is as long as the periodic domain it continues without end,
   // and spheres are taken relative to its middle; along other axes it has images.
-  Vec3 middle, spanned;      // [m]; spanned is 0 along the other axes
-  std::vector<Vec3> shifts;  // displacements of its images, zero for itself included [m]
+  Vec3 middle{}, spanned{};    // [m]; spanned is 0 along the other axes
+  std::vector<Vec3> shifts{};  // displacements of its images, zero for itself included [m]
 
   // Overlap with a sphere at p in the periodic box, images included [m]; 0: none. Where the centre is inside,
   // the radius plus its depth, which is searched up to one radius: at most the diameter.

@@ -74,6 +74,29 @@ std::string walls_text(const Model& model) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+std::string interval_text(const Inserter& inserter) {
+  return inserter.interval == 0 ? "after each step" : fmt::format("every {:.4g} s", inserter.interval);
+}
+
+// One line per inserter: its particles, and when they are born.
+std::string inserter_lines(const Model& model) {
+  std::string lines;
+  for (const Inserter& inserter : model.inserters) {
+    const Mixture& mixture = *inserter.mixture;
+    const Real due = inserter.schedule.due(model.time.end);
+    const std::string amount = inserter.amount == Amount::number
+                                   ? fmt::format("{:.0f} particles", std::floor(due))
+                               : inserter.amount == Amount::mass
+                                   ? fmt::format("{:.4g} kg", due)
+                                   : fmt::format("{:.4g} m^{} of particles", due, model.space.dimension);
+    lines += fmt::format(
+        "inserter       \"{}\": {} until time.end, of {:.4g} kg each on average, radius {}; born {}\n",
+        inserter.name, amount, mixture.mean_mass(),
+        range(mixture.smallest_radius(), mixture.largest_radius(), "m"), interval_text(inserter));
+  }
+  return lines;
+}
+
 std::string space_lines(const Model& model, int ranks) {
   const Space& space = model.space;
   const auto corner = [&](Vec3 p) {
@@ -85,10 +108,13 @@ std::string space_lines(const Model& model, int ranks) {
   lines += sides_line(space) + gravity_line(model.gravity);
   const ParticleTotals& particles = model.particles.totals;
   if (particles.count == 0) return lines + "particles      none\n";
-  lines += fmt::format("particles      {}{}, radius {}, mass {}\n", particles.count,
+  const std::int64_t born = particles.count - particles.at_start;
+  lines += fmt::format("particles      {}{}{}, radius {}, mass {}\n", particles.at_start,
+                       born == 0 ? "" : fmt::format(" and at most {} of inserters", born),
                        ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
                        range(particles.smallest_radius, particles.largest_radius, "m"),
                        range(particles.smallest_mass, particles.largest_mass, "kg"));
+  lines += inserter_lines(model);
   if (model.disc_thickness.largest == 0) return lines;
   return lines + fmt::format(
                      "thickness      {}, of discs whose mass follows from a density; assumed: 1 m, where "

@@ -16,7 +16,11 @@ BodyMotion start_of_carrier(const Model& model, int carrier) {
   if (carrier < std::ssize(model.bodies)) return start_motion(model.bodies[as_size(carrier)]);
   auto number = as_size(carrier) - model.bodies.size();
   for (const Wall& wall : model.walls)
-    if (wall.has_pose() && number-- == 0) return {.position = wall.point, .kind = BodyKind::spatial};
+    if (wall.has_pose() && number-- == 0) {
+      BodyMotion motion;
+      motion.position = wall.point, motion.kind = BodyKind::spatial;
+      return motion;
+    }
   return {};
 }
 
