@@ -227,8 +227,9 @@ TEST_CASE("distributions of a deck: what they count must be said, and limits mus
                        radius + "\n");
   };
   const std::string limits = ", min = 0.001, max = 0.01";
-  CHECK(contains(error("{ kind = \"lognormal\", median = 0.003, geometric_sd = 1.4" + limits + " }"),
-                 "particles.p.radius.by: missing; it must be one of \"number\", \"mass\""));
+  CHECK(contains(
+      error("{ kind = \"lognormal\", median = 0.003, geometric_sd = 1.4" + limits + " }"),
+      "particles.p.radius.by: missing; with kind = \"lognormal\" it must be one of \"number\", \"mass\""));
   CHECK(error("{ kind = \"lognormal\", by = \"mass\", median = 0.003, geometric_sd = 1.4" + limits + " }")
             .empty());
   CHECK(error("{ kind = \"rosin_rammler\", by = \"mass\", scale = 0.003, exponent = 2.5" + limits + " }")
