@@ -19,9 +19,8 @@ const TableKeys& distribution_keys() {
            .only_for({Kind::uniform, Kind::normal, Kind::lognormal, Kind::rosin_rammler, Kind::table})
            .required_for({Kind::lognormal, Kind::rosin_rammler})
            .left_out("number")
-           .about("What the distribution counts: the number of particles, or their mass, as sieves do. By "
-                  "mass, few particles are large: their number is in proportion to the mass over the mass "
-                  "of one."),
+           .about("What the distribution counts: particles, or their mass, as a sieve analysis does. The "
+                  "share of the number at a size is that of the mass divided by the mass of one particle."),
        real("value", kQuantityUnit).only_for({Kind::constant}).above(0).required().about("Value."),
        real("mean", kQuantityUnit)
            .only_for({Kind::normal})

@@ -137,7 +137,14 @@ class MaterialsTest(unittest.TestCase):
         for radius, sample in (({"kind": "uniform", "min": 0.5, "max": 1.5}, rng.uniform(0.5, 1.5, 400000)),
                                ({"kind": "normal", "mean": 1.0, "sd": 0.1, "min": 0.1, "max": 2.0},
                                 rng.normal(1.0, 0.1, 400000)),
-                               ({"kind": "table", "values": [1.0, 2.0], "weights": [3, 1]}, [1.0, 1.0, 1.0, 2.0])):
+                               ({"kind": "table", "values": [1.0, 2.0], "weights": [3, 1]}, [1.0, 1.0, 1.0, 2.0]),
+                               ({"kind": "table", "by": "mass", "values": [1.0, 2.0]}, [1.0] * 8 + [2.0]),
+                               ({"kind": "lognormal", "by": "number", "median": 1.0, "geometric_sd": 1.2, "min": 0.1,
+                                 "max": 10.0}, np.exp(rng.normal(0.0, np.log(1.2), 400000))),
+                               ({"kind": "lognormal", "by": "mass", "median": 1.0, "geometric_sd": 1.2, "min": 0.1,
+                                 "max": 10.0}, np.exp(rng.normal(-3 * np.log(1.2) ** 2, np.log(1.2), 400000))),
+                               ({"kind": "rosin_rammler", "by": "number", "scale": 1.0, "exponent": 3.0, "min": 0.001,
+                                 "max": 10.0}, rng.weibull(3.0, 400000))):
             expected = np.mean(np.array(sample) ** 3) ** (1 / 3)
             self.assertAlmostEqual(materials.mean_radius(radius, "deck") / expected, 1.0, delta=ONE_PERCENT)
         self.assertEqual(materials.mean_radius(0.25, "deck"), 0.25)

@@ -37,18 +37,40 @@ def mean_radius(radius: Any, name: str) -> float:
     """Radius of a particle of the mean volume [m]."""
     if not isinstance(radius, Mapping):
         return float(radius)
-    kind = radius.get("kind")
+    kind, by_mass = radius.get("kind"), radius.get("by") == "mass"
     if kind == "constant":
         return float(radius["value"])
+    if kind == "table":
+        values = np.array(radius["values"])
+        weights = np.array(radius.get("weights", [1.0] * len(values)))
+        return float(np.cbrt(np.average(values**3, weights=weights / values**3 if by_mass else weights)))
+    if kind in ("lognormal", "rosin_rammler") or (by_mass and kind in ("uniform", "normal")):
+        return mean_of_density(radius, kind, by_mass)
     if kind == "uniform":
         low, high = radius["min"], radius["max"]
         return float(np.cbrt(0.25 * (high**2 + low**2) * (high + low)))
     if kind == "normal":
         return float(np.cbrt(radius["mean"] ** 3 + 3 * radius["mean"] * radius["sd"] ** 2))
-    if kind == "table":
-        weights = radius.get("weights", [1.0] * len(radius["values"]))
-        return float(np.cbrt(np.average(np.array(radius["values"]) ** 3, weights=weights)))
-    raise ScreeError(f"{name}: particles: radius: kind = {kind!r}: must be constant, uniform, normal or table")
+    raise ScreeError(f"{name}: particles: radius: kind = {kind!r}: must be constant, uniform, normal, lognormal, "
+                     "rosin_rammler or table")
+
+
+def mean_of_density(radius: Mapping[str, Any], kind: str, by_mass: bool) -> float:
+    """mean_radius() of a truncated distribution by its density, over the logarithm of the radius."""
+    log = np.linspace(np.log(radius["min"]), np.log(radius["max"]), 20001)
+    x = np.exp(log)
+    if kind == "rosin_rammler":
+        power = radius["exponent"] * (log - np.log(radius["scale"]))
+        exponent = power - np.exp(np.minimum(power, 700.0))
+    elif kind == "lognormal":
+        exponent = -0.5 * ((log - np.log(radius["median"])) / np.log(radius["geometric_sd"])) ** 2
+    elif kind == "normal":
+        exponent = log - 0.5 * ((x - radius["mean"]) / radius["sd"]) ** 2
+    else:
+        exponent = log
+    density = np.exp(exponent - np.max(exponent)) / (x**3 if by_mass else 1.0)
+    density[[0, -1]] *= 0.5  # trapezoidal rule
+    return float(np.cbrt(np.sum(density * x**3) / np.sum(density)))
 
 
 def own_pair(file: Deck, material: Any, several: bool) -> Any:

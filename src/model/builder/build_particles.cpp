@@ -9,6 +9,7 @@
 #include "deck/choices.hpp"
 #include "model/builder/build_parts.hpp"
 #include "model/builder/fill_region.hpp"
+#include "model/builder/mean_mass.hpp"
 #include "model/builder/particle_file.hpp"
 #include "model/checks/plausibility.hpp"
 #include "model/derived/connections.hpp"
@@ -20,24 +21,26 @@ namespace scree {
 
 namespace {
 
-// One group while it is built: this rank's part of it. Random numbers are drawn in the order radius, mass,
-// position, velocity, for all particles of the group on every rank, so that a particle does not depend on its
-// owner.
+// One group while it is built: this rank's part of it. The random properties of a particle depend on the
+// group's seed and the particle's index within the group, not on its owner.
 class Group {
  public:
   Group(const DeckTable& table, const ModelNames& names, const Model& model)
       : table_(table),
         model_(model),
         names_(names),
-        random_(static_cast<std::uint64_t>(table.integer("seed"))),
+        seed_(static_cast<std::uint64_t>(table.integer("seed"))),
         kind_(table.choice<GroupKind>("kind")),
         material_(find_material(names, table, "material")),
         density_(names.densities[static_cast<std::size_t>(material_)]),
         count_(count_of()) {}
 
   std::int64_t count() const { return count_; }
-  std::optional<std::string> name() const {
-    return table_.has("name") ? std::optional(table_.text("name")) : std::nullopt;
+  std::string name_or(std::int64_t number) const {
+    return table_.has("name") ? table_.text("name") : std::to_string(number);
+  }
+  std::optional<MeanMass> expected_mass() const {
+    return has_column("mass") ? std::nullopt : mean_mass(table_, density_, model_.space.dimension);
   }
   bool is_random() const { return kind_ == GroupKind::random; }
   void note_thickness(DiscThickness& discs) const;
@@ -51,7 +54,11 @@ class Group {
   void place_regular();
   void place_row();
   void place_lattice();
-  void place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii);
+  void place_random(const std::vector<StartItem>& placed);
+  // Values of the quantity `key` of the particles `part`. mass_power: as of Distribution.
+  std::vector<Real> drawn(const char* key, RandomStream stream, int mass_power, IdRange part) const {
+    return draw(read_distribution(table_.table(key), mass_power), part, seed_, stream);
+  }
   std::vector<Real> radii();
   std::vector<Real> masses(const std::vector<Real>& radius);
   std::vector<Real> masses_from_density(const std::vector<Real>& radius);
@@ -70,7 +77,7 @@ class Group {
   const DeckTable& table_;
   const Model& model_;
   const ModelNames& names_;
-  RandomNumbers random_;
+  std::uint64_t seed_;
   GroupKind kind_;
   int material_;
   Real density_;
@@ -126,11 +133,10 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   part_ = part;
   if (file_) columns_ = file_->read(part);
   if (!is_random()) place_regular();
-  const RandomNumbers before_radii = random_;
   const std::vector<Real> radius = radii(), mass = masses(radius);
   for (const Real r : radius) check_normal(table_, has_column("radius") ? "file" : "radius", r);
   for (const Real m : mass) check_normal(table_, mass_key(), m);
-  if (is_random()) place_random(placed, before_radii);
+  if (is_random()) place_random(placed);
   const std::vector<Vec3> velocity = velocities();
   const std::size_t before = particles.position.size();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
@@ -207,7 +213,7 @@ void Group::place_lattice() {
 }
 
 // Each position depends on all earlier ones: every rank computes all of them and keeps its part.
-void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
+void Group::place_random(const std::vector<StartItem>& placed) {
   const FillRegion region(table_, model_, names_);
   PackingBox box = region.packing(table_.real("gap"), table_.integer("tries"));
   const PosedMeshes meshes(model_);
@@ -219,11 +225,11 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
     table_.fail("count",
                 fmt::format("the {} has no room in the space that is free of walls, meshes and bodies",
                             region.name()));
-  const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
+  const std::vector<Real> radius = drawn("radius", RandomStream::radius, model_.space.dimension, {0, count_});
   if (const std::string trouble = packing_trouble(box, radius, region.name()); !trouble.empty())
     table_.fail("count", trouble);
   const auto is_free = [&](Vec3 p, Real r) { return region.holds(p, r) && clear(p, r, box.gap); };
-  const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, random_);
+  const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, seed_);
   if (places.size() < radius.size())
     table_.fail("count",
                 fmt::format("only {} particles found a position in {} tries each in the {}; a larger {}, "
@@ -236,9 +242,8 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
 std::vector<Vec3> Group::vectors_of(const std::string& prefix) const {
   const std::vector<Real>&x = columns_.at(prefix + "x"), &y = columns_.at(prefix + "y");
   std::vector<Vec3> vectors(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
+  for (std::size_t i = 0; i < x.size(); ++i)
     vectors[i] = {x[i], y[i], model_.space.dimension == 3 ? columns_.at(prefix + "z")[i] : 0};
-  }
   return vectors;
 }
 
@@ -247,9 +252,8 @@ std::vector<Real> Group::radii() {
     if (table_.has("radius")) table_.fail("radius", "not used: the file has a column radius");
     return columns_.at("radius");
   }
-  if (!table_.has("radius"))
-    table_.fail("radius", "missing; it must be a number above 0 [m] or a distribution");
-  return draw(table_.table("radius"), count_, part_, random_);
+  if (!table_.has("radius")) table_.fail("radius", "missing; it must be a number [m] or a distribution");
+  return drawn("radius", RandomStream::radius, model_.space.dimension, part_);
 }
 
 std::vector<Real> Group::masses(const std::vector<Real>& radius) {
@@ -259,33 +263,31 @@ std::vector<Real> Group::masses(const std::vector<Real>& radius) {
       if (table_.has(key)) table_.fail(key, "not used: the file has a column mass");
     return columns_.at("mass");
   }
-  return table_.has("mass") ? draw(table_.table("mass"), count_, part_, random_)
-                            : masses_from_density(radius);
+  return table_.has("mass") ? drawn("mass", RandomStream::mass, 1, part_) : masses_from_density(radius);
 }
 
 std::vector<Real> Group::masses_from_density(const std::vector<Real>& radius) {
   if (!table_.has("density") && density_ == 0)
     table_.fail("mass", "missing; the group needs mass or density, or a material with a density");
-  std::vector<Real> mass = table_.has("density") ? draw(table_.table("density"), count_, part_, random_)
+  std::vector<Real> mass = table_.has("density") ? drawn("density", RandomStream::density, 1, part_)
                                                  : std::vector<Real>(radius.size(), density_);
   const Real thickness = table_.real("thickness");
-  for (std::size_t i = 0; i < radius.size(); ++i) {
+  for (std::size_t i = 0; i < radius.size(); ++i)
     mass[i] = model_.space.dimension == 3 ? sphere_mass(radius[i], mass[i])
                                           : disc_mass(radius[i], thickness, mass[i]);
-  }
   return mass;
 }
 
 std::vector<Vec3> Group::velocities() {
-  std::vector<Vec3> velocity =
-      has_column("vx") ? vectors_of("v") : std::vector<Vec3>(static_cast<std::size_t>(part_.size()));
-  const Vec3 common = table_.vector("velocity");
-  for (Vec3& v : velocity) v += common;
+  std::vector<Vec3> velocity(static_cast<std::size_t>(part_.size()));
+  if (has_column("vx")) velocity = vectors_of("v");
+  for (Vec3& v : velocity) v += table_.vector("velocity");
   const Real bound = table_.real("random_velocity");
-  for (std::int64_t i = 0; bound > 0 && i < count_; ++i) {
-    const Real x = random_.uniform(-bound, bound), y = random_.uniform(-bound, bound);
-    const Vec3 v{x, y, model_.space.dimension == 3 ? random_.uniform(-bound, bound) : 0};
-    if (i >= part_.first && i < part_.last) velocity[static_cast<std::size_t>(i - part_.first)] += v;
+  for (std::int64_t i = part_.first; bound > 0 && i < part_.last; ++i) {
+    CounterRandom random(seed_, RandomStream::velocity, i);
+    const Real x = random.uniform(-bound, bound), y = random.uniform(-bound, bound);
+    const Real z = model_.space.dimension == 3 ? random.uniform(-bound, bound) : 0;
+    velocity[static_cast<std::size_t>(i - part_.first)] += {x, y, z};
   }
   return velocity;
 }
@@ -389,7 +391,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
     share.collectively(
         [&] { group.append_to(model.particles, part_of_group(own, first, group.count()), placed); });
     std::vector<ParticleGroup>& named = model.particles.groups;
-    named.push_back({group.name().value_or(std::to_string(named.size())), first});
+    named.push_back({group.name_or(std::ssize(named)), first, group.expected_mass()});
     first += group.count();
   }
   count_particles(model.particles, model.contact.materials(), share);

@@ -7,14 +7,14 @@
 #include "deck/choices.hpp"
 #include "mesh/facets.hpp"
 #include "model/builder/particle_file.hpp"
-#include "model/derived/generators.hpp"
+#include "model/derived/distribution.hpp"
 
 namespace scree {
 
 namespace {
 
 Real smallest_of(const DeckTable& group, int dimension) {
-  if (group.has("radius")) return std::ranges::min(distribution_values(group.table("radius")));
+  if (group.has("radius")) return read_distribution(group.table("radius"), dimension).smallest();
   if (group.choice<GroupKind>("kind") != GroupKind::file) return kInfinity;
   const ParticleFile file(group.text("file"), dimension);
   if (!file.has("radius") || file.count() == 0) return kInfinity;

@@ -14,7 +14,7 @@
 #include "model/checks/limits.hpp"
 #include "model/checks/mesh_plausibility.hpp"
 #include "model/derived/connections.hpp"
-#include "model/derived/generators.hpp"
+#include "model/derived/distribution.hpp"
 #include "model/derived/touching.hpp"
 #include "physics/plausible.hpp"
 
@@ -269,9 +269,11 @@ std::string odd_density(const DeckTable& deck) {
     if (table.has("density"))
       if (const std::string text = finding(table, table.real("density")); !text.empty()) return text;
   for (const DeckTable& table : deck.tables("particles"))
-    if (table.has("density"))
-      for (const Real density : distribution_values(table.table("density")))
+    if (table.has("density")) {
+      const Distribution densities = read_distribution(table.table("density"), 1);
+      for (const Real density : {densities.smallest(), densities.largest()})
         if (const std::string text = finding(table, density); !text.empty()) return text;
+    }
   return "";
 }
 

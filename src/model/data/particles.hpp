@@ -1,12 +1,14 @@
 // Initial state of the particles.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "deck/choices.hpp"
 #include "model/data/share.hpp"
 #include "physics/particle_mass.hpp"
 
@@ -30,10 +32,19 @@ struct ParticleTotals {
   std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 
+// Mean mass of the particles of a group with different sizes, by number, as it follows from their
+// distribution [kg].
+struct MeanMass {
+  CountedBy by = CountedBy::number;  // what the distribution of the deck counts
+  Real mass = 0;
+  Real of_other_reading = 0;  // if it counted the other
+};
+
 // A group of the deck, whose ids extend to the first id of the next group, or an inserter.
 struct ParticleGroup {
   std::string name;       // its number where the deck gives no name
   GlobalId first_id = 0;  // of its first particle
+  std::optional<MeanMass> mean_mass{};
 };
 
 // Structure of arrays with one entry per particle of this rank: global ids from first_id on. The global id is

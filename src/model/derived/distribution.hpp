@@ -10,7 +10,7 @@
 
 namespace scree {
 
-// A distribution of x > 0, truncated to [min, max]. All lengths in the quantity's unit.
+// A distribution of x > 0, truncated to [min, max]. Values are in the quantity's unit.
 struct DistributionParameters {
   DistributionKind kind = DistributionKind::constant;
   CountedBy by = CountedBy::number;  // what the density of the distribution counts

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <stdexcept>
 
-#include "deck/choices.hpp"
 #include "model/derived/point_bins.hpp"
 #include "physics/random_packing.hpp"
 
@@ -16,7 +14,7 @@ namespace scree {
 
 namespace {
 
-Vec3 random_position(const PackingBox& box, Real radius, RandomNumbers& random) {
+Vec3 random_position(const PackingBox& box, Real radius, CounterRandom& random) {
   if (box.drawn) return box.drawn->draw(random, radius);
   const Real x = random.uniform(box.min.x + radius, box.max.x - radius);
   const Real y = random.uniform(box.min.y + radius, box.max.y - radius);
@@ -55,74 +53,6 @@ Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, R
   return failures;
 }
 
-void check_distribution(const DeckTable& table) {
-  const auto kind = table.choice<DistributionKind>("kind");
-  if ((kind == DistributionKind::uniform || kind == DistributionKind::normal) &&
-      table.real("min") > table.real("max")) {
-    table.fail("max", fmt::format("must be at least min = {}", table.real("min")));
-  }
-  if (kind != DistributionKind::table) return;
-  const std::size_t count = table.reals("values").size();
-  if (count == 0) table.fail("values", "must have an entry");
-  if (table.has("weights") && table.reals("weights").size() != count) {
-    table.fail("weights", fmt::format("must have {} entries, as values", count));
-  }
-}
-
-// Parameters of a distribution, read once because many values may be drawn.
-class Distribution {
- public:
-  explicit Distribution(const DeckTable& table)
-      : table_(table), kind_(table.choice<DistributionKind>("kind")) {
-    check_distribution(table);
-    if (kind_ == DistributionKind::constant) constant_ = table.real("value");
-    if (kind_ == DistributionKind::uniform || kind_ == DistributionKind::normal)
-      min_ = table.real("min"), max_ = table.real("max");
-    if (kind_ == DistributionKind::normal) mean_ = table.real("mean"), sd_ = table.real("sd");
-    if (kind_ != DistributionKind::table) return;
-    values_ = table.reals("values");
-    weights_ = table.has("weights") ? table.reals("weights") : std::vector<Real>(values_.size(), 1);
-  }
-  bool is_constant() const { return kind_ == DistributionKind::constant; }
-  Real draw(RandomNumbers& random) const {
-    switch (kind_) {
-      case DistributionKind::constant:
-        return constant_;
-      case DistributionKind::uniform:
-        return random.uniform(min_, max_);
-      case DistributionKind::normal:
-        return draw_normal(random);
-      case DistributionKind::table:
-        return draw_table(random);
-    }
-    throw std::logic_error("a distribution of no kind");
-  }
-
- private:
-  Real draw_normal(RandomNumbers& random) const {
-    // A window with a negligible probability is a mistake in the deck.
-    constexpr int kMostDraws = 100000;
-    for (int i = 0; i < kMostDraws; ++i) {
-      const Real value = mean_ + sd_ * random.normal();
-      if (value >= min_ && value <= max_) return value;
-    }
-    table_.fail("mean", fmt::format("{} draws found no value from {} to {}", kMostDraws, min_, max_));
-  }
-  Real draw_table(RandomNumbers& random) const {
-    Real rest = random.uniform() * std::accumulate(weights_.begin(), weights_.end(), Real(0));
-    for (std::size_t i = 0; i + 1 < values_.size(); ++i) {
-      rest -= weights_[i];
-      if (rest < 0) return values_[i];
-    }
-    return values_.back();
-  }
-
-  const DeckTable& table_;
-  DistributionKind kind_;
-  Real constant_ = 0, min_ = 0, max_ = 0, mean_ = 0, sd_ = 0;
-  std::vector<Real> values_, weights_;
-};
-
 }  // namespace
 
 Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size, std::int64_t i) {
@@ -134,7 +64,7 @@ Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 
 
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
                                  const std::vector<StartItem>& obstacles, const IsFree& is_free,
-                                 RandomNumbers& random) {
+                                 std::uint64_t seed) {
   const Real own = radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end());
   Real largest = own;
   for (const StartItem& item : obstacles) largest = std::max(largest, item.radius);
@@ -150,6 +80,7 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
   std::vector<Vec3> positions(radius.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     const Real r = radius[order[n]];
+    CounterRandom random(seed, RandomStream::position, static_cast<std::int64_t>(order[n]));
     bool found = false;
     for (std::int64_t attempt = 0; static_cast<Real>(attempt) < tries && !found && fits(box, r); ++attempt) {
       positions[order[n]] = random_position(box, r, random);
@@ -188,31 +119,14 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, con
       region.substr(0, region.find(' ')));
 }
 
-std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part, RandomNumbers& random) {
-  const Distribution distribution(table);
-  std::vector<Real> values(static_cast<std::size_t>(part.size()));
-  if (distribution.is_constant()) {
-    std::fill(values.begin(), values.end(), distribution.draw(random));
-    return values;
-  }
-  for (std::int64_t i = 0; i < count; ++i) {
-    const Real value = distribution.draw(random);
-    if (i >= part.first && i < part.last) values[static_cast<std::size_t>(i - part.first)] = value;
-  }
+std::vector<Real> draw(const Distribution& distribution, IdRange part, std::uint64_t seed,
+                       RandomStream stream) {
+  std::vector<Real> values(static_cast<std::size_t>(part.size()), distribution.smallest());
+  if (distribution.is_constant()) return values;
+  for (std::int64_t i = part.first; i < part.last; ++i)
+    values[static_cast<std::size_t>(i - part.first)] =
+        distribution.quantile(CounterRandom(seed, stream, i).uniform());
   return values;
-}
-
-std::vector<Real> distribution_values(const DeckTable& distribution) {
-  switch (distribution.choice<DistributionKind>("kind")) {
-    case DistributionKind::constant:
-      return {distribution.real("value")};
-    case DistributionKind::uniform:
-    case DistributionKind::normal:
-      return {distribution.real("min"), distribution.real("max")};
-    case DistributionKind::table:
-      return distribution.reals("values");
-  }
-  throw std::logic_error("a distribution of no kind");
 }
 
 }  // namespace scree

@@ -15,12 +15,12 @@ namespace scree {
 
 struct MixtureComponent {
   int material = 0;
-  Distribution radius;                  // [m]
-  std::optional<Distribution> mass;     // [kg]; without it density
-  std::optional<Distribution> density;  // [kg/m^3]
-  Real thickness = 1;                   // of discs, for density [m]
-  Real inertia_factor = 0;              // I / (m R^2)
-  Real share = 1;                       // relative to the other components, > 0
+  Distribution radius;                    // [m]
+  std::optional<Distribution> mass{};     // [kg]; without it density
+  std::optional<Distribution> density{};  // [kg/m^3]
+  Real thickness = 1;                     // of discs, for density [m]
+  Real inertia_factor = 0;                // I / (m R^2)
+  Real share = 1;                         // relative to the other components, > 0
 };
 
 struct MixtureOptions {

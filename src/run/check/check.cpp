@@ -97,6 +97,19 @@ std::string inserter_lines(const Model& model) {
   return lines;
 }
 
+// Groups with different sizes: a distribution that is meant by mass and read by number has other particles.
+std::string mean_mass_lines(const std::vector<ParticleGroup>& groups) {
+  std::string lines;
+  for (const ParticleGroup& group : groups) {
+    if (!group.mean_mass) continue;
+    const MeanMass& mean = *group.mean_mass;
+    const CountedBy other = mean.by == CountedBy::mass ? CountedBy::number : CountedBy::mass;
+    lines += fmt::format("sizes          \"{}\": mean mass {:.4g} kg, by {}; by {} it would be {:.4g} kg\n",
+                         group.name, mean.mass, word_of(mean.by), word_of(other), mean.of_other_reading);
+  }
+  return lines;
+}
+
 std::string space_lines(const Model& model, int ranks) {
   const Space& space = model.space;
   const auto corner = [&](Vec3 p) {
@@ -115,6 +128,7 @@ std::string space_lines(const Model& model, int ranks) {
                        range(particles.smallest_radius, particles.largest_radius, "m"),
                        range(particles.smallest_mass, particles.largest_mass, "kg"));
   lines += inserter_lines(model);
+  lines += mean_mass_lines(model.particles.groups);
   if (model.disc_thickness.largest == 0) return lines;
   return lines + fmt::format(
                      "thickness      {}, of discs whose mass follows from a density; assumed: 1 m, where "

@@ -116,13 +116,6 @@ TEST_CASE("random packing: same seed, same particles; other seed, others; a gap 
                 .particles) >= 0.004);
 }
 
-TEST_CASE("random numbers are those of the standard's generator, on every platform") {
-  // The standard fixes the 10000th number of a default seeded std::mt19937_64: 9981545732273789042.
-  RandomNumbers random(5489u);
-  for (int i = 1; i < 10000; ++i) random.uniform();
-  CHECK(random.uniform() == static_cast<Real>(9981545732273789042u >> 11) * 0x1p-53);
-}
-
 TEST_CASE("random packing keeps clear of bodies and of particles before it") {
   const std::string text = deck_2d(R"([[bodies]]
 name = "b"
@@ -210,7 +203,7 @@ TEST_CASE("distributions") {
                  "must have 1 entries, as values"));
   CHECK(contains(
       input_error([&] { radii("{ kind = \"normal\", mean = 1.0, sd = 1e-3, min = 0.001, max = 0.002 }"); }),
-      "draws found no value from 0.001 to 0.002"));
+      "of the distribution is from min to max = 0.002"));
 }
 
 TEST_CASE("masses: given, from density, from the material") {
