@@ -108,15 +108,17 @@ void CpuList::sort_cells(Real skin) {
   cells_ = ranks.alone() ? builder_.cells(skin, particles)
                          : builder_.cells(skin, particles, decomposition_.box(ranks.rank(), items_.subdomain),
                                           store.owned);
-  const CellOrder order(cells_.own);
-  const Index outside = cells_.own.count();
+  const CellGrid finest = builder_.finest_cells(cells_, skin, store.owned);
+  const CellOrder order(finest);
+  const Index outside = finest.count();
   std::vector<Index> cell(store.owned), start(outside + 2, 0), from(store.owned);
   store.active = 0;
   for (Index i = 0; i < store.owned; ++i) {
-    const CellIndex c = cells_.cell_index(xyz(store.position[i]));
+    const Vec3 p = xyz(store.position[i]);
     // A particle without a cell is outside the domain; whether that is an error is decided at the end of the
     // step.
-    cell[i] = store.drifting[i] || c.x < 0 ? outside : order(c);
+    const bool searched = !store.drifting[i] && cells_.space.cell_index(p).x >= 0;
+    cell[i] = searched ? order(finest.nearest_cell(p)) : outside;
     store.active += cell[i] != outside;
     ++start[cell[i] + 1];
   }
