@@ -132,9 +132,9 @@ void CpuList::lay_out_items(Real skin) {
   ItemLayout& layout = items_.layout;
   Halo& halo = items_.halo;
   layout.owned = store.owned, layout.active = store.active;
-  const Real width = builder_.cutoff(skin);
   halo.exchange(items_.ranks, decomposition_, items_.subdomain,
-                {store.position.data(), static_cast<std::size_t>(store.active)}, width);
+                {store.position.data(), static_cast<std::size_t>(store.active)}, builder_.levels(),
+                builder_.level_space(builder_.search_margin(skin)));
   layout.items = countable(static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()),
                            kTooManyItems);
   store.resize_items(layout.items);
