@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/box.hpp"
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
@@ -53,6 +54,19 @@ struct CellGrid {
     return index(c.x, c.y, c.z);
   }
 };
+
+// A range of cells; upper is included.
+struct CellRange {
+  CellIndex lower, upper;
+};
+// The cells with all points that are within `range` of p along each axis.
+SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real range) {
+  return {grid.nearest_cell(p - Vec3{range, range, range}), grid.nearest_cell(p + Vec3{range, range, range})};
+}
+// The cells of a box.
+inline CellRange cells_near(const CellGrid& grid, const Box& box) {
+  return {grid.nearest_cell(box.min), grid.nearest_cell(box.max)};
+}
 
 // A grid over [min, max] with a margin of one cell on every side for halo copies and body shapes. Cells are
 // at least min_cell wide [m] and at most max_cells in number: a large, sparsely filled domain gets larger

@@ -51,6 +51,9 @@ struct HaloPositionItem {
   }
 };
 
+struct SizeLevels;
+struct LevelSpace;
+
 // The ghosts of a rank, and their updates. Ghosts follow the owned items: first the images of this rank's own
 // particles, then the ghosts from each neighbour, contiguous per neighbour.
 class Halo {
@@ -60,6 +63,11 @@ class Halo {
   // [m]. Collective.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 std::span<const Vec4> position, Real width);
+  // The same with the ghosts that rows need of particles of many sizes (x, y, z, radius), in two rounds.
+  // First particles within reach of the larger and equal ones of their level become ghosts, then the smaller
+  // ones that come near a ghost of a higher level. space: of the domain.
+  void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
+                std::span<const Vec4> position, const SizeLevels& levels, const LevelSpace& space);
 
   Index size() const { return as_index(images_.size()); }
   // Number of entries sent per update, and of ranks that receive some.
@@ -79,7 +87,10 @@ class Halo {
                      Index first_ghost) const;
 
  private:
-  void collect_ghosts(std::span<const Vec4> position);
+  // Ghosts for this rank itself, then for each neighbour.
+  using GhostLists = std::vector<std::vector<Ghost>>;
+  void set_ghosts(const GhostLists& ghosts);
+  std::vector<Vec4> ghost_positions(std::span<const Vec4> position) const;
 
   HaloPlan plan_;
   std::vector<Ghost> own_, sent_;

@@ -109,15 +109,17 @@ void CpuList::sort_cells(Real skin) {
   cells_ = ranks.alone() ? builder_.cells(skin, particles)
                          : builder_.cells(skin, particles, decomposition_.box(ranks.rank(), items_.subdomain),
                                           store.owned);
-  const CellOrder order(cells_.own);
-  const Index outside = cells_.own.count();
+  const CellGrid finest = builder_.finest_cells(cells_, skin, store.owned);
+  const CellOrder order(finest);
+  const Index outside = finest.count();
   std::vector<Index> cell(store.owned), start(outside + 2, 0), from(store.owned);
   store.active = 0;
   for (Index i = 0; i < store.owned; ++i) {
-    const CellIndex c = cells_.cell_index(xyz(store.position[i]));
+    const Vec3 p = xyz(store.position[i]);
     // A particle without a cell is outside the domain; whether that is an error is decided at the end of the
     // step.
-    cell[i] = store.drifting[i] || c.x < 0 ? outside : order(c);
+    const bool searched = !store.drifting[i] && cells_.space.cell_index(p).x >= 0;
+    cell[i] = searched ? order(finest.nearest_cell(p)) : outside;
     store.active += cell[i] != outside;
     ++start[cell[i] + 1];
   }
@@ -131,9 +133,9 @@ void CpuList::lay_out_items(Real skin) {
   ItemLayout& layout = items_.layout;
   Halo& halo = items_.halo;
   layout.owned = store.owned, layout.active = store.active;
-  const Real width = builder_.cutoff(skin);
   halo.exchange(items_.ranks, decomposition_, items_.subdomain,
-                {store.position.data(), static_cast<std::size_t>(store.active)}, width);
+                {store.position.data(), static_cast<std::size_t>(store.active)}, builder_.levels(),
+                builder_.level_space(builder_.search_margin(skin)));
   layout.items = countable(static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()),
                            kTooManyItems);
   store.resize_items(layout.items);

@@ -11,6 +11,7 @@
 #include "dem/surface_contact/wall_items.hpp"
 #include "model/derived/point_bins.hpp"
 #include "partition/halo_plan.hpp"
+#include "partition/level_grids.hpp"
 
 namespace scree {
 namespace {
@@ -112,12 +113,11 @@ void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std
   }
   const auto n = static_cast<Index>(position.size());
   const Real beyond_touch = skin + model_.contact.interaction_range;
-  const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + beyond_touch, 4 * n + 64);
-  std::vector<Index> start(as_size(grid.count()) + 1), items(position.size());
-  for (const Vec4& p : position) ++start[as_size(grid.nearest(xyz(p))) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  for (Index i = 0; i < n; ++i) items[next[grid.nearest(xyz(position[i]))]++] = i;
+  LevelCells cells;
+  cells.levels = {{make_cell_grid(min, max, 3, 2 * largest + beyond_touch, 4 * n + 64), 0, n, largest}};
+  std::vector<Index> cell_of;
+  for (const Vec4& p : position) cell_of.push_back(cells.levels.front().nearest(xyz(p)));
+  cells.sort(cell_of);
   const auto may_touch = [&](Index i, Index s) {
     if (corners_.has(shapes[i])) return surfaces_.at(s).kind == SurfaceKind::plane;
     return surfaces_.at(s).kind != SurfaceKind::sphere &&
@@ -126,7 +126,7 @@ void BodyContacts::find_surfaces(const SurfacePoses& poses, Real skin, const std
   const auto stored_contacts = [&](Index i, Index surface) {
     return packed_.contacts_with(shapes[i], surface);
   };
-  build_rows({grid, start, items, position, n, largest}, n,
+  build_rows({cells, position, n}, n,
              {surfaces_, planes_, poses, period_, beyond_touch, stored_contacts, may_touch}, rows);
 }
 

@@ -12,7 +12,7 @@
 #include "dem/host/cpu_history.hpp"
 #include "dem/host/cpu_surfaces.hpp"
 #include "dem/laws/contact_kernels.hpp"
-#include "dem/search/neighbor_list.hpp"
+#include "dem/search/list_rows.hpp"
 #include "dem/surface_contact/body_items.hpp"
 #include "dem/surface_contact/body_pairs.hpp"
 #include "dem/surfaces/corner_set.hpp"

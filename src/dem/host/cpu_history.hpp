@@ -9,7 +9,7 @@
 #include "dem/history/keyed_rows.hpp"
 #include "dem/history/packed_history.hpp"
 #include "dem/particles/particle_store.hpp"
-#include "dem/search/neighbor_list.hpp"
+#include "dem/search/list_rows.hpp"
 #include "dem/surfaces/surfaces.hpp"
 
 namespace scree {

@@ -7,34 +7,19 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/particles/particle_store.hpp"
-#include "dem/search/surface_rows.hpp"
+#include "dem/search/list_rows.hpp"
 #include "model/data/model.hpp"
-#include "partition/cell_grid.hpp"
 #include "partition/decomposition.hpp"
-#include "partition/halo.hpp"
+#include "partition/level_grids.hpp"
 
 namespace scree {
 
-// Row i holds every item that can touch particle i before the list expires, and the surfaces near it. Rows of
-// particles outside the search are empty.
-struct NeighborList {
-  std::vector<Index> offsets, neighbors;  // [owned + 1], [entries]
-  SurfaceRows surfaces;
-  Real skin = 0;  // search distance beyond contact [m]
-};
-
-// Layout of the items in the store: owned particles, of which the first `active` are in the search, then
-// ghosts.
-struct ItemLayout {
-  Index owned = 0, active = 0, items = 0;
-};
-
-// Cells that items are sorted into.
+// Cells as wide as the largest particle's search distance.
 struct SearchCells {
   CellGrid space;  // items in one of its cells are searched, for any number of ranks
   CellGrid own;    // cells over the box of this rank; the same with one rank
   bool same = true;
-  DomainBox box{};       // of this rank, unless same
+  DomainBox box{};       // of this rank
   Real list_radius = 0;  // of the list beyond the box [m]
 
   // Cell index in `own`; x is -1 for items that are not searched.
@@ -65,11 +50,16 @@ class NeighborBuilder {
   SearchCells cells(Real skin, std::int64_t particles) const;
   SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
   // Largest distance of centres in the list: largest diameter, interaction range and skin [m].
-  Real cutoff(Real skin) const { return 2 * largest_radius_ + search_margin(skin); }
+  Real cutoff(Real skin) const { return 2 * largest_radius() + search_margin(skin); }
   // Search distance beyond touch [m].
   Real search_margin(Real skin) const { return skin + model_.contact.interaction_range; }
   // Largest radius of a particle [m].
-  Real largest_radius() const { return largest_radius_; }
+  Real largest_radius() const { return levels_.largest(); }
+  // Levels of the particles' radii, and the domain for a search up to `margin` beyond touch [m].
+  const SizeLevels& levels() const { return levels_; }
+  LevelSpace level_space(Real margin) const { return {domain_, model_.space.dimension, margin}; }
+  // The cells by which `items` particles of this rank are best ordered in memory: those of the smallest.
+  CellGrid finest_cells(const SearchCells& cells, Real skin, Index items) const;
   // Fills the list from the positions of all items and the poses of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
              const ListedSurfaces& surfaces, Real skin, NeighborList& list);
@@ -78,28 +68,32 @@ class NeighborBuilder {
                       const ListedSurfaces& surfaces, Real skin, SurfaceRows& rows);
 
  private:
-  // Items sorted by cell.
-  struct SortedItems {
-    CellGrid grid;
-    std::vector<Index> start, items;  // [cells + 1], [searched]
-    std::vector<Index> cell_of;       // [all items]; -1 for those that are not searched
-
-    // cell(item): its cell, or -1.
-    template <class Cell>
-    void sort(const CellGrid& cells, Index count, const Cell& cell);
+  // Pairs of items in two levels.
+  struct LevelPairs {
+    std::vector<Index> above_start, above;  // [items + 1]: the partners in higher levels
+    std::vector<Index> below_start, below;  // [owned + 1]: the partners in lower levels
   };
-  void sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
+  // A grid over the domain, or over a box within it.
+  CellGrid cells_of(const Box& extent, Real width, std::int64_t items) const;
+  void sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells, Real skin);
+  void sort_by_level(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+                     Real skin);
   void find_surfaces(const ParticleStore& store, const ItemLayout& layout, const ListedSurfaces& surfaces,
                      Real skin, SurfaceRows& rows) const;
+  void find_above(const ParticleStore& store, const ItemLayout& layout, Real margin);
+  void find_below(const ItemLayout& layout);
   // Adds the neighbours of item i.
   void collect_row(const ParticleStore& store, Index i, NeighborList& list) const;
 
   const Model& model_;
-  Vec3 period_;  // of the domain [m]
+  Box domain_;
+  Subdomain subdomain_;
   SurfaceSet surfaces_;
   std::vector<WallPlane> planes_;
-  Real largest_radius_ = 0;
-  SortedItems near_;
+  SizeLevels levels_;
+  LevelCells near_;
+  std::vector<Index> cell_of_;  // [all items]; negative for those in no cell
+  LevelPairs pairs_;            // with several levels
 };
 
 }  // namespace scree

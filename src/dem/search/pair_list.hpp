@@ -6,7 +6,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/particles/particle_store.hpp"
-#include "dem/search/neighbor_list.hpp"
+#include "dem/search/list_rows.hpp"
 
 namespace scree {
 

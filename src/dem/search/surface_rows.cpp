@@ -7,6 +7,7 @@
 #include "base/countable.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "partition/halo_plan.hpp"
+#include "partition/level_grids.hpp"
 
 namespace scree {
 namespace {
@@ -16,14 +17,16 @@ struct Entry {
   std::int8_t image;
 };
 
-template <class Visit>
-void for_each_in(const SortedParticles& sorted, const CellRange& range, const Visit& visit) {
-  const CellGrid& grid = sorted.grid;
-  for (Index z = range.lower.z; z <= range.upper.z; ++z)
-    for (Index y = range.lower.y; y <= range.upper.y; ++y)
-      for (Index k = sorted.start[grid.index(range.lower.x, y, z)];
-           k < sorted.start[grid.index(range.upper.x, y, z) + 1]; ++k)
-        if (const Index i = sorted.items[k]; i < sorted.active) visit(i);
+// Calls visit(particle) for the particles of each level in the cells near(level).
+template <class Near, class Visit>
+void for_each_in(const SortedParticles& sorted, const Near& near, const Visit& visit) {
+  for (const LevelGrid& level : sorted.cells.levels) {
+    if (level.items == 0) continue;
+    sorted.cells.for_each_run(level, near(level), [&](Index first, Index last) {
+      for (Index k = first; k < last; ++k)
+        if (const Index i = sorted.cells.items[k]; i < sorted.active) visit(i);
+    });
+  }
 }
 
 // Finds the entries with placed surfaces of one rank, surface by surface.
@@ -56,8 +59,10 @@ class EntryFinder {
   }
   void add_near_sphere(Index s, Vec3 shift, Entry entry) {
     const SurfacePose& surface = placed(s);
-    const Real range = surface.radius + sorted_.largest_radius + search_.skin;
-    for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, range), [&](Index i) {
+    const auto near = [&](const LevelGrid& level) {
+      return cells_near(level.grid, surface.point + shift, surface.radius + level.radius + search_.skin);
+    };
+    for_each_in(sorted_, near, [&](Index i) {
       const SurfacePair pair = surface_pair(surface, shift, position(i));
       if (pair.geometry.overlap > -search_.skin && may_touch(i, s)) add(entry, i, 1);
     });
@@ -71,8 +76,10 @@ class EntryFinder {
   }
   void add_near_mesh(Index s, Vec3 shift, Entry entry) {
     const Real skin = search_.poses.skin_of(s, search_.skin);
-    const Box box = box_near(search_.poses, s, shift, sorted_.largest_radius, skin);
-    for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
+    const auto near = [&](const LevelGrid& level) {
+      return cells_near(level.grid, box_near(search_.poses, s, shift, level.radius, skin));
+    };
+    for_each_in(sorted_, near, [&](Index i) {
       if (!may_touch(i, s)) return;
       triangles_.clear();
       const MeshQuery query = mesh_query(search_.poses, s, position(i), shift, skin);

@@ -36,27 +36,14 @@ struct SurfaceRows {
   bool alike(Index a, Index b) const { return surfaces[a] == surfaces[b] && images[a] == images[b]; }
 };
 
-// Particles sorted by cell.
-struct SortedParticles {
-  const CellGrid& grid;
-  const std::vector<Index>& start;  // [cells + 1] into items
-  const std::vector<Index>& items;  // particles, and ghosts, which are numbered from `active` on
-  std::span<const Vec4> position;   // x, y, z, radius
-  Index active;                     // particles in the search
-  Real largest_radius;              // of a particle [m]
-};
+struct LevelCells;
 
-// Range of cells with the centres of particles that come within `reach` of p; upper is included.
-struct CellRange {
-  CellIndex lower, upper;
+// Particles sorted by level and cell.
+struct SortedParticles {
+  const LevelCells& cells;         // of particles, and of ghosts, which are numbered from `active` on
+  std::span<const Vec4> position;  // x, y, z, radius
+  Index active;                    // particles in the search
 };
-SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real range) {
-  return {grid.nearest_cell(p - Vec3{range, range, range}), grid.nearest_cell(p + Vec3{range, range, range})};
-}
-// Range of cells of a box.
-inline CellRange cells_near(const CellGrid& grid, const Box& box) {
-  return {grid.nearest_cell(box.min), grid.nearest_cell(box.max)};
-}
 
 // Box with the centres of all particles of at most `radius` that come within `skin` of the mesh of the placed
 // surface s, shifted by `shift` [m]. It is infinite along periods that the mesh spans.
