@@ -91,8 +91,8 @@ std::vector<Key> amount_keys() {
       real("start", "s").at_least(0).otherwise("0.0").about("Begin of the births."),
       real("end", "s")
           .above(0)
-          .left_out("time.end; number, mass_total and solid_fraction without a rate: start")
-          .about("End of the births."),
+          .left_out("never; number, mass_total and solid_fraction without a rate: start")
+          .about("End of the births, which is one of their instants whatever the interval is."),
       real("interval", "s")
           .at_least(0)
           .left_out("a face: the time in which the stream moves by the largest diameter; others: the time in "

@@ -95,7 +95,7 @@ std::vector<Key> kind_keys() {
 
 const TableKeys& mixture_keys() {
   static const TableKeys keys = [] {
-    TableKeys made{"Components of a mixture of particles.", {radius_key().required()}};
+    TableKeys made{"Components of a mixture of particles.", {radius_key().required()}, ""};
     for (Key& key : kind_keys()) made.keys.push_back(std::move(key));
     made.keys.push_back(
         real("share", "")

@@ -17,13 +17,14 @@ class BirthSchedule {
  public:
   // All of `total` [u] at one instant [s].
   static BirthSchedule at_once(Real instant, Real total) { return {{instant}, {}, total}; }
-  // times: increasing [s]; rates: at these times, none negative, as many as times [u/s]; 0 before the first
-  // and after the last. total: [u], may be infinite.
+  // times: increasing, the last may be infinite [s]; rates: at these times, none negative, as many as times
+  // [u/s]; 0 before the first and after the last. total: [u], may be infinite.
   static BirthSchedule by_rate(std::vector<Real> times, std::vector<Real> rates, Real total) {
     return {std::move(times), std::move(rates), total};
   }
 
   Real start() const { return times_.front(); }  // [s]
+  Real end() const { return times_.back(); }     // [s]
   // The total amount of the whole schedule [u].
   Real total() const { return amounts_.back(); }
 

@@ -320,6 +320,8 @@ TEST_CASE("rows that only partly get to the disk do not replace a good checkpoin
 TEST_CASE("a state that no run can have written is refused on every rank") {
   const Ranks ranks = world();
   constexpr std::int64_t kParticles = 1000;  // of which every fifth is missing
+  ParticleSet deck;
+  deck.totals.at_start = kParticles;
   State good;
   good.carried_out.removed = kParticles / 5;
   const IdRange own = id_range(kParticles, ranks.rank(), ranks.size());
@@ -329,7 +331,7 @@ TEST_CASE("a state that no run can have written is refused on every rank") {
     State state = good;
     spoil(state);
     const std::string message =
-        common_failure(ranks, [&] { check_state(state, "some.h5", kParticles, ranks); });
+        common_failure(ranks, [&] { check_state(state, "some.h5", deck, ranks); });
     CHECK((message.empty() || message.starts_with("some.h5: not a valid checkpoint: ")));
     return message;
   };

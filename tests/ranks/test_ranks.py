@@ -36,6 +36,8 @@ PLASTIC_MESHES = [*STICKY_MESHES, "contact.pairs.0.plasticity_ratio=0.6", "conta
                   "contact.pairs.0.adhesion_exponent=2.5", "contact.pairs.1.attraction=1e-6"]
 PLASTIC = [HERE / "rolling.toml", "parallel.imbalance=0.05", "contact.pairs.0.plasticity_ratio=0.5",
            "contact.pairs.0.work_of_adhesion=200.0", "contact.pairs.0.attraction=1e-3"]
+# Particles that are born at once, in a stream and by a table of rates, on surfaces that move, and leave again.
+BIRTHS = [HERE / "births.toml", "parallel.imbalance=0.0"]
 # Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
 SHEETS = [HERE / "open_surfaces.toml", "parallel.imbalance=0.0"]
 # On one rank, on these numbers, and with a restart in the middle: three ranks in the first half, two in the second.
@@ -53,6 +55,7 @@ MAIN_CASES = {
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (4,)),
     "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
     "meshes with liquid bridges and their works": ([*BRIDGES, *WORKS, *LINES, "time.end=4e-3"], (4,)),
+    "births": ([*BIRTHS, *LINES, "time.end=0.08"], (4, 8)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (4,)),
     "plastic": ([*PLASTIC, "time.end=0.08"], (4,)),
     "meshes with plastic grains and their works": ([*PLASTIC_MESHES, *WORKS, *LINES, "time.end=2e-3"], (4,)),
@@ -91,6 +94,8 @@ OTHER_CASES = {
     "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (3,)),
     "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                               "contact.pairs.0.friction=0.4", "time.end=0.08"], (4,)),
+    "births, implicit": ([*BIRTHS, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.step=4e-5", "time.end=0.08"],
+                         (2, 4)),
     "friction on bodies, rolling, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, *ROLLING,
                                                "integrator.substeps=1", "parallel.imbalance=0.0", "time.end=0.08"],
                                               (2, 4)),

@@ -123,12 +123,12 @@ BirthRegion region_of(const DeckTable& table, const Model& model, const ModelNam
   return region;
 }
 
-// The end of the births [s]: time.end at most.
+// The end of the births [s].
 Real end_of(const DeckTable& table, const Model& model, bool at_once) {
   const Real start = table.real("start");
   if (start >= model.time.end)
     table.fail("start", fmt::format("must be below time.end = {} s", model.time.end));
-  if (!table.has("end")) return at_once ? start : model.time.end;
+  if (!table.has("end")) return at_once ? start : kInfinity;
   if (table.real("end") <= start) table.fail("end", fmt::format("must be above start = {} s", start));
   return table.real("end");
 }

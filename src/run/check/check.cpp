@@ -22,6 +22,7 @@
 #include "model/data/body_layout.hpp"
 #include "model/derived/choose_law.hpp"
 #include "model/derived/connections.hpp"
+#include "model/derived/mixture.hpp"
 #include "model/derived/touching.hpp"
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"

@@ -21,6 +21,12 @@ constexpr std::size_t kWaitingNumbers = 3;
 // Round-off of an instant, relative to the interval.
 constexpr Real kInstantRoundOff = 1e-9;
 
+// Number of regular instants of an inserter up to time t.
+std::int64_t instants_until(const Inserter& inserter, Real t) {
+  const Real intervals = (t - inserter.schedule.start()) / inserter.interval;
+  return std::llround(std::floor(intervals + kInstantRoundOff)) + 1;
+}
+
 }  // namespace
 
 // What births at one instant need.
@@ -79,7 +85,8 @@ Real Births::next_of(std::size_t i, const PopulationState& state) const {
   if (state.waiting_of(static_cast<int>(i)) > 0) return of.interval > 0 ? from_now : -kInfinity;
   const Real due = of.schedule.time_of(state.amounts[i] + amount_of(i, next_candidate(i, state).particle));
   if (due == kInfinity || of.interval == 0) return due;
-  return std::max(from_now, instant(std::ceil((due - start) / of.interval - kInstantRoundOff)));
+  const Real regular = std::max(from_now, instant(std::ceil((due - start) / of.interval - kInstantRoundOff)));
+  return std::min(regular, of.schedule.end() - kInstantRoundOff * of.interval);
 }
 
 Real Births::next(const PopulationState& state) const {
@@ -91,9 +98,12 @@ Real Births::next(const PopulationState& state) const {
 std::optional<Real> Births::instant_reached(std::size_t i, Real t, const PopulationState& state) const {
   const Inserter& of = inserter(i);
   if (of.interval == 0) return t >= of.schedule.start() ? std::optional(t) : std::nullopt;
-  const Real k = std::floor((t - of.schedule.start()) / of.interval + kInstantRoundOff);
-  if (!(k >= static_cast<Real>(state.instants[i]))) return {};
-  return of.schedule.start() + k * of.interval;
+  const Real end = of.schedule.end();
+  const Real regular = of.schedule.start() + static_cast<Real>(instants_until(of, t) - 1) * of.interval;
+  const bool is_new = instants_until(of, t) > state.instants[i];
+  // The end of the schedule is an instant, too, for what has become due since the last regular one.
+  if (t >= end - kInstantRoundOff * of.interval && regular < end) return end;
+  return is_new ? std::optional(regular) : std::nullopt;
 }
 
 // The waiting particles, then those that have become due; all of them are removed from the waiting ones.
@@ -231,7 +241,7 @@ std::vector<Particle> Births::births_at(Real t, std::span<const BodyMotion> moti
     const std::optional<Real> instant = instant_reached(i, t, state);
     if (!instant) continue;
     if (inserter(i).interval > 0)
-      state.instants[i] = std::llround((*instant - inserter(i).schedule.start()) / inserter(i).interval) + 1;
+      state.instants[i] = std::max(state.instants[i], instants_until(inserter(i), t));
     std::vector<Candidate> candidates = take_due(i, *instant, t, state);
     find_positions(i, candidates, now, state);
     leave_blocked(i, candidates, state);

@@ -229,8 +229,8 @@ TEST_CASE("groups are identified by the ids of their particles") {
           .particles;
   REQUIRE(p.groups.size() == 3);
   CHECK((p.groups[0].name == "pair" && p.groups[1].name == "1" && p.groups[2].name == "2"));
-  CHECK(groups_of(p.groups, std::vector<GlobalId>{0, 1, 2, 4}) == std::vector<int>{0, 0, 2, 2});
-  CHECK(groups_of(p.groups, std::vector<GlobalId>{3}) == std::vector<int>{2});
+  CHECK(groups_of(p, std::vector<GlobalId>{0, 1, 2, 4}) == std::vector<int>{0, 0, 2, 2});
+  CHECK(groups_of(p, std::vector<GlobalId>{3}) == std::vector<int>{2});
 }
 
 }  // namespace scree

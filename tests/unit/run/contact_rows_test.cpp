@@ -49,7 +49,9 @@ std::string difference(const PackedHistory& a, const PackedHistory& b) {
 
 std::string refusal(const State& state) {
   try {
-    check_state(state, "some.h5", kParticles, {});
+    ParticleSet deck;
+    deck.totals.at_start = kParticles;
+    check_state(state, "some.h5", deck, {});
   } catch (const IoError& error) {
     return error.what();
   }

@@ -174,7 +174,7 @@ TEST_CASE("angles of spatial joints have a dataset of their own, and their revol
   state.bodies.position.back() -= 2 * M_PI;
   CHECK(state_hash(state, true) != once);
   state.bodies.position.back() = std::numeric_limits<Real>::infinity();
-  CHECK_THROWS_AS(check_state(state, "some.h5", 0, {}), IoError);
+  CHECK_THROWS_AS(check_state(state, "some.h5", ParticleSet{}, {}), IoError);
 }
 
 TEST_CASE("the state of particles that do not rotate has nothing of rotation") {
