@@ -14,6 +14,7 @@
 #include "model/data/body_layout.hpp"
 #include "model/derived/connections.hpp"
 #include "model/derived/joint_coordinates.hpp"
+#include "run/population/births.hpp"
 #include "run/state/contact_rows.hpp"
 
 namespace scree {
@@ -75,6 +76,7 @@ State sized_state(const Model& model) {
     sizes.bodies.belt_power.resize(surfaces.parents() - model.bodies.size());
   if (model.output.adds_up_works()) sizes.works.resize(kLimbsPerTriangle * TriangleWorks(model).triangles());
   sizes.there = {model.rotates(), model.rolls()};
+  sizes.population = Births(model).start();
   return sizes;
 }
 
@@ -90,6 +92,10 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   if (!has_works) sizes.works.clear();
   if (has_works && !model.output.adds_up_works())
     sizes.works.resize(checkpoint.integer_array(kWorksName).size());
+  // Energy and particles that wait are stored where there are any.
+  if (checkpoint.reals.count(kCarriedInName) > 0) sizes.balance.last.carried_in = 1;
+  if (checkpoint.integers.count(kWaitingName) > 0)
+    sizes.population.waiting.resize(checkpoint.integer_array(kWaitingName).size());
   if (checkpoint.reals.count(kShapeFrictionLosses) > 0) sizes.shapes.tangential.of[kFrictionLoss] = 1;
   for (auto [name, values] : {std::pair(kShapeContactsOf, &sizes.shape_contacts.shapes),
                               std::pair(kShapeContactsWith, &sizes.shape_contacts.keys),

@@ -44,7 +44,7 @@ void visit_ledger(Visitor& visit, LedgerType& ledger) {
   visit("balance/dissipated_integrator", ledger.dissipated_integrator);
   visit("balance/driver_work", ledger.driver_work);
   visit("balance/carried_out", ledger.carried_out);
-  visit.if_any("balance/carried_in", ledger.carried_in);
+  visit.if_any(kCarriedInName, ledger.carried_in);
 }
 
 // Names in the order of LossKind.
@@ -60,7 +60,7 @@ void visit_population(Visitor& visit, StateType& population) {
   visit.if_any("population/instants", population.instants);
   visit.if_any("population/classes", population.classes);
   visit.if_any("population/amounts", population.amounts);
-  visit.if_any("population/waiting", population.waiting);
+  visit.if_any(kWaitingName, population.waiting);
   visit.if_any("population/mass", population.mass);
   visit.if_any("population/energy", population.energy);
 }

@@ -54,6 +54,8 @@ struct State {
   std::int64_t history_rows = 0, snapshots = 0;
 };
 
+// Names of Ledger::carried_in and of PopulationState::waiting.
+inline constexpr const char *kCarriedInName = "balance/carried_in", *kWaitingName = "population/waiting";
 // Name of the dataset of State::works.
 inline constexpr const char* kWorksName = "surfaces/works";
 // Names of the datasets of State::shape_contacts (kShapeSides*: contacts that store their side alone) and of
