@@ -160,7 +160,7 @@ Distribution::Distribution(const DistributionParameters& parameters, int mass_po
   const bool has_density = parameters.kind == DistributionKind::normal ||
                            parameters.kind == DistributionKind::lognormal ||
                            parameters.kind == DistributionKind::rosin_rammler;
-  if (has_density && !is_constant()) integrals_ = std::make_shared<const Integrals>(parameters, mass_power);
+  if (has_density && !is_narrow()) integrals_ = std::make_shared<const Integrals>(parameters, mass_power);
 }
 
 void Distribution::take_table() {
@@ -171,7 +171,8 @@ void Distribution::take_table() {
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Real x = given_.values[order[k]], weight = given_.weights[order[k]];
     parameters_.values[k] = x;
-    parameters_.weights[k] = given_.by == CountedBy::mass ? weight / whole_power(x, mass_power_) : weight;
+    const Real mass = whole_power(parameters_.values.front() / x, -mass_power_);  // of the lightest ones
+    parameters_.weights[k] = given_.by == CountedBy::mass ? weight / mass : weight;
     sum += parameters_.weights[k];
   }
   for (Real& weight : parameters_.weights) weight /= sum;
@@ -181,7 +182,7 @@ void Distribution::take_table() {
 Real Distribution::quantile(Real u) const {
   if (is_constant()) return smallest();
   if (integrals_) return std::clamp(integrals_->quantile(u), smallest(), largest());
-  if (parameters_.kind == DistributionKind::uniform) return uniform_quantile(u);
+  if (parameters_.kind != DistributionKind::table) return uniform_quantile(u);
   for (std::size_t k = 0; k + 1 < parameters_.values.size(); ++k) {
     u -= parameters_.weights[k];
     if (u < 0) return parameters_.values[k];
@@ -200,7 +201,7 @@ Real Distribution::uniform_quantile(Real u) const {
 }
 
 Real Distribution::moment(int power) const {
-  if (is_constant()) return whole_power(smallest(), power);
+  if (is_narrow()) return whole_power((smallest() + largest()) / 2, power);
   if (integrals_) return integrals_->moment(power);
   if (parameters_.kind == DistributionKind::uniform) {
     const int s = parameters_.by == CountedBy::mass ? 1 - mass_power_ : 1;
@@ -240,6 +241,12 @@ namespace {
 void check_limits(const DeckTable& table, const DistributionParameters& p) {
   if (p.kind == DistributionKind::constant || p.kind == DistributionKind::table) return;
   if (p.min > p.max) table.fail("max", fmt::format("must be at least min = {}", p.min));
+  constexpr Real kNarrowest = 1e-9;
+  if (p.kind == DistributionKind::normal && p.sd < kNarrowest * p.mean)
+    table.fail("sd",
+               fmt::format("must be at least {} of the mean; a constant has no distribution", kNarrowest));
+  if (p.kind == DistributionKind::lognormal && p.geometric_sd < 1 + kNarrowest)
+    table.fail("geometric_sd", fmt::format("must be at least 1 + {}", kNarrowest));
   // Limits that exclude nearly everything are a mistake in the deck.
   constexpr Real kSmallestShare = 1e-5;
   if (const Real share = share_within_limits(p); p.min < p.max && share < kSmallestShare)

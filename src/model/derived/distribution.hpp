@@ -43,6 +43,8 @@ class Distribution {
 
  private:
   struct Integrals;
+  // Limits so close that the density between them does not matter.
+  bool is_narrow() const { return largest() - smallest() <= 1e-6 * smallest(); }
   void take_table();
   Real uniform_quantile(Real u) const;
 
