@@ -12,11 +12,11 @@
 namespace scree {
 namespace {
 
-// Collects particles outside the domain that are not yet known to drift; counts all, stores as many as there
+// Collects particles that leave and are not yet known to drift; counts all, stores as many as there
 // is space for.
 struct EscapedItem {
   ParticleViews in;
-  OpenBox box;
+  RemainingSpace space;
   Vec3 gravity, period;
   Real verlet_step;  // [s]
   EscapedParticle* out;
@@ -25,7 +25,7 @@ struct EscapedItem {
 
   __device__ void operator()(Index i) const {
     const Vec4 x = in.position[i];
-    if (in.drifting[i] || box.inside(xyz(x))) return;
+    if (in.drifting[i] || space.holds(xyz(x))) return;
     const Index slot = atomicAdd(count, 1);
     if (slot >= capacity) return;
     const Real energy = energy_of_motion(in, i, gravity, period);
@@ -33,19 +33,22 @@ struct EscapedItem {
     out[slot] = {
         id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i] - shift,
         losses_of(in, i)};
+    out[slot].outlet = space.box.inside(xyz(x)) ? space.outlet_at(xyz(x)) : -1;
+    out[slot].mass = in.velocity[i].w;
   }
 };
 
 // Wraps escaped particles for the last time and marks them.
 struct MarkItem {
   const Index* particles;
+  const std::uint8_t* marks;
   ParticleViews in;
   Vec3 box_min, period;
   SCREE_HD void operator()(Index k) const {
     const Index i = particles[k];
     const Vec4 x = in.position[i];
     in.position[i] = vec4(wrap(box_min, period, xyz(x), in.image[i]), x.w);
-    in.drifting[i] = 1;
+    in.drifting[i] = marks[k];
   }
 };
 
@@ -53,7 +56,7 @@ struct RemainsItem {
   const std::uint8_t* drifting;
   std::uint8_t* remains;
   Index* iota;
-  SCREE_HD void operator()(Index i) const { remains[i] = !drifting[i], iota[i] = i; }
+  SCREE_HD void operator()(Index i) const { remains[i] = drifting[i] != kRemoved, iota[i] = i; }
 };
 
 struct GatherItem {
@@ -140,8 +143,8 @@ std::size_t CudaParticles::find_escaped_particles() {
   Index* count = items_.results.at(&Results::escaped_particles);
   require_cuda(cudaMemsetAsync(count, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
   for_each(items_.device(), items_.owned,
-           EscapedItem{views_of(items_.now), items_.subdomain.box(), items_.model.gravity,
-                       items_.subdomain.period(), verlet_step(items_.model), escaped_particles_.data(),
+           EscapedItem{views_of(items_.now), space_, items_.model.gravity, items_.subdomain.period(),
+                       verlet_step(items_.model), escaped_particles_.data(),
                        static_cast<Index>(escaped_particles_.size()), count});
   return static_cast<std::size_t>(items_.results.fetch(&Results::escaped_particles));
 }
@@ -166,9 +169,10 @@ void CudaParticles::insert(const std::vector<Particle>& born) {
   list_.outdate();
 }
 
-std::vector<EscapedParticle> CudaParticles::outside() {
+std::vector<EscapedParticle> CudaParticles::find_leaving(std::span<const OutletRegion> outlets) {
   constexpr std::size_t kInitialCapacity = 1024;
   if (escaped_particles_.size() == 0) escaped_particles_.resize_clean(kInitialCapacity, items_.stream);
+  space_ = RemainingSpace(items_.subdomain, items_.model.space.min, outlets);
   std::vector<EscapedParticle> escaped(find_escaped_particles());
   if (!items_.ranks.any(!escaped.empty())) return escaped;
   if (escaped.size() > escaped_particles_.size()) {  // not all were stored; there is space for all now
@@ -177,7 +181,7 @@ std::vector<EscapedParticle> CudaParticles::outside() {
   }
   bodies_.find_loads();
   items_.kernels->run(items_.device(), items_.views(), static_cast<Index>(escaped.size()),
-                      EscapeRequest{items_.subdomain.box(), escaped_particles_.data()});
+                      EscapeRequest{space_, escaped_particles_.data()});
   copy_async(escaped.data(), escaped_particles_.data(), escaped.size(), items_.stream);
   wait_for(items_.stream);
   for (EscapedParticle& particle : escaped)
@@ -191,19 +195,24 @@ std::vector<EscapedParticle> CudaParticles::outside() {
 void CudaParticles::remove_escaped(const std::vector<EscapedParticle>& escaped) {
   if (escaped.empty()) return;
   std::vector<Index> particles;
-  for (const EscapedParticle& particle : escaped)
-    if (particle.rank == items_.ranks.rank()) particles.push_back(particle.local_index);
-  const bool remove = items_.model.space.leaving == OutsidePolicy::remove;
+  std::vector<std::uint8_t> marks;
+  bool remove = false;  // on any rank
+  for (const EscapedParticle& particle : escaped) {
+    const bool removed = particle.is_removed(items_.model.space.leaving);
+    remove |= removed;
+    if (particle.rank != items_.ranks.rank()) continue;
+    particles.push_back(particle.local_index), marks.push_back(removed ? kRemoved : 1);
+  }
   const auto n = remove ? static_cast<std::size_t>(items_.owned) : 0;
   // The arrays are sized first: if memory does not suffice, nothing has changed yet.
   DeviceArray<Index> d_particles, iota(n), remaining(n), row_length(items_.ranks.alone() ? 0 : n);
-  DeviceArray<std::uint8_t> remains(n);
-  d_particles.upload(particles, items_.stream);
+  DeviceArray<std::uint8_t> remains(n), d_marks;
+  d_particles.upload(particles, items_.stream), d_marks.upload(marks, items_.stream);
   remove_escaped_contacts();
   items_.history.pack_history(items_.listed());
-  for_each(
-      items_.device(), static_cast<Index>(particles.size()),
-      MarkItem{d_particles.data(), views_of(items_.now), items_.model.space.min, items_.subdomain.period()});
+  for_each(items_.device(), static_cast<Index>(particles.size()),
+           MarkItem{d_particles.data(), d_marks.data(), views_of(items_.now), items_.model.space.min,
+                    items_.subdomain.period()});
   list_.outdate();
   if (!remove) return;
 
@@ -233,7 +242,7 @@ void CudaParticles::remove_escaped_contacts() {
   const Vec4* law_spin = items_.law_spin != nullptr ? items_.law_spin : now.angular_velocity.data();
   const DepartureRequest request{
       items_.model.gravity,
-      items_.subdomain.box(),
+      space_,
       {now.force.data(), now.acceleration.data(), verlet ? now.loss_power.data() : nullptr,
        now.integrator_loss.data(), now.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
        verlet_step(items_.model), now.angular_acceleration.data()}};

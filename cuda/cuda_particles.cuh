@@ -31,10 +31,10 @@ class CudaParticles : public RankParticles {
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<std::uint8_t> overlapped(const CandidateGrid& candidates) override;
   void insert(const std::vector<Particle>& born) override;
-  std::vector<EscapedParticle> outside() override;
   void remove_escaped(const std::vector<EscapedParticle>& escaped) override;
 
  private:
+  std::vector<EscapedParticle> find_leaving(std::span<const OutletRegion> outlets) override;
   RecordItem record_item(Index first);
   std::size_t find_escaped_particles();
   void remove_escaped_contacts();
@@ -44,6 +44,7 @@ class CudaParticles : public RankParticles {
   CudaList& list_;
   DeviceArray<Particle> records_;  // records in transit between host and device
   DeviceArray<EscapedParticle> escaped_particles_;
+  RemainingSpace space_;  // of the last outside()
 };
 
 }  // namespace scree

@@ -171,11 +171,11 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   return outcome;
 }
 
-std::vector<EscapedParticle> CoupledStep::check_inside() const {
+std::vector<EscapedParticle> CoupledStep::check_inside(std::span<const OutletRegion> outlets) const {
   const OutsidePolicy policy = model_.space.leaving;
-  std::vector<EscapedParticle> escaped_particles = backend_.particles().outside();
+  std::vector<EscapedParticle> escaped_particles = backend_.particles().outside(outlets);
   for (const EscapedParticle& l : escaped_particles) {
-    if (!l.lost && policy != OutsidePolicy::error) continue;
+    if (l.outlet >= 0 || (!l.lost && policy != OutsidePolicy::error)) continue;
     throw SimulationError(fmt::format(
         "stage accept: particle {} is outside the domain at ({:g}, {:g}, {:g}) m, {}", l.global_id,
         l.position.x, l.position.y, l.position.z,

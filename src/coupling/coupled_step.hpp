@@ -50,9 +50,9 @@ class CoupledStep {
   // times: start of each step [s]; end: end of the last step [s]. Returns the number of steps taken, which is
   // less if a particle is outside the domain after one of them.
   std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h, Real end);
-  // The particles outside the domain now. Throws SimulationError for the first one beyond a wall, or for the
-  // first one at all if the deck makes that an error.
-  std::vector<EscapedParticle> check_inside() const;
+  // The particles outside the domain now, and those in the outlets. Throws SimulationError for the first one
+  // beyond a wall, or for the first one outside at all if the deck makes that an error.
+  std::vector<EscapedParticle> check_inside(std::span<const OutletRegion> outlets = {}) const;
   // Rebuilds the neighbour list for the current particles and bodies.
   void rebuild_list();
 

@@ -4,22 +4,21 @@ namespace scree {
 
 void account_escaped(const std::vector<EscapedParticle>& escaped_particles, OutsidePolicy policy,
                      CarriedOut& carried_out) {
-  carried_out.left += static_cast<std::int64_t>(escaped_particles.size());
-  for (const EscapedParticle& escaped_particle : escaped_particles)
-    carried_out.energy += escaped_particle.elastic;
-  if (policy != OutsidePolicy::remove) {
-    for (const EscapedParticle& escaped_particle : escaped_particles) {
-      carried_out.ballistic_energy += escaped_particle.energy;
-      carried_out.ballistic_integrator_loss += escaped_particle.integrator_loss;
-    }
-    return;
+  for (const EscapedParticle& particle : escaped_particles) {
+    carried_out.left += particle.outlet < 0;
+    carried_out.energy += particle.elastic;
   }
-  carried_out.removed += static_cast<std::int64_t>(escaped_particles.size());
-  for (const EscapedParticle& escaped_particle : escaped_particles) {
-    carried_out.energy += escaped_particle.energy;
-    carried_out.contact_loss += escaped_particle.contact_loss;
-    carried_out.integrator_loss += escaped_particle.integrator_loss;
-    carried_out.losses.add(escaped_particle.losses);
+  for (const EscapedParticle& particle : escaped_particles) {
+    if (!particle.is_removed(policy)) {
+      carried_out.ballistic_energy += particle.energy;
+      carried_out.ballistic_integrator_loss += particle.integrator_loss;
+      continue;
+    }
+    ++carried_out.removed;
+    carried_out.energy += particle.energy;
+    carried_out.contact_loss += particle.contact_loss;
+    carried_out.integrator_loss += particle.integrator_loss;
+    carried_out.losses.add(particle.losses);
   }
 }
 

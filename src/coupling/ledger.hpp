@@ -41,8 +41,8 @@ struct Ledger {
 
 // Energy of escaped particles, added up when they leave; part of the state.
 struct CarriedOut {
-  std::int64_t left = 0;  // number of escaped particles, ballistic or removed
-  std::int64_t removed = 0;
+  std::int64_t left = 0;                       // number of escaped particles, ballistic or removed
+  std::int64_t removed = 0;                    // of these, and in outlets
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed particles [J]
   TangentialLosses losses{};                   // parts of contact_loss
@@ -51,7 +51,7 @@ struct CarriedOut {
   Real ballistic_energy = 0, ballistic_integrator_loss = 0;
 };
 
-// Adds the energies of particles that have just escaped. policy: what happens to them.
+// Adds the energies of particles that have just left. policy: what happens to escaped ones.
 void account_escaped(const std::vector<EscapedParticle>& escaped_particles, OutsidePolicy policy,
                      CarriedOut& carried_out);
 

@@ -318,6 +318,15 @@ inline constexpr auto kWords<InserterKind> =
                                        {"mesh", InserterKind::mesh},
                                        {"face", InserterKind::face}});
 
+// The region in which an outlet removes particles.
+enum class OutletKind { box, cylinder, sphere, plane };
+template <>
+inline constexpr auto kWords<OutletKind> = std::to_array<Word<OutletKind>>({{"box", OutletKind::box},
+                                                                            {"cylinder",
+                                                                             OutletKind::cylinder},
+                                                                            {"sphere", OutletKind::sphere},
+                                                                            {"plane", OutletKind::plane}});
+
 // What happens to a particle that finds no free position when it is due.
 enum class BlockedPolicy {
   wait,  // it is tried again at the inserter's next instants

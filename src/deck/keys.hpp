@@ -187,6 +187,7 @@ const TableKeys& joint_friction_keys();
 const TableKeys& coupler_keys();
 const TableKeys& particle_keys();
 const TableKeys& inserter_keys();
+const TableKeys& outlet_keys();
 const TableKeys& time_function_keys();
 const TableKeys& distribution_keys();
 // Keys of one component of a mixture of particles, and those of a table that may have a mixture: the list

@@ -1,4 +1,4 @@
-// Keys of inserters.
+// Keys of inserters and outlets.
 #include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
@@ -155,6 +155,51 @@ const TableKeys& inserter_keys() {
     add(all.keys, birth_keys());
     return all;
   }();
+  return keys;
+}
+
+const TableKeys& outlet_keys() {
+  using Kind = OutletKind;
+  static const TableKeys keys{
+      "Outlets: regions in which particles are removed during the run, and counted. A particle is removed "
+      "when "
+      "its centre is in the region at an instant of the outlet.",
+      {name_key().required().about("Name, for the history and messages."),
+       choice<Kind>("kind").required().about(
+           "Box, cylinder (3D), sphere (2D: circle): regions. Plane: everything beyond a plane."),
+       vector("min", "m").only_for({Kind::box}).required().about("Lower corner of the box."),
+       vector("max", "m").only_for({Kind::box}).required().about("Upper corner of the box."),
+       vectors("ends", "m")
+           .only_for({Kind::cylinder})
+           .entries(2)
+           .required()
+           .about("The two ends of the cylinder's axis."),
+       vector("center", "m").only_for({Kind::sphere}).required().about("Centre of the sphere."),
+       real("region_radius", "m")
+           .only_for({Kind::cylinder, Kind::sphere})
+           .required()
+           .above(0)
+           .about("Radius of the cylinder or the sphere."),
+       vector("point", "m").only_for({Kind::plane}).required().about("A point of the plane."),
+       vector("normal", "")
+           .only_for({Kind::plane})
+           .required()
+           .about("Direction across the plane, of any length, to the side on which particles are removed."),
+       text("on")
+           .left_out("the region is at rest")
+           .about("A body, or a wall with a mesh or a motion, with which the region moves. Its keys give the "
+                  "region at "
+                  "t = 0 in the global frame."),
+       real("start", "s").at_least(0).otherwise("0.0").about("Time from which on particles are removed."),
+       real("end", "s").above(0).left_out("never").about("Time until which particles are removed."),
+       real("interval", "s")
+           .above(0)
+           .left_out("the time in which a particle at rest falls by the smallest diameter; must be given "
+                     "without gravity")
+           .about(
+               "Particles are removed at start + k interval. Each removal builds the neighbour list: a short "
+               "interval takes time, and with a long one particles get farther into the region.")},
+      "kind"};
   return keys;
 }
 

@@ -49,7 +49,8 @@ const TableKeys& deck_keys() {
        tables("joint_frictions", joint_friction_keys()),
        tables("couplers", coupler_keys()),
        tables("particles", particle_keys()),
-       tables("inserters", inserter_keys())},
+       tables("inserters", inserter_keys()),
+       tables("outlets", outlet_keys())},
       ""};
   return keys;
 }

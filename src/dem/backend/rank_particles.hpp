@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dem/history/packed_history.hpp"
@@ -50,11 +51,18 @@ class RankParticles {
   // be rebuilt.
   virtual void insert(const std::vector<Particle>& born) = 0;
 
-  // Particles that have escaped from the domain and were not yet removed, ordered by global id.
-  virtual std::vector<EscapedParticle> outside() = 0;
-  // Removes escaped particles from the search, and their contacts from the state that the next step starts
-  // from: from now on they move ballistically or are deleted, as the deck says. The list must be rebuilt.
+  // Particles that have escaped from the domain and were not yet removed, and those in the outlets, ordered
+  // by global id. outlets: at most kMostOutlets.
+  std::vector<EscapedParticle> outside(std::span<const OutletRegion> outlets = {}) {
+    return find_leaving(outlets);
+  }
+  // Removes these particles, found by the last outside(), from the search, and their contacts from the state
+  // that the next step starts from: those in outlets are deleted, and escaped ones move ballistically from
+  // now on or are deleted, as the deck says. The list must be rebuilt.
   virtual void remove_escaped(const std::vector<EscapedParticle>& escaped_particles) = 0;
+
+ protected:
+  virtual std::vector<EscapedParticle> find_leaving(std::span<const OutletRegion> outlets) = 0;
 };
 
 }  // namespace scree

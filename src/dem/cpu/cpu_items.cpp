@@ -51,6 +51,12 @@ bool CpuItems::any_outside() const {
   return false;
 }
 
+bool CpuItems::any_outside(const RemainingSpace& space) const {
+  for (Index i = 0; i < store.owned; ++i)
+    if (!store.drifting[i] && !space.holds(xyz(store.position[i]))) return true;
+  return false;
+}
+
 void CpuItems::fail_if_any(GlobalId id, const char* before, const char* after) const {
   const GlobalId first = ranks.min(id);
   if (first != kNone) throw SimulationError(before + std::to_string(first) + after);

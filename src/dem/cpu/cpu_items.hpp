@@ -62,6 +62,7 @@ struct CpuItems {
   }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
+  bool any_outside(const RemainingSpace& space) const;
   // Throws a SimulationError on all ranks that names the first particle whose force is not finite.
   void report_not_finite(const std::vector<Vec3>& force) const;
   // Throws a SimulationError on all ranks that names the first particle. id: kNone without one on this rank.

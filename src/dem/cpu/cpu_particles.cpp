@@ -73,25 +73,27 @@ void CpuParticles::insert(const std::vector<Particle>& born) {
   list_.outdate();
 }
 
-std::vector<EscapedParticle> CpuParticles::outside() {
+std::vector<EscapedParticle> CpuParticles::find_leaving(std::span<const OutletRegion> outlets) {
   ParticleStore& store = items_.store;
   const Model& model = items_.model;
   const Ranks& ranks = items_.ranks;
   const ParticleViews views = views_of(store);
   std::vector<EscapedParticle> escaped_particles;
-  if (!ranks.any(items_.any_outside())) return escaped_particles;
+  space_ = RemainingSpace(items_.subdomain, model.space.min, outlets);
+  if (!ranks.any(items_.any_outside(space_))) return escaped_particles;
   for (Index i = 0; i < store.owned; ++i) {
     const Vec3 p = xyz(store.position[i]);
-    if (store.drifting[i] || items_.subdomain.inside(p)) continue;
+    if (store.drifting[i] || space_.holds(p)) continue;
     const Real energy = energy_of_motion(views, i, model.gravity, items_.subdomain.period());
     const Real shift = verlet_energy_shift(verlet_step(model), views, i);
     escaped_particles.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.is_beyond_wall(p), energy,
                                  store.contact_loss[i], store.integrator_loss[i] - shift, losses_of(views, i),
-                                 0, ranks.rank()});
+                                 0, ranks.rank(), space_.box.inside(p) ? space_.outlet_at(p) : -1,
+                                 store.velocity[i].w});
   }
   items_.find_loads();
   items_.kernels->run(items_.views(), static_cast<Index>(escaped_particles.size()),
-                      EscapeRequest{items_.subdomain.box(), escaped_particles.data()});
+                      EscapeRequest{space_, escaped_particles.data()});
   escaped_particles = ranks.all_gather(std::move(escaped_particles));
   std::sort(escaped_particles.begin(), escaped_particles.end(),
             [](const EscapedParticle& a, const EscapedParticle& b) { return a.global_id < b.global_id; });
@@ -105,7 +107,7 @@ void CpuParticles::remove_escaped_contacts() {
   const bool verlet = is_verlet(model);
   const DepartureRequest request{
       model.gravity,
-      items_.subdomain.box(),
+      space_,
       {store.force.data(), store.acceleration.data(), verlet ? store.loss_power.data() : nullptr,
        store.integrator_loss.data(), store.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
        verlet_step(model), store.angular_acceleration.data()}};
@@ -118,18 +120,19 @@ void CpuParticles::remove_escaped(const std::vector<EscapedParticle>& escaped_pa
   ParticleStore& store = items_.store;
   remove_escaped_contacts();
   items_.history.pack_history(items_.listed());
+  const OutsidePolicy policy = items_.model.space.leaving;
   for (const EscapedParticle& escaped_particle : escaped_particles) {
     if (escaped_particle.rank != items_.ranks.rank()) continue;
     const auto i = static_cast<std::size_t>(escaped_particle.local_index);
     const Vec4& p = store.position[i];
     store.position[i] = vec4(items_.subdomain.wrap(xyz(p), store.image[i]), p.w);
-    store.drifting[i] = 1;
+    store.drifting[i] = escaped_particle.is_removed(policy) ? kRemoved : 1;
   }
   list_.outdate();
-  if (items_.model.space.leaving != OutsidePolicy::remove) return;
   std::vector<Index> remaining;
   for (Index i = 0; i < store.owned; ++i)
-    if (!store.drifting[i]) remaining.push_back(i);
+    if (store.drifting[i] != kRemoved) remaining.push_back(i);
+  if (std::ssize(remaining) == store.owned) return;
   list_.retain_rows(remaining);
   store.reorder(remaining), items_.history.reorder(remaining);
 }

@@ -27,14 +27,15 @@ class CpuParticles : public RankParticles {
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
   std::vector<std::uint8_t> overlapped(const CandidateGrid& candidates) override;
   void insert(const std::vector<Particle>& born) override;
-  std::vector<EscapedParticle> outside() override;
   void remove_escaped(const std::vector<EscapedParticle>& escaped_particles) override;
 
  private:
+  std::vector<EscapedParticle> find_leaving(std::span<const OutletRegion> outlets) override;
   void remove_escaped_contacts();
 
   CpuItems& items_;
   CpuList& list_;
+  RemainingSpace space_;  // of the last outside()
 };
 
 }  // namespace scree

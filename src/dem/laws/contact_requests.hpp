@@ -31,12 +31,12 @@ struct ForceRequest {
 };
 // Elastic energy of escaped particles, one item each; and the removal of their contacts from all others.
 struct EscapeRequest {
-  OpenBox box;
+  RemainingSpace space;
   EscapedParticle* escaped_particles;
 };
 struct DepartureRequest {
   Vec3 gravity;
-  OpenBox box;
+  RemainingSpace space;
   StartViews start;
 };
 
@@ -102,10 +102,10 @@ struct WithRequestedItem {
   }
   void operator()(const LineRequest& r) const { run(ContactLineItem<Laws, Rows>{{in, laws}, r}); }
   void operator()(const EscapeRequest& r) const {
-    run(EscapeEnergyItem<Laws, Rows>{{in, laws}, r.box, r.escaped_particles});
+    run(EscapeEnergyItem<Laws, Rows>{{in, laws}, r.space, r.escaped_particles});
   }
   void operator()(const DepartureRequest& r) const {
-    run(EscapedContactsItem<Laws, Rows>{{in, laws}, r.gravity, r.box, r.start});
+    run(EscapedContactsItem<Laws, Rows>{{in, laws}, r.gravity, r.space, r.start});
   }
   void operator()(const StepSystem& r) const {
     if constexpr (kStepFreedoms<Law> == 6)

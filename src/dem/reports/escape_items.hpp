@@ -1,17 +1,18 @@
-// Escape of particles from the domain: energies of the escaped particles, and the removal of their contacts.
-// Shared by the CPU and CUDA backends.
+// Escape of particles from the domain, and removal in outlets: energies of the escaped particles, and the
+// removal of their contacts. Shared by the CPU and CUDA backends.
 #pragma once
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "deck/choices.hpp"
 #include "dem/contact/contact_items.hpp"
-#include "partition/subdomain.hpp"
+#include "dem/reports/remaining_space.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
 
-// A particle that has escaped from the domain.
+// A particle that has escaped from the domain, or is in an outlet.
 struct EscapedParticle {
   GlobalId global_id;
   Index local_index;                   // on its rank
@@ -22,15 +23,19 @@ struct EscapedParticle {
   TangentialLosses losses;             // parts of contact_loss
   Real elastic = 0;                    // elastic energy of its contacts, which end [J]
   int rank = 0;                        // rank that owns it
+  int outlet = -1;                     // index of the outlet; -1: it has escaped from the domain
+  Real mass = 0;                       // [kg]
+
+  bool is_removed(OutsidePolicy policy) const { return outlet >= 0 || policy == OutsidePolicy::remove; }
 };
 
-// Whether an item is outside the domain, while all particles of the rows are in the search. All ranks agree,
+// Whether an item leaves, while all particles of the rows are in the search. All ranks agree,
 // because ghosts have their particles' positions.
 template <class Rows>
 struct IsEscaped {
   const ContactViews<Rows>& in;
-  const OpenBox& box;
-  SCREE_HD bool operator()(Index j) const { return !box.inside(xyz(in.position[j])); }
+  const RemainingSpace& space;
+  SCREE_HD bool operator()(Index j) const { return !space.holds(xyz(in.position[j])); }
 };
 
 // Elastic energy of the contacts of an escaped particle, which end with it: half of those with another
@@ -38,11 +43,11 @@ struct IsEscaped {
 template <class Laws, class Rows>
 struct EscapeEnergyItem {
   ContactWalk<Laws, Rows> walk;
-  OpenBox box;
+  RemainingSpace space;
   EscapedParticle* escaped_particles;
 
   SCREE_HD void operator()(Index k) const {
-    const IsEscaped<Rows> is_escaped{walk.in, box};
+    const IsEscaped<Rows> is_escaped{walk.in, space};
     const auto share = [&](Index j) { return is_escaped(j) ? kPairShare : Real(1); };
     escaped_particles[k].elastic = touch_sums(walk, escaped_particles[k].local_index, share).energy;
   }
@@ -67,12 +72,12 @@ template <class Laws, class Rows>
 struct EscapedContactsItem {
   ContactWalk<Laws, Rows> walk;
   Vec3 gravity;
-  OpenBox box;
+  RemainingSpace space;
   StartViews start;
 
   SCREE_HD void operator()(Index i) const {
     if (start.drifting[i]) return;
-    const IsEscaped<Rows> is_escaped{walk.in, box};
+    const IsEscaped<Rows> is_escaped{walk.in, space};
     const auto self = walk.self(i);
     const Real mass = self.u.w;
     if (is_escaped(i)) {

@@ -80,6 +80,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     build_joint_forces(root, model, names);
     build_particles(root, model, names, size, share, log);
     build_inserters(root, model, names, log);
+    build_outlets(root, model, names);
     build_contact(root, model, names);
     choose_integrator(root, model, share, chosen);
     check_integrator(root, model);

@@ -8,6 +8,7 @@
 #include "base/box.hpp"
 #include "base/mat3.hpp"
 #include "model/builder/build_parts.hpp"
+#include "model/builder/carriers.hpp"
 #include "model/builder/fill_region.hpp"
 #include "model/builder/read_mixture.hpp"
 #include "model/derived/connections.hpp"
@@ -23,24 +24,6 @@ constexpr Real kMostBirths = 1e9;
 // Solid fractions of a stream: random positions rarely find space above the first, and never above the
 // second.
 constexpr Real kDenseStream = 0.25, kFullStream = 0.55;
-
-// Index of the parent of a wall with a pose: the bodies come first, then these walls.
-int parent_of_wall(const Model& model, std::size_t wall) {
-  int parent = static_cast<int>(model.bodies.size());
-  for (std::size_t w = 0; w < wall; ++w) parent += model.walls[w].has_pose();
-  return parent;
-}
-
-int carrier_of(const DeckTable& table, const Model& model, const ModelNames& names) {
-  if (!table.has("on")) return kGround;
-  const std::string& name = table.text("on");
-  for (std::size_t w = 0; w < model.walls.size(); ++w) {
-    if (model.walls[w].name != name) continue;
-    if (!model.walls[w].has_pose()) table.fail("on", "is a plane at rest: leave the key out");
-    return parent_of_wall(model, w);
-  }
-  return find_name(names.bodies, table, "on", "body");
-}
 
 // The two sides of a rectangular face, each half of it [m].
 void set_face(const DeckTable& table, int dimension, BirthRegion& region) {

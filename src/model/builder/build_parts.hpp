@@ -35,6 +35,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
 // Called after the particles are built. Adds the inserters' particles to their totals, and their names to the
 // groups. Warns of a density at which births are late.
 void build_inserters(const DeckTable& deck, Model& model, const ModelNames& names, Log& log);
+void build_outlets(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 // Called after the contacts are built. Replaces integrator.particles = "auto" and sets time.control
 // accordingly; both are added to `chosen`.

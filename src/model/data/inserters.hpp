@@ -1,4 +1,5 @@
-// Inserters of the deck: regions in which particles are born during a run, how many, when and of which kind.
+// Inserters and outlets of the deck: regions in which particles are born during a run, how many, when and of
+// which kind, and regions in which they are removed.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "deck/choices.hpp"
 #include "model/data/bodies.hpp"
 #include "physics/birth_schedule.hpp"
+#include "physics/outlet_region.hpp"
 
 namespace scree {
 
@@ -55,6 +57,14 @@ struct Inserter {
   BlockedPolicy blocked = BlockedPolicy::wait;
   std::int64_t most_waiting = std::numeric_limits<std::int64_t>::max();  // more of them end the run
   std::int64_t most_births = 0;                                          // until the end of the run
+};
+
+struct Outlet {
+  std::string name;
+  OutletRegion region;    // at t = 0, in the global frame; on a carrier it moves with it afterwards
+  int carrier = kGround;  // as of an inserter
+  // Particles are removed at start + k * interval, at `end` at the latest [s].
+  Real start = 0, end = kInfinity, interval = 0;
 };
 
 }  // namespace scree

@@ -190,6 +190,7 @@ struct Model {
   std::vector<ModelMesh> meshes;
   ParticleSet particles;  // initial state of this rank's particles
   std::vector<Inserter> inserters;
+  std::vector<Outlet> outlets;
   DiscThickness disc_thickness;
   std::vector<Body> bodies;
   std::vector<Joint> joints;

@@ -42,6 +42,7 @@ class Simulation {
         body_coupling_(model, ranks_),
         step_(model, *backend_, body_coupling_, timers_),
         births_(model),
+        outlets_(model),
         live_(model, options, backend_->description(), log),
         book_(restart_.starts, state_, live_.started(), backend_->description(), ranks_.size()),
         surfaces_outside_(model) {
@@ -100,6 +101,7 @@ class Simulation {
   BodyCoupling body_coupling_;
   CoupledStep step_;
   const Births births_;
+  const Outlets outlets_;
   std::unique_ptr<Recorder> recorder_;
   LiveStatus live_;
   StartRecord book_;
@@ -129,7 +131,7 @@ void Simulation::start_or_resume() {
 
 // Births at t = 0.
 void Simulation::insert_at_start() {
-  state_.population = births_.start();
+  state_.population = births_.start(), state_.outlets = outlets_.start();
   const std::vector<Particle> born =
       births_.births_at(state_.clock.time, body_coupling_.motion(), backend_->particles(), state_.population);
   if (born.empty()) return;
@@ -265,7 +267,8 @@ ExitCode Simulation::run_to_the_end() {
                           watch_escaped_particles(escaped_particles);
                         },
                         timeline_.get(),
-                        model_.inserters.empty() ? nullptr : &births_};
+                        model_.inserters.empty() ? nullptr : &births_,
+                        model_.outlets.empty() ? nullptr : &outlets_};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {

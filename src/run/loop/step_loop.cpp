@@ -114,7 +114,7 @@ void StepLoop::reject(const StepOutcome& outcome) {
 // Takes equal steps up to the next output, until signals and progress are due, and none that begins at
 // `until` or later. A batch ends where the energies are sampled. Not so in mixed precision, where the ends of
 // batches affect the bits: there the energies are sampled at the end of the batch. A step that reaches an
-// instant of births is the last one of its batch.
+// instant of inserters or outlets is the last one of its batch.
 void StepLoop::take_explicit_steps(Real h, Real until) {
   const bool mixed = parts_.backend.is_mixed();
   std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
@@ -123,7 +123,7 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
   if (!mixed && parts_.timeline != nullptr)
     most = std::min(most, as_size(parts_.timeline->most_steps(steps)));
   std::vector<Real> times = clock_.equal_steps(most);
-  const Real stop = std::min(until, next_births());
+  const Real stop = std::min(until, next_change());
   times.erase(std::lower_bound(times.begin() + 1, times.end(), stop), times.end());
   const double start = parts_.seconds();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
@@ -140,12 +140,16 @@ void StepLoop::close_step(Real h) {
   output(h);
 }
 
-// Handles particles outside the domain: an error, or no contact detection from the next step on. Returns
-// whether there are any.
+// Handles particles outside the domain: an error, or no contact detection from the next step on; and removes
+// those in outlets. Returns whether there are any.
 bool StepLoop::leave() {
   const auto scope = parts_.timers.time(Stage::migrate);
-  const std::vector<EscapedParticle> escaped_particles = parts_.step.check_inside();
+  Outlets::Open open;
+  if (parts_.outlets != nullptr)
+    open = parts_.outlets->open_at(clock_.time(), parts_.link.motion(), state_.outlets);
+  const std::vector<EscapedParticle> escaped_particles = parts_.step.check_inside(open.regions);
   if (escaped_particles.empty()) return false;
+  if (parts_.outlets != nullptr) parts_.outlets->account(escaped_particles, open, state_.outlets);
   parts_.leaving(escaped_particles);
   parts_.backend.particles().remove_escaped(escaped_particles);
   account_escaped(escaped_particles, parts_.model.space.leaving, state_.carried_out);
@@ -163,8 +167,10 @@ bool StepLoop::insert() {
   return !born.empty();
 }
 
-Real StepLoop::next_births() const {
-  return parts_.births != nullptr ? parts_.births->next(state_.population) : kInfinity;
+// The next instant at which inserters or outlets may change the particles [s].
+Real StepLoop::next_change() const {
+  const Real births = parts_.births != nullptr ? parts_.births->next(state_.population) : kInfinity;
+  return parts_.outlets != nullptr ? std::min(births, parts_.outlets->next(state_.outlets)) : births;
 }
 
 void StepLoop::output(Real h) {

@@ -35,8 +35,9 @@ struct LoopParts {
   // Called with the particles that leave the domain, after the step in which they do.
   std::function<void(const std::vector<EscapedParticle>&)> leaving = [](const std::vector<EscapedParticle>&) {
   };
-  Timeline* timeline = nullptr;    // of some steps, or none
-  const Births* births = nullptr;  // of a model with inserters
+  Timeline* timeline = nullptr;      // of some steps, or none
+  const Births* births = nullptr;    // of a model with inserters
+  const Outlets* outlets = nullptr;  // of a model with outlets
 };
 
 // Number of explicit steps of the bodies in one batch. step_seconds: wall time per step of the last batch;
@@ -70,7 +71,7 @@ class StepLoop {
   void close_step(Real h);
   bool leave();
   bool insert();
-  Real next_births() const;
+  Real next_change() const;
   void output(Real h);
   void save_good_state();
   const Ranks& ranks() const { return parts_.link.ranks(); }

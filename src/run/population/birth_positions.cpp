@@ -11,19 +11,6 @@
 namespace scree {
 namespace {
 
-// The motion of a carrier at t = 0.
-BodyMotion start_of_carrier(const Model& model, int carrier) {
-  if (carrier < std::ssize(model.bodies)) return start_motion(model.bodies[as_size(carrier)]);
-  auto number = as_size(carrier) - model.bodies.size();
-  for (const Wall& wall : model.walls)
-    if (wall.has_pose() && number-- == 0) {
-      BodyMotion motion;
-      motion.position = wall.point, motion.kind = BodyKind::spatial;
-      return motion;
-    }
-  return {};
-}
-
 Vec3 within(CounterRandom& random, Vec3 min, Vec3 max, bool planar) {
   const Real x = random.uniform(min.x, max.x), y = random.uniform(min.y, max.y);
   return {x, y, planar ? 0 : random.uniform(min.z, max.z)};
@@ -35,12 +22,7 @@ bool is_below(Vec3 a, Vec3 b, bool planar) { return a.x <= b.x && a.y <= b.y && 
 
 BirthPositions::BirthPositions(const Model& model, const Inserter& inserter,
                                std::span<const BodyMotion> motion)
-    : model_(model), inserter_(inserter), is_carried_(inserter.carrier != kGround) {
-  if (!is_carried_) return;
-  const BodyMotion start = start_of_carrier(model, inserter.carrier);
-  now_ = motion[as_size(inserter.carrier)], at_start_ = start.position;
-  rotation_ = rotation_matrix(orientation(now_) * conjugate(orientation(start)));
-}
+    : model_(model), inserter_(inserter), carrier_(model, inserter.carrier, motion) {}
 
 std::optional<Vec3> BirthPositions::point_on_face(CounterRandom& random, Real radius) const {
   const BirthRegion& region = inserter_.region;
@@ -100,10 +82,9 @@ std::optional<Birth> BirthPositions::draw(CounterRandom random, Real radius, Rea
   if (bound > 0)
     birth.velocity +=
         within(random, Vec3{-bound, -bound, -bound}, Vec3{bound, bound, bound}, model_.space.dimension == 2);
-  if (is_carried_) {
-    const Vec3 arm = rotation_ * (birth.position - at_start_);
-    birth.velocity = rotation_ * birth.velocity + now_.velocity + cross(global_spin(now_), arm);
-    birth.position = now_.position + arm;
+  if (inserter_.carrier != kGround) {
+    birth.position = carrier_.point(birth.position);
+    birth.velocity = carrier_.direction(birth.velocity) + carrier_.velocity(birth.position);
   }
   // From the face on the particle falls freely.
   birth.position += elapsed * (birth.velocity + (elapsed / 2) * model_.gravity);

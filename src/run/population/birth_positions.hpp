@@ -7,6 +7,7 @@
 #include "base/counter_random.hpp"
 #include "model/data/body_exchange.hpp"
 #include "model/data/model.hpp"
+#include "run/population/carrier_motion.hpp"
 
 namespace scree {
 
@@ -31,10 +32,7 @@ class BirthPositions {
 
   const Model& model_;
   const Inserter& inserter_;
-  bool is_carried_ = false;
-  BodyMotion now_;  // of the carrier
-  Vec3 at_start_;   // its position at t = 0 [m]
-  Mat3 rotation_;   // its rotation since t = 0
+  CarrierMotion carrier_;
 };
 
 }  // namespace scree

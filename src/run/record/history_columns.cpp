@@ -63,6 +63,14 @@ void particle_counts(Group step) {
            [](const Sample& s) { return s.population.born_mass; });
 }
 
+// k: index of the outlet.
+void outlet_columns(Group outlet, std::size_t k) {
+  outlet.add_count("removed", "particles removed so far",
+                   [k](const Sample& s) { return s.population.removed[k]; });
+  outlet.add("mass", "kg", "mass of the particles removed so far",
+             [k](const Sample& s) { return s.population.removed_mass[k]; });
+}
+
 // i: index of the inserter.
 void inserter_columns(Group inserter, std::size_t i) {
   inserter.add_count("born", "particles born so far", [i](const Sample& s) { return s.population.born[i]; });
@@ -92,7 +100,7 @@ void energy_columns(Group energy, bool has_births) {
         &Ledger::driver_work);
   entry("carried_out",
         "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended "
-        "when a particle escaped",
+        "when a particle escaped or was removed",
         &Ledger::carried_out);
   if (has_births)
     entry("carried_in", "kinetic and gravitational energy of the particles born so far, at birth",
@@ -298,6 +306,10 @@ PopulationSample population_sample(const Model& model, const State& state) {
     sample.born.push_back(population.born_of(i)), sample.waiting.push_back(population.waiting_of(i));
     sample.dropped.push_back(population.dropped[as_size(i)]);
   }
+  for (int k = 0; k < std::ssize(state.outlets.removed); ++k) {
+    sample.removed.push_back(state.outlets.removed[as_size(k)]);
+    sample.removed_mass.push_back(state.outlets.mass_of(k));
+  }
   sample.particles = particles_so_far(model.particles, population) - state.carried_out.removed;
   sample.born_mass = population.born_mass();
   return sample;
@@ -311,7 +323,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   const Output& output = model.output;
   const bool has_births = !model.inserters.empty();
   step_columns({"step", out});
-  if (has_births) particle_counts({"step", out});
+  if (has_births || !model.outlets.empty()) particle_counts({"step", out});
   energy_columns({"energy", out}, has_births);
   if (model.is_cohesive()) cohesion_columns({"energy", out});
   if (model.rotates()) rotation_columns({"rotation", out}, model.rolls());
@@ -327,6 +339,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (std::size_t i = 0; i < model.inserters.size(); ++i)
     inserter_columns({"inserters/" + model.inserters[i].name, out}, i);
+  for (std::size_t k = 0; k < model.outlets.size(); ++k)
+    outlet_columns({"outlets/" + model.outlets[k].name, out}, k);
   for (const int body : output.history_bodies) {
     const auto b = as_size(body);
     body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);

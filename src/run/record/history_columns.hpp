@@ -16,11 +16,13 @@
 
 namespace scree {
 
-// Particles of the inserters up to one instant, per inserter.
+// Particles born and removed up to one instant.
 struct PopulationSample {
-  std::vector<std::int64_t> born, waiting, dropped;
-  std::int64_t particles = 0;  // in the run: those at t = 0 and born, less removed ones
-  Real born_mass = 0;          // of all inserters [kg]
+  std::vector<std::int64_t> born, waiting, dropped;  // per inserter
+  std::vector<std::int64_t> removed;                 // per outlet
+  std::vector<Real> removed_mass;                    // per outlet [kg]
+  std::int64_t particles = 0;                        // in the run: those at t = 0 and born, less removed ones
+  Real born_mass = 0;                                // of all inserters [kg]
 };
 PopulationSample population_sample(const Model& model, const State& state);
 

@@ -43,7 +43,8 @@ void LiveStatus::add_to_rate(const State& state) {
 void LiveStatus::take(const State& state, std::int64_t contacts) {
   Progress& now = status_.progress;
   now.time = state.clock.time, now.steps = state.counts.steps;
-  now.particles = particles_so_far(model_.particles, state.population) - state.carried_out.left;
+  now.particles = particles_so_far(model_.particles, state.population) - state.carried_out.left -
+                  state.outlets.removed_of_all();
   now.contacts = contacts;
   now.balance_error = balance_error(state.balance), now.exchanged = state.balance.exchanged;
   now.step_rate = rate_.steps_per_second();

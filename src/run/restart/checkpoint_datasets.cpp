@@ -76,7 +76,7 @@ State sized_state(const Model& model) {
     sizes.bodies.belt_power.resize(surfaces.parents() - model.bodies.size());
   if (model.output.adds_up_works()) sizes.works.resize(kLimbsPerTriangle * TriangleWorks(model).triangles());
   sizes.there = {model.rotates(), model.rolls()};
-  sizes.population = Births(model).start();
+  sizes.population = Births(model).start(), sizes.outlets = Outlets(model).start();
   return sizes;
 }
 

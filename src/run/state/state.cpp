@@ -66,6 +66,13 @@ void visit_population(Visitor& visit, StateType& population) {
 }
 
 template <class Visitor, class StateType>
+void visit_outlets(Visitor& visit, StateType& outlets) {
+  visit.if_any("outlets/removed", outlets.removed);
+  visit.if_any("outlets/mass", outlets.mass);
+  visit.if_any("outlets/instants", outlets.instants);
+}
+
+template <class Visitor, class StateType>
 void visit_state(Visitor& visit, StateType& state) {
   visit_clock(visit, state.clock);
   visit("counts/steps", state.counts.steps);
@@ -104,7 +111,7 @@ void visit_state(Visitor& visit, StateType& state) {
       visit(kCarriedLosses[kind], state.carried_out.losses.of[kind]);
   visit("carried_out/drifting_energy", state.carried_out.ballistic_energy);
   visit("carried_out/drifting_integrator_loss", state.carried_out.ballistic_integrator_loss);
-  visit_population(visit, state.population);
+  visit_population(visit, state.population), visit_outlets(visit, state.outlets);
   visit("bodies/least_kinetic", state.bodies.min_kinetic);
   visit("bodies/most_kinetic", state.bodies.max_kinetic);
   visit("balance/open", state.balance.open);

@@ -9,6 +9,7 @@
 #include "dem/backend/backend.hpp"
 #include "mbs/multibody.hpp"
 #include "output/checkpoint.hpp"
+#include "run/population/outlets.hpp"
 #include "run/population/population_state.hpp"
 #include "run/state/step_clock.hpp"
 
@@ -49,6 +50,7 @@ struct State {
   std::vector<std::int64_t> works;
   CarriedOut carried_out;
   PopulationState population;
+  OutletState outlets;
   BalanceState balance;
   // Numbers recorded so far. All of them are on disk before a checkpoint with these numbers.
   std::int64_t history_rows = 0, snapshots = 0;
