@@ -360,7 +360,9 @@ RECORDED = (
     ("examples/engine_mount", ()), ("examples/governor", ("output.history_coordinates=9",)),
     ("examples/slider_crank_3d", ("output.history_coordinates=9",)), ("examples/boom", ()), ("examples/press", ()),
     ("examples/rolling_resistance", ("output.history_particles=[0]",)),
-    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")),
+    ("examples/box_of_spheres", (
+        "integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01",
+        'output.history_regions=[{name="ball", kind="sphere", center=[0.0, 0.0, 0.0], radius=1.0}]')),
 )
 
 

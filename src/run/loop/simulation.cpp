@@ -22,6 +22,7 @@
 #include "run/report/live_status.hpp"
 #include "run/report/summary.hpp"
 #include "run/report/surfaces_outside.hpp"
+#include "run/restart/finished_run.hpp"
 #include "run/restart/restart.hpp"
 #include "run/state/start_record.hpp"
 
@@ -53,9 +54,11 @@ class Simulation {
     recorder_ =
         std::make_unique<Recorder>(model, *backend_, body_coupling_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
+    recorder_->find_stop(state_);
+    report_stop(recorder_->stop_reason(), options, log);
     // A restart of a finished run into a new folder records its state there.
-    const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
-    if (options.restart.empty() || is_done) {
+    const bool is_done = StepClock(model, state_.clock).done() || recorder_->should_end();
+    if (options.restart.empty() || (is_done && state_.history_rows == 0)) {
       const Reports::Instant now(backend_->reports());
       recorder_->history(state_, 0);
       recorder_->snapshot(state_);
@@ -68,7 +71,6 @@ class Simulation {
  private:
   ExitCode run_to_the_end();
   void start_or_resume();
-  void check_end() const;
   void load_state();
   void insert_at_start();
   void prepare_timeline();
@@ -122,7 +124,7 @@ void Simulation::start_or_resume() {
   } else {
     load_state();
     step_.counts() = state_.counts;
-    check_end();
+    check_end(StepClock(model_, state_.clock), model_.time, options_, log_);
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
@@ -145,19 +147,6 @@ void Simulation::prepare_timeline() {
   if (file.empty()) return;
   timeline_ = std::make_unique<Timeline>(step_.counts().steps + from, steps, backend_->device_trace());
   timeline_->write(file, ranks_);
-}
-
-// If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
-void Simulation::check_end() const {
-  const StepClock clock(model_, state_.clock);
-  if (clock.time() > clock.end())
-    throw InputError(fmt::format("--restart {}: the checkpoint is at t = {} s, past time.end = {} s",
-                                 options_.restart, clock.time(), model_.time.end));
-  if (clock.done())
-    log_.info(fmt::format(
-        "--restart {}: nothing left to do: the run has reached time.end = {} s; a later one, --set "
-        "time.end=..., continues it",
-        options_.restart, model_.time.end));
 }
 
 // Takes over the checkpoint's particles, which are complete, and the constants of the deck if it has changed.
@@ -231,6 +220,7 @@ void Simulation::progress(const State& state, Real h) {
 }
 
 void Simulation::show_status(const std::string& status) {
+  live_.ended_by(recorder_ ? recorder_->stop_reason() : "");
   live_.write(status, state_, recorder_ ? recorder_->contacts() : -1,
               recorder_ ? recorder_->snapshots_written() : state_.snapshots);
 }
@@ -282,7 +272,8 @@ ExitCode Simulation::run_to_the_end() {
     book_.begin_loop();
     const LoopEnd end = loop.run();
     book_.end_loop();
-    if (end == LoopEnd::done) {
+    if (end == LoopEnd::stop_condition) log_.info("ended by the stop condition " + recorder_->stop_reason());
+    if (end == LoopEnd::done || end == LoopEnd::stop_condition) {
       checkpoint(loop.complete_state(), "checkpoint_end.h5");
       return finish("done", ExitCode::done);
     }
@@ -356,6 +347,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   RunRecord record;
   record.deck_path = options_.deck_path, record.resolved_deck = options_.resolved_deck;
   record.command_line = options_.command_line;
+  record.stop_condition = recorder_ ? recorder_->stop_reason() : "";
   record.status = status, record.exit_code = static_cast<int>(code);
   record.started = live_.started(), record.ended = utc_now();
   record.backend = backend_->description();
@@ -412,6 +404,7 @@ void Simulation::summarize() const {
 }  // namespace
 
 ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log) {
+  check_stop_columns(model);
   Simulation simulation(model, options, log);
   return simulation.run();
 }
