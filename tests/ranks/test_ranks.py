@@ -101,6 +101,7 @@ OTHER_CASES = {
                                               (2, 4)),
     "sticky, implicit": ([HERE / "sticky.toml", *IMPLICIT, *FIXED, "contact.pairs.0.adhesion=dmt",
                           "parallel.imbalance=0.05", "time.end=1e-3"], (2, 4)),
+    "many sizes": ([HERE / "sizes.toml", "parallel.imbalance=0.0"], (2, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (3,)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (2,)),
 }
