@@ -356,34 +356,12 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.redundancy = body_coupling_.multibody() ? body_coupling_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
-  const LoadBalance balance = backend_->list().balance();
   record.starts = book_.starts(state_);
   record.timers = timers_;
-  const StepCounts& n = step_.counts();
-  record.counts = {{"steps", n.steps},
-                   {"substeps", model_.integrator.substeps},
-                   {"newton_iterations", n.newton_iterations},
-                   {"linear_iterations", n.linear_iterations},
-                   {"rejected_error", n.rejected_error},
-                   {"rejected_newton", n.rejected_newton},
-                   {"frozen_steps", n.lagged_steps},
-                   {"list_builds", backend_->list().builds()},
-                   {"list_skin_chosen", chooses_skin(model_) ? 1 : 0},
-                   {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
-                   {"rebalances", balance.rebalances},
-                   {"migrated", migrated_},
-                   {"particles", particles_so_far(model_.particles, state_.population)},
-                   {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
-                   {"particles_escaped", state_.carried_out.left},
-                   {"bodies_outside", bodies_outside(model_, state_.bodies).count},
-                   {"history_rows", state_.history_rows},
-                   {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
-  const BalanceState& b = state_.balance;
-  record.measures = {
-      {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
-      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", taken_by_integrator(b)},
-      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest},
-      {"list_skin", backend_->list().skin()}};
+  const RankSums sums{ranks_.alone() ? backend_->list().entries() : list_entries_, migrated_,
+                      recorder_ ? recorder_->snapshots_written() : state_.snapshots};
+  record.counts = record_counts(model_, state_, step_.counts(), backend_->list(), sums);
+  record.measures = record_measures(state_, backend_->list());
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }
@@ -394,6 +372,7 @@ void Simulation::summarize() const {
   log_.info(steps_text(n, state_.clock.time) + lists_text(model_, backend_->list(), timers_));
   if (n.lagged_steps > 0) log_.info(lagged_text(n));
   log_.info(balance_text(b, state_.carried_out.left, bodies_outside(model_, state_.bodies).count));
+  if (model_.particles.inserters > 0 || !model_.outlets.empty()) log_.info(population_text(state_));
   log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
   const Multibody* const bodies = body_coupling_.multibody();
   const BodyBalance of_bodies = bodies == nullptr ? BodyBalance{} : body_balance(model_, *bodies, state_);
