@@ -49,7 +49,7 @@ def mass_of(particles, density):
 
 
 def filling(run, opens, radius, density):
-    """Bulk density [kg/m^3] of the middle of the filling at the time when the gate opens, and the height of its top [m]."""
+    """Bulk density [kg/m^3] of the middle of the filling when the gate opens, and the height of its top [m]."""
     snapshot = min(run.snapshots, key=lambda one: abs(one.time - opens))
     height = np.array(snapshot.particles["position"])[:, 2]
     mass = mass_of(snapshot.particles, density)
@@ -71,7 +71,8 @@ def silo(run):
     steady = (out > STEADY[0] * total) & (out < STEADY[1] * total)
     found = rates(time[steady], out[steady])
     law = BEVERLOO_C * bulk * np.sqrt(GRAVITY) * (orifice - BEVERLOO_K * diameter) ** 2.5
-    loads = {name: between(run, f"contacts/{name}/fz", SETTLED * opens, opens)[0] for name in ("tube", "floor", "gate")}
+    loads = {name: between(run, f"contacts/{name}/fz", SETTLED * opens, opens)[0]
+             for name in ("tube", "floor", "gate")}
     bottom, weight = -loads["floor"] - loads["gate"], GRAVITY * total
     friction = deck["contact"]["pairs"][1]["friction"]
     saturation = 4 * friction * PRESSURE_RATIO * height / (2 * radius)
@@ -81,7 +82,8 @@ def silo(run):
             f"    discharge {found.mean():.3f} +- {found.std():.3f} kg/s in windows of {WINDOW} s, "
             f"Beverloo's law {law:.3f} kg/s: {100 * (found.mean() / law - 1):+.0f} %\n"
             f"    weight {weight:.2f} N, before the gate opens on floor and gate {bottom:.2f} N "
-            f"({100 * bottom / weight:.0f} %; Janssen's law {100 * janssen:.0f} %), on the wall {-loads['tube']:.2f} N; "
+            f"({100 * bottom / weight:.0f} %; Janssen's law {100 * janssen:.0f} %), "
+            f"on the wall {-loads['tube']:.2f} N; "
             f"on the wall while it discharges {opened:.2f} N")
 
 
@@ -94,7 +96,8 @@ def numbers(run, name, small, large):
 
 def screen(run):
     density = run.deck["materials"][0]["density"]
-    small, large = (density * 4 / 3 * np.pi * part["radius"]["value"] ** 3 for part in run.deck["inserters"][0]["mixture"])
+    mixture = run.deck["inserters"][0]["mixture"]
+    small, large = (density * 4 / 3 * np.pi * part["radius"]["value"] ** 3 for part in mixture)
     found = {name: numbers(run, name, small, large) for name in ("under", "over")}
     undersize = found["under"][0] / (found["under"][0] + found["over"][0])
     oversize = found["over"][1] / (found["under"][1] + found["over"][1])
