@@ -355,14 +355,13 @@ class GoingOnTest(FolderTest):
 
 
 # Decks, each with a setting: together they have every kind of column.
-BALL = 'output.history_regions=[{name="ball", kind="sphere", center=[0.0, 0.0, 0.0], radius=1.0}]'
+REGION = 'output.history_regions=[{name="ball", kind="sphere", center=[0.0, 0.0, 0.0], radius=1.0}]'
 RECORDED = (
     ("paper/net_9", ("output.history_bodies=['net.0']", "output.history_contacts=['net']")),
     ("examples/engine_mount", ()), ("examples/governor", ("output.history_coordinates=9",)),
     ("examples/slider_crank_3d", ("output.history_coordinates=9",)), ("examples/boom", ()), ("examples/press", ()),
-    ("examples/rolling_resistance", ("output.history_particles=[0]",)),
-    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01", BALL)),
-)
+    ("examples/rolling_resistance", ("output.history_particles=[0]", REGION)),
+    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")))
 
 
 class PageTest(FolderTest):
@@ -370,7 +369,8 @@ class PageTest(FolderTest):
 
     def patterns(self):
         """Of the page's table: (pattern of a path, units of its row)."""
-        text, found = (ROOT / "postprocess/README.md").read_text().split("## What the history holds")[1], {}
+        text = (ROOT / "postprocess/README.md").read_text().split("## What the history holds")[1]
+        found = {}
         for row in re.findall(r"^\| (`\w+/.*)\|$", text, re.M):
             names, units, *_ = row.split(" | ")
             for name in re.findall(r"`(\w+/[^`]+)`", names):

@@ -14,6 +14,7 @@
 #include "model/derived/connections.hpp"
 #include "model/derived/frames.hpp"
 #include "model/derived/mixture.hpp"
+#include "model/derived/space_box.hpp"
 #include "physics/particle_mass.hpp"
 
 namespace scree {
@@ -104,6 +105,53 @@ BirthRegion region_of(const DeckTable& table, const Model& model, const ModelNam
       break;
   }
   return region;
+}
+
+Vec3 smaller(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+Vec3 larger(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+// The box around a region at t = 0 [m].
+Box box_around(const BirthRegion& region) {
+  const Vec3 a = region.half_side[0], b = region.half_side[1];
+  const Vec3 around{std::abs(a.x) + std::abs(b.x), std::abs(a.y) + std::abs(b.y),
+                    std::abs(a.z) + std::abs(b.z)};
+  const Vec3 r{region.radius, region.radius, region.radius};
+  switch (region.kind) {
+    case InserterKind::box:
+    case InserterKind::mesh:
+      return {region.min, region.max};
+    case InserterKind::cylinder:
+      return {smaller(region.ends[0], region.ends[1]) - r, larger(region.ends[0], region.ends[1]) + r};
+    case InserterKind::sphere:
+      return {region.center - r, region.center + r};
+    case InserterKind::face:
+      break;
+  }
+  return {region.center - around, region.center + around};
+}
+
+// Refuses a region in which no position is free for the largest particles, or that is outside the domain.
+void check_room(const DeckTable& table, const Model& model, const Inserter& inserter) {
+  const BirthRegion& region = inserter.region;
+  const bool planar = model.space.dimension == 2;
+  const Real radius = inserter.mixture->largest_radius();
+  const Vec3 extent = region.max - region.min;
+  Real room = kInfinity;  // for a radius
+  if (region.kind == InserterKind::box || region.kind == InserterKind::mesh)
+    room = std::min({extent.x, extent.y, planar ? kInfinity : extent.z}) / 2;
+  if (region.kind == InserterKind::sphere || region.kind == InserterKind::cylinder) room = region.radius;
+  if (region.kind == InserterKind::cylinder) room = std::min(room, norm(region.ends[1] - region.ends[0]) / 2);
+  if (radius > room)
+    table.fail("kind",
+               fmt::format("the largest particles, of radius {} m, do not fit into the region; it has "
+                           "room for radii up to {:.4g} m",
+                           radius, room));
+  if (inserter.carrier != kGround) return;
+  const Box box = box_around(region);
+  const Box domain = open_box(model.space);
+  for (Real Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})
+    if (box.max.*axis < domain.min.*axis || box.min.*axis > domain.max.*axis)
+      table.fail("kind", "the region is outside the domain of [space]");
 }
 
 // The end of the births [s].
@@ -234,29 +282,6 @@ void check_density(const DeckTable& table, const Inserter& inserter, int dimensi
                             table.label(), what, kDenseStream, remedy));
 }
 
-Vec3 smaller(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-Vec3 larger(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-
-// The box around a region at t = 0 [m].
-Box box_around(const BirthRegion& region) {
-  const Vec3 a = region.half_side[0], b = region.half_side[1];
-  const Vec3 around{std::abs(a.x) + std::abs(b.x), std::abs(a.y) + std::abs(b.y),
-                    std::abs(a.z) + std::abs(b.z)};
-  const Vec3 r{region.radius, region.radius, region.radius};
-  switch (region.kind) {
-    case InserterKind::box:
-    case InserterKind::mesh:
-      return {region.min, region.max};
-    case InserterKind::cylinder:
-      return {smaller(region.ends[0], region.ends[1]) - r, larger(region.ends[0], region.ends[1]) + r};
-    case InserterKind::sphere:
-      return {region.center - r, region.center + r};
-    case InserterKind::face:
-      break;
-  }
-  return {region.center - around, region.center + around};
-}
-
 // Adds the particles of an inserter to the totals of the model.
 void declare(const Inserter& inserter, Model& model) {
   const Mixture& mixture = *inserter.mixture;
@@ -299,11 +324,14 @@ void build_inserters(const DeckTable& deck, Model& model, const ModelNames& name
     inserter.seed = table.integer("seed");
     inserter.mixture = std::make_shared<const Mixture>(read_mixture(table, names, model.space.dimension));
     inserter.schedule = schedule_of(table, model, inserter);
-    inserter.interval = interval_of(table, model, inserter);
+    inserter.interval = checked_interval(table, model, interval_of(table, model, inserter));
     inserter.gap = table.real("gap"), inserter.tries = table.integer("tries");
     inserter.blocked = table.choice<BlockedPolicy>("blocked");
+    if (table.has("most_waiting") && inserter.blocked != BlockedPolicy::wait)
+      table.fail("most_waiting", "used with blocked = \"wait\" only");
     if (table.has("most_waiting")) inserter.most_waiting = table.integer("most_waiting");
     inserter.most_births = most_births(table, model, inserter);
+    check_room(table, model, inserter);
     check_density(table, inserter, model.space.dimension, log);
     declare(inserter, model);
     model.particles.groups.push_back({inserter.name, model.particles.totals.at_start});

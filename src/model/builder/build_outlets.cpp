@@ -65,9 +65,10 @@ void build_outlets(const DeckTable& deck, Model& model, const ModelNames& names)
     if (table.has("end")) outlet.end = table.real("end");
     if (!(outlet.end > outlet.start))
       table.fail("end", fmt::format("must be above start = {} s", outlet.start));
-    outlet.interval = table.has("interval")
-                          ? table.real("interval")
-                          : fall_interval(table, model, model.particles.totals.smallest_radius);
+    const Real interval = table.has("interval")
+                              ? table.real("interval")
+                              : fall_interval(table, model, model.particles.totals.smallest_radius);
+    outlet.interval = checked_interval(table, model, interval);
     model.outlets.push_back(std::move(outlet));
   }
 }

@@ -1,5 +1,7 @@
 #include "model/builder/carriers.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace scree {
@@ -12,6 +14,9 @@ int parent_of_wall(const Model& model, std::size_t wall) {
   for (std::size_t w = 0; w < wall; ++w) parent += model.walls[w].has_pose();
   return parent;
 }
+
+// Instants are counted in integers, and a floating-point number gives each of them exactly up to this one.
+constexpr Real kMostInstants = 1e15;
 
 }  // namespace
 
@@ -30,6 +35,14 @@ Real fall_interval(const DeckTable& table, const Model& model, Real radius) {
   const Real g = norm(model.gravity);
   if (g == 0) table.fail("interval", "missing; without gravity it must be a number above 0 [s]");
   return std::sqrt(4 * radius / g);
+}
+
+Real checked_interval(const DeckTable& table, const Model& model, Real interval) {
+  if (interval > 0 && !(model.time.end / interval <= kMostInstants))
+    table.fail("interval", fmt::format("must not be below {:.1g} s: there would be more than {:.0g} instants "
+                                       "until time.end",
+                                       model.time.end / kMostInstants, kMostInstants));
+  return interval;
 }
 
 }  // namespace scree

@@ -15,4 +15,7 @@ int carrier_of(const DeckTable& table, const Model& model, const ModelNames& nam
 // [m]. Throws InputError without gravity.
 Real fall_interval(const DeckTable& table, const Model& model, Real radius);
 
+// The interval [s]. Throws InputError where its instants until time.end are too many to count.
+Real checked_interval(const DeckTable& table, const Model& model, Real interval);
+
 }  // namespace scree

@@ -99,6 +99,15 @@ std::string inserter_lines(const Model& model) {
   return lines;
 }
 
+std::string outlet_lines(const Model& model) {
+  std::string lines;
+  for (const Outlet& outlet : model.outlets)
+    lines += fmt::format("outlet         \"{}\": removes particles every {:.4g} s from {:g} s on{}\n",
+                         outlet.name, outlet.interval, outlet.start,
+                         outlet.end < kInfinity ? fmt::format(" until {:g} s", outlet.end) : "");
+  return lines;
+}
+
 // Groups with different sizes: a distribution that is meant by mass and read by number has other particles.
 std::string mean_mass_lines(const std::vector<ParticleGroup>& groups) {
   std::string lines;
@@ -129,7 +138,7 @@ std::string space_lines(const Model& model, int ranks) {
                        ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
                        range(particles.smallest_radius, particles.largest_radius, "m"),
                        range(particles.smallest_mass, particles.largest_mass, "kg"));
-  lines += inserter_lines(model);
+  lines += inserter_lines(model) + outlet_lines(model);
   lines += mean_mass_lines(model.particles.groups);
   if (model.disc_thickness.largest == 0) return lines;
   return lines + fmt::format(

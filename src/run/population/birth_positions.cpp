@@ -82,13 +82,16 @@ std::optional<Birth> BirthPositions::draw(CounterRandom random, Real radius, Rea
   if (bound > 0)
     birth.velocity +=
         within(random, Vec3{-bound, -bound, -bound}, Vec3{bound, bound, bound}, model_.space.dimension == 2);
+  Vec3 of_carrier;
   if (inserter_.carrier != kGround) {
     birth.position = carrier_.point(birth.position);
-    birth.velocity = carrier_.direction(birth.velocity) + carrier_.velocity(birth.position);
+    birth.velocity = carrier_.direction(birth.velocity);
+    of_carrier = carrier_.velocity(birth.position);
   }
-  // From the face on the particle falls freely.
+  // From the face on the particle falls freely. The face was behind by the carrier's motion since then, and
+  // the particle has moved with the carrier's velocity in addition to its own: the two cancel.
   birth.position += elapsed * (birth.velocity + (elapsed / 2) * model_.gravity);
-  birth.velocity += elapsed * model_.gravity;
+  birth.velocity += of_carrier + elapsed * model_.gravity;
   return birth;
 }
 

@@ -235,15 +235,18 @@ std::vector<Particle> Births::births_at(Real t, std::span<const BodyMotion> moti
                                         PopulationState& state) const {
   if (t < next(state)) return {};
   Instant now{motion, Obstacles(model_, motion), particles};
+  // A copy, so that a checkpoint after an error counts no particle that is not there.
+  PopulationState after = state;
   for (std::size_t i = 0; i < model_.inserters.size(); ++i) {
-    const std::optional<Real> instant = instant_reached(i, t, state);
+    const std::optional<Real> instant = instant_reached(i, t, after);
     if (!instant) continue;
     if (inserter(i).interval > 0)
-      state.instants[i] = std::max(state.instants[i], instants_until(inserter(i), t));
-    std::vector<Candidate> candidates = take_due(i, *instant, t, state);
-    find_positions(i, candidates, now, state);
-    leave_blocked(i, candidates, state);
+      after.instants[i] = std::max(after.instants[i], instants_until(inserter(i), t));
+    std::vector<Candidate> candidates = take_due(i, *instant, t, after);
+    find_positions(i, candidates, now, after);
+    leave_blocked(i, candidates, after);
   }
+  state = std::move(after);
   return now.born;
 }
 

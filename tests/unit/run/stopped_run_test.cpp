@@ -131,7 +131,7 @@ TEST_CASE(
   };
   check_continued(kRest, {});
   check_continued(kRest + kMoved, {"stop.moved.above=100"});
-  // A run without the condition resets what was recorded for it.
+  // A run without the condition drops its watch.
   run(folder + "free", "", {"time.end=" + std::to_string(stopped.time + 0.05)}, end);
   const Ended late = run(folder + "late", kMoved, {}, folder + "free/checkpoint_end.h5");
   CHECK(late.time > stopped.time + 0.055);
