@@ -64,6 +64,25 @@ struct GhostKeyItem {
   }
 };
 
+// Key of an item by level and cell.
+struct LevelKeyItem {
+  const Vec4* position;
+  Index active, owned;
+  CellGrid space;
+  SizeLevels sizes;
+  const LevelGrid* levels;
+  unsigned outside;
+  unsigned* keys;
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 p = position[i];
+    const bool searched = (i < active || i >= owned) && space.cell_index(xyz(p)).x >= 0;
+    if (!searched) return static_cast<void>(keys[i] = outside);
+    const LevelGrid& level = levels[sizes.of(p.w)];
+    const CellIndex c = level.grid.nearest_cell(xyz(p));
+    keys[i] = static_cast<unsigned>(level.first_cell + level.grid.index(c.x, c.y, c.z));
+  }
+};
+
 // Stores the position of a particle.
 struct BuiltAtItem {
   const Vec4* position;
@@ -131,11 +150,12 @@ void CudaList::require_sound_positions() {
 // particles: number over all ranks.
 void CudaList::sort_cells(Real skin, std::int64_t particles) {
   const Ranks& ranks = items_.ranks;
-  grid_ = make_cell_block_grid(
+  const SearchCells cells =
       ranks.alone()
           ? builder_.cells(skin, particles)
           : builder_.cells(skin, particles, owners_.decomposition().box(ranks.rank(), items_.subdomain),
-                           items_.owned));
+                           items_.owned);
+  grid_ = make_cell_block_grid(builder_.by_finest_cells(cells, skin, items_.owned));
   const auto outside = static_cast<unsigned>(grid_.count());
   const auto owned = static_cast<std::size_t>(items_.owned);
   particle_sort_.use_scratch(items_.list.scratch_space(CellSort::kNumbers * owned), owned);
@@ -211,6 +231,24 @@ void CudaList::index_ghosts() {
   for_each(items_.device(), ghosts, GhostItem{ghost_sort_.order(), items_.owned, ghost_items_.data()});
 }
 
+// Index of all items by level and cell.
+void CudaList::index_levels(Real skin) {
+  levels_ = {};
+  if (builder_.levels().count == 1) return;
+  const Index items = items_.layout.items;
+  const std::vector<LevelGrid> grids = builder_.level_grids(grid_.cells, skin, items);
+  level_grids_.resize(grids.size());
+  copy_async(level_grids_.data(), grids.data(), grids.size(), items_.stream);
+  const auto outside = static_cast<unsigned>(grids.back().first_cell + grids.back().grid.count());
+  for_each(items_.device(), items,
+           LevelKeyItem{items_.now.position.data(), items_.layout.active, items_.owned, grid_.cells.space,
+                        builder_.levels(), level_grids_.data(), outside,
+                        level_sort_.keys(static_cast<std::size_t>(items))});
+  level_sort_.sort(items_.device(), items, outside);
+  levels_ = {level_grids_.data(), level_sort_.starts(), level_sort_.order(), static_cast<int>(grids.size())};
+  wait_for(items_.stream);  // `grids` is on the host
+}
+
 void CudaList::search(Real skin) {
   const ParticleArrays& now = items_.now;
   ListInput in;
@@ -220,6 +258,7 @@ void CudaList::search(Real skin) {
   const bool ghosts = items_.halo_stream.halo.size() > 0;
   in.ghost_starts = ghosts ? ghost_sort_.starts() : nullptr;
   in.ghost_items = ghosts ? ghost_items_.data() : nullptr;
+  in.levels = levels_;
   in.active = items_.layout.active, in.owned = items_.owned;
   in.skin = builder_.search_margin(skin);
   items_.list.search(items_.device(), in);
@@ -261,7 +300,7 @@ void CudaList::reserve_for_steps() {
 
 // The parts of the list that each rank builds alone, which take most of the memory.
 void CudaList::find_rows(Real skin) {
-  index_ghosts();
+  index_ghosts(), index_levels(skin);
   search(skin);
   owners_.note_rows();
   if (items_.model.integrator.particles == ParticleIntegrator::hht) {

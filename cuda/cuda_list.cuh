@@ -63,6 +63,7 @@ class CudaList : public RankList {
   void find_rows(Real skin);
   void reserve_for_steps();
   void index_ghosts();
+  void index_levels(Real skin);
   void search(Real skin);
 
   CudaItems& items_;
@@ -71,6 +72,9 @@ class CudaList : public RankList {
   NeighborBuilder builder_;  // grid and range of the search, which runs on the device
   CudaOwners owners_;
   CellSort particle_sort_, ghost_sort_;
+  CellSort level_sort_;  // of all items, by level and cell, with particles of many sizes
+  DeviceArray<LevelGrid> level_grids_;
+  LevelIndex levels_;
   CellBlockGrid grid_;
   DeviceArray<Index> ghost_items_;
   DeviceArray<Vec3> built_at_;  // positions of the searched particles when the list was built

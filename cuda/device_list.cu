@@ -66,6 +66,38 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     }
 }
 
+// The same for particles of many sizes, level by level, in the cells that the radius of i reaches.
+template <class Visit>
+__device__ void visit_row_by_level(const ListInput& in, Index i, const Visit& visit) {
+  const Vec4 p = in.position[i];
+  for (int k = 0; k < in.levels.count; ++k) {
+    const LevelGrid& level = in.levels.levels[k];
+    const CellGrid& grid = level.grid;
+    const Index* starts = in.levels.starts + level.first_cell;
+    if (starts[0] == starts[grid.cells[0] * grid.cells[1] * grid.cells[2]]) continue;  // no items
+    const CellRange range = level.near(p, in.skin);
+    for (Index z = range.lower.z; z <= range.upper.z; ++z)
+      for (Index y = range.lower.y; y <= range.upper.y; ++y) {
+        const Index end = starts[grid.index(range.upper.x, y, z) + 1];
+        for (Index at = starts[grid.index(range.lower.x, y, z)]; at < end; ++at) {
+          const Index j = in.levels.items[at];
+          const Vec4 q = in.position[j];
+          const Vec3 d = xyz(p) - xyz(q);
+          const Real distance = p.w + q.w + in.skin;
+          if (dot(d, d) < distance * distance && j != i) visit(j);
+        }
+      }
+  }
+}
+
+template <bool kByLevel, class Visit>
+__device__ void visit_entries(const ListInput& in, Index i, const Visit& visit) {
+  if constexpr (kByLevel)
+    visit_row_by_level(in, i, visit);
+  else
+    visit_row(in, i, visit);
+}
+
 // Heap sort by row_key of a row in device memory.
 __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
   const auto at = [&](Index k) -> Index& { return row[static_cast<std::int64_t>(k) * kSlice]; };
@@ -88,11 +120,11 @@ __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
 }
 
 // Finds row i, sorted in the thread's column of the buffer as far as it fits there; returns its length.
-template <int kEntries>
+template <bool kByLevel, int kEntries>
 __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buffer) {
   const int column = static_cast<int>(threadIdx.x);
   Index found = 0;
-  visit_row(in, i, [&](Index j) {
+  visit_entries<kByLevel>(in, i, [&](Index j) {
     if (found < kEntries) buffer.neighbor[found][column] = j;
     ++found;
   });
@@ -123,12 +155,12 @@ __device__ Index sum_before(Index value) {
   return sum - value;
 }
 
-template <int kEntries>
+template <bool kByLevel, int kEntries>
 __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
     find_rows_kernel(const __grid_constant__ ListInput in, RowOutputs out) {
   __shared__ RowBuffer<kEntries> buffer;
   const Index i = thread_index(), lane = static_cast<Index>(threadIdx.x) % kSlice;
-  const Index found = i < in.active ? find_row(in, i, buffer) : 0;
+  const Index found = i < in.active ? find_row<kByLevel>(in, i, buffer) : 0;
 
   const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found)));
   const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found));
@@ -154,7 +186,7 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
       row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
   } else {
     std::int64_t slot = 0;
-    visit_row(in, i, [&](Index j) { row[slot] = j, slot += kSlice; });
+    visit_entries<kByLevel>(in, i, [&](Index j) { row[slot] = j, slot += kSlice; });
     sort_row(in.row_key, row, found);
   }
 }
@@ -165,7 +197,9 @@ constexpr int kRowLengths[] = {16, 24, 32, 48};
 template <int kEntries>
 void find_rows(Device device, const ListInput& in, const RowOutputs& out) {
   constexpr int kThreads = RowBuffer<kEntries>::kThreads;
-  find_rows_kernel<kEntries><<<blocks_for(in.owned, kThreads), kThreads, 0, device.stream>>>(in, out);
+  const auto kernel =
+      in.levels.count > 0 ? find_rows_kernel<true, kEntries> : find_rows_kernel<false, kEntries>;
+  kernel<<<blocks_for(in.owned, kThreads), kThreads, 0, device.stream>>>(in, out);
 }
 
 }  // namespace

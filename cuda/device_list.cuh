@@ -156,6 +156,14 @@ struct PrunedRows {
   }
 };
 
+// Items by level and cell: partition/level_grids.hpp on the device.
+struct LevelIndex {
+  const LevelGrid* levels;  // [count]
+  const Index* starts;      // [cells + 1] of all levels, into items
+  const Index* items;
+  int count = 0;  // 0: one grid for all sizes
+};
+
 // Input of the search. Active particles are sorted by cell; ghosts are found through an index of their own.
 struct ListInput {
   const Vec4* position;         // all items
@@ -164,6 +172,7 @@ struct ListInput {
   const Index* particle_starts;  // [cells + 1] first active particle of each cell
   const Index* ghost_starts;     // [cells + 1] first of ghost_items of each cell; null without ghosts
   const Index* ghost_items;
+  LevelIndex levels;    // with particles of many sizes, in place of the indices above
   Index active, owned;  // number of owned particles, which have rows; rows of inactive ones are empty
   Real skin;            // `NeighborBuilder::search_margin` [m]
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/box.hpp"
+#include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "partition/cell_grid.hpp"
@@ -27,7 +28,7 @@ struct SizeLevels {
   int top() const { return count - 1; }
   Real largest() const { return radius[count - 1]; }
   // Level of an item of this radius. Radii beyond the range belong to the lowest or to the top level.
-  int of(Real item_radius) const {
+  SCREE_HD int of(Real item_radius) const {
     int level = 0;
     while (level < count - 1 && item_radius > radius[level]) ++level;
     return level;
@@ -49,7 +50,7 @@ struct LevelGrid {
 
   Index nearest(Vec3 p) const { return first_cell + grid.nearest(p); }
   // The cells with all items that come within past_touch of touching an item at p (x, y, z, radius).
-  CellRange near(Vec4 p, Real past_touch) const {
+  SCREE_HD CellRange near(Vec4 p, Real past_touch) const {
     return cells_near(grid, xyz(p), (p.w + radius + past_touch) * (1 + kBoxRoundOff));
   }
 };

@@ -80,6 +80,24 @@ CellGrid NeighborBuilder::finest_cells(const SearchCells& cells, Real skin, Inde
   return cells_of(finite_part(cells.box, domain_), 2 * levels_.radius[0] + search_margin(skin), items);
 }
 
+SearchCells NeighborBuilder::by_finest_cells(SearchCells cells, Real skin, Index items) const {
+  if (levels_.count == 1) return cells;
+  cells.own = finest_cells(cells, skin, items), cells.finer = true;
+  return cells;
+}
+
+std::vector<LevelGrid> NeighborBuilder::level_grids(const SearchCells& cells, Real skin, Index in_all) const {
+  LevelSpace space = level_space(search_margin(skin));
+  space.extent = finite_part(cells.box, domain_);
+  const Real width = cutoff(skin), layer = model_.space.dimension == 3 ? width : 0;
+  space.extent.min = space.extent.min - Vec3{width, width, layer};
+  space.extent.max = space.extent.max + Vec3{width, width, layer};
+  // At least half of the items of a level and of those above are in the level, if all have equal masses.
+  std::vector<Index> items;
+  for (int k = 0; k < levels_.count; ++k) items.push_back(in_all >> std::min(k, 30));
+  return make_level_grids(levels_, space, items);
+}
+
 // With several levels an item searches the cells that its radius reaches, which are fewer than those around.
 void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborList& list) const {
   if (cell_of_[i] < 0) return;

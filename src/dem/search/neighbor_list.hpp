@@ -19,13 +19,14 @@ struct SearchCells {
   CellGrid space;  // items in one of its cells are searched, for any number of ranks
   CellGrid own;    // cells over the box of this rank; the same with one rank
   bool same = true;
+  bool finer = false;    // whether the cells of `own` suit the smallest particles instead
   DomainBox box{};       // of this rank
   Real list_radius = 0;  // of the list beyond the box [m]
 
   // Cell index in `own`; x is -1 for items that are not searched.
   SCREE_HD CellIndex cell_index(Vec3 p) const {
     const CellIndex c = space.cell_index(p);
-    return c.x < 0 || same ? c : own.nearest_cell(p);
+    return c.x < 0 || (same && !finer) ? c : own.nearest_cell(p);
   }
   Index cell(Vec3 p) const {
     const CellIndex c = cell_index(p);
@@ -60,6 +61,10 @@ class NeighborBuilder {
   LevelSpace level_space(Real margin) const { return {domain_, model_.space.dimension, margin}; }
   // The cells by which `items` particles of this rank are best ordered in memory: those of the smallest.
   CellGrid finest_cells(const SearchCells& cells, Real skin, Index items) const;
+  // The same with these cells as `own`, for several levels.
+  SearchCells by_finest_cells(SearchCells cells, Real skin, Index items) const;
+  // Grids of all levels for ghosts in the halo, too. in_all: number of this rank's items.
+  std::vector<LevelGrid> level_grids(const SearchCells& cells, Real skin, Index in_all) const;
   // Fills the list from the positions of all items and the poses of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
              const ListedSurfaces& surfaces, Real skin, NeighborList& list);
