@@ -55,8 +55,8 @@ REFUSED = (
     ((RAIN + "kind=blob",), 'must be one of "box", "cylinder", "sphere", "mesh", "face"'),
     ((RAIN + "kind=sphere",), 'not used with kind = "sphere", only with "box"'),
     ((RAIN + "max=[0.1,0.8,0.9]",), "must be larger than min in every component"),
-    ((RAIN + "max=[0.21,0.8,0.9]",), "the largest particles, of radius 0.01 m, do not fit into the region; it has room for "
-     "radii up to 0.005 m"),
+    ((RAIN + "max=[0.21,0.8,0.9]",), "the largest particles, of radius 0.01 m, do not fit into the region; it has "
+     "room for radii up to 0.005 m"),
     ((RAIN + "min=[2.0,0.2,0.5]", RAIN + "max=[3.0,0.8,0.9]"), "the region is outside the domain of [space]"),
     ((RAIN + "on=nobody",), 'there is no body named "nobody"'),
     ((RAIN + "on=slope",), "is a plane at rest: leave the key out"),
@@ -87,8 +87,8 @@ REFUSED = (
     ((STREAM + "normal=[0.0,0.0,1.0]",), "must point to the side that velocity leads to"),
     ((STREAM + "width_axis=[0.0,0.0,1.0]",), "must not be along the normal"),
     ((STREAM + "region_radius=0.1",), "exactly one of the keys width and region_radius must be given for a face"),
-    ((STREAM + "mass_rate=100.0",), "more than random positions can fill (0.55); a larger face, a higher velocity or a lower "
-     "rate is needed"),
+    ((STREAM + "mass_rate=100.0",), "more than random positions can fill (0.55); a larger face, a higher velocity or a "
+     "lower rate is needed"),
     ((HOLE + "on=nobody",), 'there is no body named "nobody"'),
     ((HOLE + "interval=0.0",), "hole.interval must be a number above 0 [s]"),
     ((HOLE + "interval=1e-300",), "must not be below 1e-15 s"),
@@ -118,7 +118,8 @@ class InserterMessagesTest(CommandLineTest):
     def test_check_says_what_will_be_born(self):
         text = self.check(DONE, DECK).stdout
         self.assertRegex(text, r"particles      0 and at most 2\d\d of inserters, radius 0.01 m")
-        self.assertIn('"rain": 200 particles until time.end, of 0.004189 kg each on average, radius 0.01 m; born every', text)
+        self.assertIn('"rain": 200 particles until time.end, of 0.004189 kg each on average, radius 0.01 m; born every',
+                      text)
         self.assertIn('"stream": 0.1 kg until time.end', text)
 
     def test_a_dense_stream_is_warned_of(self):

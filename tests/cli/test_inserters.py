@@ -208,8 +208,9 @@ class AmountsTest(InsertersTest):
     def test_every_measure_ends_at_its_total(self):
         rate = "number_rate = 700\nend = 10\n"
         mass = 4 / 3 * np.pi * 0.002**3 * 1000
-        for measure, born in (("number = 25", 25), ("number = 25\nend = 0.4", 25), ("number = 25\nnumber_rate = 100", 25),
-                              ("mass_total = 1e-3", int(1e-3 / mass)), ("mass_rate = 2e-3\nend = 0.4", int(8e-4 / mass)),
+        for measure, born in (("number = 25", 25), ("number = 25\nend = 0.4", 25),
+                              ("number = 25\nnumber_rate = 100", 25), ("mass_total = 1e-3", int(1e-3 / mass)),
+                              ("mass_rate = 2e-3\nend = 0.4", int(8e-4 / mass)),
                               ("solid_fraction = 1e-6", int(0.5e-6 / (mass / 1000))),
                               ("number_rate = 100\nrate_times = [0.1, 0.2, 0.4]\nrate_factors = [0, 1, 0.5]", 20)):
             with self.subTest(measure=measure):
@@ -278,7 +279,8 @@ class BlockedTest(InsertersTest):
         rows = results.rows(self.folder / "out")
         self.assertGreater(max(row["inserters/rain/waiting"] for row in rows), 5)
         self.assertEqual(rows[-1]["inserters/rain/born"] + rows[-1]["inserters/rain/waiting"], 100)
-        self.assertEqual(rows[-1]["step/particles"], rows[-1]["inserters/rain/born"] - rows[-1]["outlets/bottom/removed"])
+        left = rows[-1]["inserters/rain/born"] - rows[-1]["outlets/bottom/removed"]
+        self.assertEqual(rows[-1]["step/particles"], left)
 
     def test_dropped_particles_are_counted(self):
         self.run_text(DONE, CROWD, "out", "inserters.rain.blocked=drop")
