@@ -5,6 +5,7 @@
 
 #include "cuda_reports.cuh"
 #include "dem/backend/inside_energies.hpp"
+#include "dem/reports/region_items.hpp"
 
 namespace scree {
 namespace {
@@ -198,6 +199,14 @@ ContactLines CudaReports::contact_lines() {
   }
   out.of_bodies = bodies_.side().contact_lines();
   return out;
+}
+
+RegionSums CudaReports::in_region(const RegionBounds& region) {
+  items_.queue_sums(
+      RegionItem{views_of(items_.now), region, items_.model.space.min, items_.subdomain.period()},
+      &Results::region);
+  const std::array<Real, kRegionTerms> sums = items_.results.totals(items_.results.fetch(&Results::region));
+  return {sums[kRegionNumber], sums[kRegionMass]};
 }
 
 std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> requested) {

@@ -20,6 +20,7 @@ class CudaReports : public Reports {
   ParticleOutput output() override;
   ShapePack pack_shapes() override;
   ContactLines contact_lines() override;
+  RegionSums in_region(const RegionBounds& region) override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> requested) override;
   std::vector<ContactSum> parent_contacts() override;
   std::vector<ContactSum> surface_contacts() override;

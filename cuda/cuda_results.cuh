@@ -7,6 +7,7 @@
 #include "contact_kernels.cuh"
 #include "dem/implicit/rotation_items.hpp"
 #include "dem/reports/ledger_items.hpp"
+#include "dem/reports/region_items.hpp"
 #include "dem/surface_contact/wall_items.hpp"
 #include "device.cuh"
 #include "partition/ranks.hpp"
@@ -34,6 +35,7 @@ struct Results {
   ExactSums<kInsideTerms> inside;
   ExactSums<1> inside_kinetic;
   FrictionNorms norms;
+  ExactSums<kRegionTerms> region;
 };
 
 class DeviceResults {

@@ -192,7 +192,8 @@ def page(run: Run, options: PictureOptions) -> str:
     """The HTML text. Throws ScreeError if the run has neither snapshots nor history."""
     if not len(run.snapshots) and not run.history.rows:
         raise ScreeError(f"{run.folder}: has neither history nor snapshots yet")
-    head = f"<h1>{escaped(run.title)}</h1><p class=\"status\">{escaped(run.folder)}: {escaped(run.status)}</p>"
+    ended = f", by the stop condition {run.stop_condition}" if run.stop_condition else ""
+    head = f"<h1>{escaped(run.title)}</h1><p class=\"status\">{escaped(run.folder)}: {escaped(run.status + ended)}</p>"
     summary = table(facts(run.record)) if run.record else ""
     history = plots(run) if run.history.rows else ""
     timing = stages(run.record) if run.record else ""

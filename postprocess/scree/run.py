@@ -104,6 +104,11 @@ class Run:
         return str(self.record["run"]["status"]) if self.record else "ended without a record: killed?"
 
     @property
+    def stop_condition(self) -> str:
+        """The stop condition that ended the run, with the last value of its column; empty if none did."""
+        return str(self.record["run"].get("stop_condition", "")) if self.record else ""
+
+    @property
     def lost_start(self) -> str:
         """A message if data before the first row are missing, otherwise empty."""
         if self._is_part or not 0 < self._begin < np.inf:

@@ -287,6 +287,12 @@ inline constexpr auto kWords<SurfaceField> =
                                        {"sliding_work", SurfaceField::sliding_work},
                                        {"wear_depth", SurfaceField::wear_depth}});
 
+// Regions whose particles the history counts.
+enum class RegionKind { box, sphere, cylinder };
+template <>
+inline constexpr auto kWords<RegionKind> = std::to_array<Word<RegionKind>>(
+    {{"box", RegionKind::box}, {"sphere", RegionKind::sphere}, {"cylinder", RegionKind::cylinder}});
+
 // ---- particles --------------------------------------------------------------------------------------------
 
 // How the positions of a group of particles are given.

@@ -44,13 +44,17 @@ const std::string& DeckTable::word(const std::string& key, const std::type_info&
   throw std::logic_error("deck: " + path_ + "." + key + " is not this choice");
 }
 
-void DeckTable::fail(const std::string& key, const std::string& problem) const {
+std::string DeckTable::place(const std::string& key) const {
   const std::string full = path_.empty() ? key : path_ + "." + key;
   const auto found = values_.find(key);
-  if (found == values_.end()) throw InputError(fmt::format("{}: {}: {}", location_, full, problem));
+  if (found == values_.end()) return location_ + ": " + full;
   const DeckValue& given = found->second;
-  if (given.location.starts_with("--set ")) throw InputError(fmt::format("{}: {}", given.location, problem));
-  throw InputError(fmt::format("{}: {} = {}: {}", given.location, full, given.shown, problem));
+  if (given.location.starts_with("--set ")) return given.location;
+  return fmt::format("{}: {} = {}", given.location, full, given.shown);
+}
+
+void DeckTable::fail(const std::string& key, const std::string& problem) const {
+  throw InputError(place(key) + ": " + problem);
 }
 
 Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {

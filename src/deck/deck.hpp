@@ -79,8 +79,10 @@ class DeckTable {
   const std::string& path() const { return path_; }
   const std::string& location() const { return location_; }
   std::string label() const { return location_ + ": " + path_; }
-  // Throws InputError "place: path.key = value: problem", or "place: path.key: problem" where the key has no
-  // value.
+  // Place and value of a key for messages: "deck.toml:12:8: path.key = value", without the value where the
+  // key has none.
+  std::string place(const std::string& key) const;
+  // Throws InputError "place(key): problem".
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
 
   const TableKeys& keys() const { return *keys_; }
@@ -110,8 +112,8 @@ struct Deck {
 
   // The deck as TOML, with all defaults and overrides; it loads to the same deck.
   std::string resolved_text() const;
-  // The values, as TOML, that must be equal in a restarted run: all but title, time.end, output.* and
-  // parallel.*. Files are represented by hashes of their contents. Throws IoError where a file cannot be
+  // The values, as TOML, that must be equal in a restarted run: all but title, time.end, output.*, stop
+  // and parallel.*. Files are represented by hashes of their contents. Throws IoError where a file cannot be
   // read.
   std::string fingerprint() const;
 };

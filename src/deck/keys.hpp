@@ -169,6 +169,8 @@ const TableKeys& mesh_keys();
 const TableKeys& wall_keys();
 const TableKeys& wall_motion_keys();
 const TableKeys& output_keys();
+const TableKeys& history_region_keys();
+const TableKeys& stop_keys();
 const TableKeys& parallel_keys();
 const TableKeys& body_keys();
 const TableKeys& solid_keys();

@@ -93,7 +93,8 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("[]")
            .about("Particles whose motion is recorded, with their angular velocities where particles rotate: "
-                  "indices in the deck's order, from 0.")},
+                  "indices in the deck's order, from 0."),
+       tables("history_regions", history_region_keys())},
       ""};
   return keys;
 }

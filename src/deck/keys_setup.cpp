@@ -30,6 +30,7 @@ const TableKeys& deck_keys() {
        table("integrator", integrator_keys()),
        table("contact", contact_keys()),
        table("output", output_keys()),
+       tables("stop", stop_keys()),
        table("parallel", parallel_keys()),
        tables("materials", material_keys()),
        tables("meshes", mesh_keys()),

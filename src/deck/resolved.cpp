@@ -30,7 +30,8 @@ class Writer {
   std::string inline_table(const DeckTable& table) const;
   std::string vector_text(Vec3 v) const;
   bool left_out(const std::string& table, const Key& key) const {
-    const bool of_no_result = key.name == "title" || key.name == "output" || key.name == "parallel";
+    const bool of_no_result =
+        key.name == "title" || key.name == "output" || key.name == "stop" || key.name == "parallel";
     return for_fingerprint_ && ((table.empty() && of_no_result) || (table == "time" && key.name == "end"));
   }
 

@@ -54,6 +54,7 @@ toml::table run_table(const RunRecord& record) {
                      {"resolved_deck", record.resolved_deck},
                      {"command_line", record.command_line},
                      {"status", record.status},
+                     {"stop_condition", record.stop_condition},
                      {"exit_code", record.exit_code},
                      {"started", record.started},
                      {"ended", record.ended},

@@ -15,7 +15,8 @@ namespace scree {
 struct RunRecord {
   std::string deck_path, resolved_deck;  // the deck including defaults, as TOML
   std::string command_line;
-  std::string status;  // "running", "done", "failed: ...", "stopped by signal ..."
+  std::string status;          // "running", "done", "failed: ...", "stopped by signal ..."
+  std::string stop_condition;  // the one that ended the run; empty: none
   int exit_code = 0;
   std::string started, ended;    // ISO 8601, UTC
   std::vector<RunStart> starts;  // this start is the last one

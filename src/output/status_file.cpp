@@ -13,11 +13,14 @@ namespace scree {
 
 namespace {
 
+constexpr const char* kStopCondition = "stop_condition";
+
 // Calls use(name, value) for the entries of the file.
 template <class Status, class Use>
 void for_each_entry(Status& s, const Use& use) {
   auto& p = s.progress;
-  use("state", s.state), use("host", s.host), use("process", s.process);
+  use("state", s.state), use(kStopCondition, s.stop_condition);
+  use("host", s.host), use("process", s.process);
   use("started", s.started), use("written", s.written);
   use("deck", s.deck), use("backend", s.backend), use("ranks", s.ranks);
   use("time", p.time), use("end", p.end), use("steps", p.steps), use("step", p.step);
@@ -86,7 +89,9 @@ RunStatus read_status(const std::string& folder) {
   const toml::table table = parsed(path);
   RunStatus status;
   for_each_entry(status, [&](const char* name, auto& value) {
-    if (!take(table, name, value)) throw IoError(fmt::format("{}: is damaged: {} is missing", path, name));
+    const bool is_new = name == kStopCondition;  // files of earlier versions lack it
+    if (!take(table, name, value) && !is_new)
+      throw IoError(fmt::format("{}: is damaged: {} is missing", path, name));
   });
   return status;
 }

@@ -24,7 +24,8 @@ struct Progress {
 };
 
 struct RunStatus {
-  std::string state;  // "running", "done", "failed: ...", "stopped by signal: ..."
+  std::string state;           // "running", "done", "failed: ...", "stopped by signal: ..."
+  std::string stop_condition;  // the one that ended the run; empty: none
   std::string host, process;
   std::string started, written;  // UTC; written: time of this status
   std::string deck, backend;

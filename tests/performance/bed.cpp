@@ -15,6 +15,7 @@
 #include "base/version.hpp"
 #include "bed_cases.hpp"
 #include "bed_run.hpp"
+#include "bed_spread.hpp"
 #include "dem/backend/device.hpp"
 #include "mbs/petsc_session.hpp"
 #include "partition/shared_model.hpp"
@@ -29,6 +30,11 @@ constexpr Index kCoupledBatch = 1000;
 // Implicit steps of the bed before anything is measured: the contacts adapt to the longer step.
 constexpr int kImplicitWarmUp = 5;
 
+void print_contacts(const Samples& samples, std::int64_t contacts, Backend& backend) {
+  fmt::print("{:10} {} contacts, {:.4g} ns per contact and step, {} ghosts of the first rank\n", "", contacts,
+             1e9 * samples.median() / static_cast<double>(contacts), backend.list().balance().halo.ghosts);
+}
+
 void measure_explicit(Model bed, Real h, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
   // How often particles outside the domain are searched.
@@ -39,6 +45,7 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
   backend.list().set_body_motion({});
   backend.list().build(skin, run.timers);
   backend.particles().initial_forces();
+  const std::int64_t contacts = options.spread > 0 ? backend.reports().ledger(0).contacts : 0;
   const std::unique_ptr<ExplicitRun> bed_run = backend.start_run(h);
   const auto take = [&](Index steps) {
     if (bed_run->take_steps(steps, true, run.timers).closed != steps)
@@ -62,6 +69,10 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
              run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
              options.repeats, samples.steps, builds, run.listed());
   print_device_memory(backend);
+  if (options.spread > 0) {
+    print_contacts(samples, contacts, backend);
+    print_stages(timers, run.timers, static_cast<double>(samples.steps) * options.repeats);
+  }
   report.add(measured(samples, run.model, builds), timers, run.timers, backend);
 }
 
@@ -190,6 +201,7 @@ std::string title_of(const Options& options) {
   std::string title =
       fmt::format("{}, {}, {}, {}", options.backend, options.dimension == 3 ? "spheres" : "discs",
                   implicit ? "implicit" : "explicit", options.precision);
+  if (options.spread > 0) title += fmt::format(", diameters 1 to {}, periodic", options.spread);
   if (!implicit && !options.with_bodies())
     title +=
         options.rebuild > 0 ? fmt::format(", list every {} steps", options.rebuild) : ", list where needed";
@@ -210,6 +222,8 @@ void measure_all(const Options& options) {
     throw InputError("--rolling: needs --friction");
   if ((options.contact.rolling > 0 || options.contact.hertz) && options.integrator == "hht")
     throw InputError("--rolling, --hertz: allowed for --integrator verlet");
+  if (options.spread > 0 && (options.dimension == 2 || options.integrator == "hht" || options.with_bodies()))
+    throw InputError("--spread: allowed for --dimension 3 with --integrator verlet without bodies");
   if (options.contact.hertz && options.dimension == 2) throw InputError("--hertz: allowed for --dimension 3");
   if (options.on_gpu()) choose_device(options.ranks);
   if (options.on_gpu() && !device_error().empty()) throw InputError("--backend cuda: " + device_error());
@@ -239,8 +253,9 @@ void measure_all(const Options& options) {
   if (options.dimension == 2) discs = settled_discs();
   for (const std::int64_t size : options.particles) {
     const std::int64_t particles = options.per_rank ? size * options.ranks.size() : size;
-    Model bed =
-        options.dimension == 3 ? sphere_bed(options.tile, particles, share) : disc_bed(discs, particles);
+    Model bed = options.spread > 0       ? spread_box(options.spread, particles)
+                : options.dimension == 3 ? sphere_bed(options.tile, particles, share)
+                                         : disc_bed(discs, particles);
     set_contact(bed, options.contact, share);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
     if (options.with_bodies())
@@ -265,6 +280,9 @@ ExitCode run(int count, char** values) {
       ->check(CLI::IsMember({"verlet", "hht"}));
   app.add_option("--particles", options.particles,
                  "sizes, multiples of 10000 (default: 10000 100000 1000000)");
+  app.add_option("--spread", options.spread,
+                 "compressed spheres in a periodic box, with diameters from 1 to this; 0: the settled bed")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--friction", options.contact.friction,
                  "coefficient of friction; 0: no friction and no rotation")
       ->check(CLI::NonNegativeNumber);

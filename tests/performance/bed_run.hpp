@@ -22,6 +22,7 @@ struct Options {
   int repeats = 5;
   Index steps = 0;
   double seconds = 0.5;
+  double spread = 0;  // largest over smallest diameter in a periodic box; 0: the bed
   BedContact contact;
   bool net = false, plough = false, wall = false, per_rank = false;
   std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;

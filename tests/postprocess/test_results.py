@@ -355,13 +355,13 @@ class GoingOnTest(FolderTest):
 
 
 # Decks, each with a setting: together they have every kind of column.
+REGION = 'output.history_regions=[{name="ball", kind="sphere", center=[0.0, 0.0, 0.0], radius=1.0}]'
 RECORDED = (
     ("paper/net_9", ("output.history_bodies=['net.0']", "output.history_contacts=['net']")),
     ("examples/engine_mount", ()), ("examples/governor", ("output.history_coordinates=9",)),
     ("examples/slider_crank_3d", ("output.history_coordinates=9",)), ("examples/boom", ()), ("examples/press", ()),
-    ("examples/rolling_resistance", ("output.history_particles=[0]",)),
-    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")),
-)
+    ("examples/rolling_resistance", ("output.history_particles=[0]", REGION)),
+    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")))
 
 
 class PageTest(FolderTest):

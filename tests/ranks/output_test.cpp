@@ -330,8 +330,7 @@ TEST_CASE("a state that no run can have written is refused on every rank") {
   const auto refusal = [&](const std::function<void(State&)>& spoil) {
     State state = good;
     spoil(state);
-    const std::string message =
-        common_failure(ranks, [&] { check_state(state, "some.h5", deck, ranks); });
+    const std::string message = common_failure(ranks, [&] { check_state(state, "some.h5", deck, ranks); });
     CHECK((message.empty() || message.starts_with("some.h5: not a valid checkpoint: ")));
     return message;
   };

@@ -94,13 +94,14 @@ OTHER_CASES = {
     "open surfaces with friction": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (3,)),
     "open surfaces with friction, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                               "contact.pairs.0.friction=0.4", "time.end=0.08"], (4,)),
-    "meshes and births, implicit": ([*BIRTHS, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.step=4e-5", "time.end=0.08"],
-                         (2, 4)),
+    "meshes and births, implicit": ([*BIRTHS, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.step=4e-5",
+                                     "time.end=0.08"], (2, 4)),
     "friction on bodies, rolling, implicit": ([HERE / "frictional_bodies.toml", *IMPLICIT, *FIXED, *ROLLING,
                                                "integrator.substeps=1", "parallel.imbalance=0.0", "time.end=0.08"],
                                               (2, 4)),
     "sticky, implicit": ([HERE / "sticky.toml", *IMPLICIT, *FIXED, "contact.pairs.0.adhesion=dmt",
                           "parallel.imbalance=0.05", "time.end=1e-3"], (2, 4)),
+    "many sizes": ([HERE / "sizes.toml", "parallel.imbalance=0.0"], (2, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (3,)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (2,)),
 }
@@ -243,6 +244,27 @@ class FilesTest(RanksTest):
             self.assertEqual(text.count("integrator.hht_alpha = 0 does not damp; set it below zero"), 1)
         self.assertEqual(self.hash("held 1"), self.hash("held 2"))
         self.assertEqual(self.hash("oscillating 1"), self.hash("oscillating 2"))
+
+    def test_a_stop_condition_ends_any_number_of_ranks_at_the_same_step(self):
+        region = '{name="right", kind="cylinder", ends=[[0.6, 0.1, 0.2], [2.0, 0.1, 0.2]], radius=0.15}'
+        settings = [*EXPLICIT, "integrator.substeps=3", f"output.history_regions=[{region}]", "output.history_csv=true",
+                    "output.history_interval=2e-3", "parallel.imbalance=0.05",
+                    'stop=[{column="regions/right/mass", above=2.3, over=0.03}, {column="energy/kinetic", above=1e9}]']
+        for ranks in (1, 2, 4):
+            with self.subTest(ranks=ranks):
+                self.run_deck(DONE, ranks, DAM[0], f"stop {ranks}", settings)
+                run, first = self.record(f"stop {ranks}"), self.record("stop 1")
+                self.assertIn('"0": regions/right/mass above 2.3 for 0.03 s; ', run["run"]["stop_condition"])
+                self.assertEqual(run["run"]["stop_condition"], first["run"]["stop_condition"])
+                self.assertEqual((self.hash(f"stop {ranks}"), run["counts"]["steps"]),
+                                 (self.hash("stop 1"), first["counts"]["steps"]))
+                self.assertEqual(self.bytes_of(f"stop {ranks}", "history.csv"),
+                                 self.bytes_of("stop 1", "history.csv"))
+        self.assertGreater(self.record("stop 4")["counts"]["migrated"], 0)
+        settings = [*settings, "output.checkpoint_interval=0.025"]
+        self.run_deck(DONE, 3, DAM[0], "whole", settings)
+        self.run_deck(DONE, 2, DAM[0], "rest", settings, "--restart", self.folder / "whole/checkpoint.h5")
+        self.assertEqual(self.hash("rest"), self.hash("whole"))
 
     def test_uneven_loads_move_the_boxes(self):
         deck, *overrides = MAIN_CASES["dam break, explicit"][0]

@@ -10,6 +10,7 @@
 #include "dem/host/host_surfaces.hpp"
 #include "dem/reports/contact_line_items.hpp"
 #include "dem/reports/output_fields.hpp"
+#include "model/data/history_region.hpp"
 
 namespace scree {
 
@@ -102,6 +103,8 @@ class Reports {
   virtual ParticleOutput output() = 0;
   virtual ShapePack pack_shapes() = 0;       // complete on rank 0
   virtual ContactLines contact_lines() = 0;  // at the current positions
+  // Sums over the particles inside the domain whose centres are in the region.
+  virtual RegionSums in_region(const RegionBounds& region) = 0;
   // The particles among `requested` that this rank owns, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> requested) = 0;
   // Contact sums of each parent (bodies, then placed walls), and of these static planes (indices into

@@ -6,6 +6,7 @@
 #include "base/reproducible_sum.hpp"
 #include "dem/backend/inside_energies.hpp"
 #include "dem/reports/ledger_items.hpp"
+#include "dem/reports/region_items.hpp"
 
 namespace scree {
 
@@ -92,6 +93,15 @@ ContactLines CpuReports::contact_lines() {
   out.counts.assign(counts.begin(), counts.end());
   out.of_bodies = items_.side.contact_lines();
   return out;
+}
+
+RegionSums CpuReports::in_region(const RegionBounds& region) {
+  Real sums[kRegionTerms];
+  reproducible_sums(
+      items_.store.owned,
+      RegionItem{views_of(items_.store), region, items_.model.space.min, items_.subdomain.period()}, sums,
+      items_.ranks);
+  return {sums[kRegionNumber], sums[kRegionMass]};
 }
 
 std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> requested) {

@@ -87,6 +87,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     check_step_limits(root, model);
     build_steps(root, model, share, chosen);
     build_output(root, names, model);
+    build_stop(root, model);
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
@@ -173,6 +174,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
     add_once(output.history_particles, id, table, "history_particles", fmt::format("particle {}", id));
   }
   build_history_contacts(table, names, model);
+  build_history_regions(table, model);
 }
 
 }  // namespace scree

@@ -48,6 +48,8 @@ void build_steps(const DeckTable& deck, Model& model, const Share& share, std::v
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
+void build_history_regions(const DeckTable& output, Model& model);
+void build_stop(const DeckTable& deck, Model& model);
 void build_parallel(const DeckTable& deck, Model& model);
 
 }  // namespace scree

@@ -100,7 +100,9 @@ std::string without_partners(const DeckTable& deck, const Model& model) {
   const auto any_body = [&](const auto& has) { return std::ranges::any_of(model.bodies, has); };
   const bool meshes = any_body([](const Body& b) { return !b.meshes.empty(); });
   const bool shapes = any_body([](const Body& b) { return !b.shapes.empty(); });
-  if (!meshes || shapes || !deck.tables("particles").empty() || largest_corner_radius(model) > 0) return "";
+  if (!meshes || shapes || !deck.tables("particles").empty() || !model.inserters.empty() ||
+      largest_corner_radius(model) > 0)
+    return "";
   return "bodies have meshes, and the deck has nothing that these touch: particles, planes, or discs and "
          "spheres of other bodies; meshes pass through each other and through walls that are meshes";
 }

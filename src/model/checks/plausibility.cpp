@@ -46,7 +46,8 @@ Real base_size(const Model& model) {
 }
 
 std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
-  if (!deck.tables("particles").empty() || !model.inserters.empty()) return "";  // a warning about empty groups exists
+  if (!deck.tables("particles").empty() || !model.inserters.empty())
+    return "";  // a warning about empty groups exists
   if (model.bodies.empty())
     return "the deck has no particles and no bodies: nothing will move; was the file cut off?";
   std::string only;

@@ -12,9 +12,11 @@
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
 #include "model/data/bodies.hpp"
+#include "model/data/history_region.hpp"
 #include "model/data/inserters.hpp"
 #include "model/data/joint_forces.hpp"
 #include "model/data/particles.hpp"
+#include "model/data/stop_condition.hpp"
 #include "physics/contact_parameters.hpp"
 
 namespace scree {
@@ -159,6 +161,7 @@ struct Output {
   std::vector<int> history_bodies;           // indices into Model::bodies
   std::vector<GlobalId> history_particles;   // global ids
   std::vector<ContactTarget> history_contacts;
+  std::vector<HistoryRegion> history_regions;
 
   bool shows(SurfaceField field) const {
     return std::ranges::find(surface_fields, field) != surface_fields.end();
@@ -207,6 +210,7 @@ struct Model {
   TimeControl time;
   Integrator integrator;
   Output output;
+  std::vector<StopCondition> stop_conditions;
   Parallel parallel;
   // Initial velocities of bodies are corrected to agree with joints and drivers.
   bool consistent_velocities = false;

@@ -27,6 +27,7 @@
 #include "run/check/check_bodies.hpp"
 #include "run/check/check_meshes.hpp"
 #include "run/record/joint_lines.hpp"
+#include "run/record/stop_conditions.hpp"
 #include "run/report/rebound_check.hpp"
 #include "run/state/step_clock.hpp"
 
@@ -98,6 +99,15 @@ std::string inserter_lines(const Model& model) {
   return lines;
 }
 
+std::string outlet_lines(const Model& model) {
+  std::string lines;
+  for (const Outlet& outlet : model.outlets)
+    lines += fmt::format("outlet         \"{}\": removes particles every {:.4g} s from {:g} s on{}\n",
+                         outlet.name, outlet.interval, outlet.start,
+                         outlet.end < kInfinity ? fmt::format(" until {:g} s", outlet.end) : "");
+  return lines;
+}
+
 // Groups with different sizes: a distribution that is meant by mass and read by number has other particles.
 std::string mean_mass_lines(const std::vector<ParticleGroup>& groups) {
   std::string lines;
@@ -128,7 +138,7 @@ std::string space_lines(const Model& model, int ranks) {
                        ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
                        range(particles.smallest_radius, particles.largest_radius, "m"),
                        range(particles.smallest_mass, particles.largest_mass, "kg"));
-  lines += inserter_lines(model);
+  lines += inserter_lines(model) + outlet_lines(model);
   lines += mean_mass_lines(model.particles.groups);
   if (model.disc_thickness.largest == 0) return lines;
   return lines + fmt::format(
@@ -274,6 +284,15 @@ std::string time_lines(const Model& model, const std::vector<StepTrial>& trials,
          chosen_line(chosen, "particles");
 }
 
+// A line for each stop condition.
+std::string stop_lines(const Model& model) {
+  check_stop_columns(model);
+  std::string lines;
+  for (const StopCondition& condition : model.stop_conditions)
+    lines += fmt::format("stop           \"{}\": {}\n", printable(condition.name), described(condition));
+  return lines;
+}
+
 std::string megabytes(Real bytes) {
   if (bytes < 1e5) return fmt::format("{:.{}f} kB", bytes / 1e3, bytes < 1e4 ? 1 : 0);
   return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0);
@@ -364,8 +383,9 @@ std::string check_report(const Model& model, const std::vector<ChosenValue>& cho
   const std::vector<StepTrial> trials = try_steps(model);
   const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
-         limit_lines(model, trials) + time_lines(model, trials, chosen) + files + history_limit_lines(model) +
-         skin_line(model) + memory_line(model, ranks.size()) + device_memory_line(model, ranks);
+         limit_lines(model, trials) + time_lines(model, trials, chosen) + stop_lines(model) + files +
+         history_limit_lines(model) + skin_line(model) + memory_line(model, ranks.size()) +
+         device_memory_line(model, ranks);
 }
 
 }  // namespace scree

@@ -22,6 +22,7 @@
 #include "run/report/live_status.hpp"
 #include "run/report/summary.hpp"
 #include "run/report/surfaces_outside.hpp"
+#include "run/restart/finished_run.hpp"
 #include "run/restart/restart.hpp"
 #include "run/state/start_record.hpp"
 
@@ -53,9 +54,11 @@ class Simulation {
     recorder_ =
         std::make_unique<Recorder>(model, *backend_, body_coupling_, options.output_directory, state_);
     if (restart_.changed) recorder_->rebase_balance(state_);
+    recorder_->find_stop(state_);
+    report_stop(recorder_->stop_reason(), options, log);
     // A restart of a finished run into a new folder records its state there.
-    const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
-    if (options.restart.empty() || is_done) {
+    const bool is_done = StepClock(model, state_.clock).done() || recorder_->should_end();
+    if (options.restart.empty() || (is_done && state_.history_rows == 0)) {
       const Reports::Instant now(backend_->reports());
       recorder_->history(state_, 0);
       recorder_->snapshot(state_);
@@ -68,7 +71,6 @@ class Simulation {
  private:
   ExitCode run_to_the_end();
   void start_or_resume();
-  void check_end() const;
   void load_state();
   void insert_at_start();
   void prepare_timeline();
@@ -122,7 +124,7 @@ void Simulation::start_or_resume() {
   } else {
     load_state();
     step_.counts() = state_.counts;
-    check_end();
+    check_end(StepClock(model_, state_.clock), model_.time, options_, log_);
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
@@ -145,19 +147,6 @@ void Simulation::prepare_timeline() {
   if (file.empty()) return;
   timeline_ = std::make_unique<Timeline>(step_.counts().steps + from, steps, backend_->device_trace());
   timeline_->write(file, ranks_);
-}
-
-// If the end is a multiple of an interval, a checkpoint at the end may be past it by round-off.
-void Simulation::check_end() const {
-  const StepClock clock(model_, state_.clock);
-  if (clock.time() > clock.end())
-    throw InputError(fmt::format("--restart {}: the checkpoint is at t = {} s, past time.end = {} s",
-                                 options_.restart, clock.time(), model_.time.end));
-  if (clock.done())
-    log_.info(fmt::format(
-        "--restart {}: nothing left to do: the run has reached time.end = {} s; a later one, --set "
-        "time.end=..., continues it",
-        options_.restart, model_.time.end));
 }
 
 // Takes over the checkpoint's particles, which are complete, and the constants of the deck if it has changed.
@@ -231,6 +220,7 @@ void Simulation::progress(const State& state, Real h) {
 }
 
 void Simulation::show_status(const std::string& status) {
+  live_.ended_by(recorder_ ? recorder_->stop_reason() : "");
   live_.write(status, state_, recorder_ ? recorder_->contacts() : -1,
               recorder_ ? recorder_->snapshots_written() : state_.snapshots);
 }
@@ -282,7 +272,8 @@ ExitCode Simulation::run_to_the_end() {
     book_.begin_loop();
     const LoopEnd end = loop.run();
     book_.end_loop();
-    if (end == LoopEnd::done) {
+    if (end == LoopEnd::stop_condition) log_.info("ended by the stop condition " + recorder_->stop_reason());
+    if (end == LoopEnd::done || end == LoopEnd::stop_condition) {
       checkpoint(loop.complete_state(), "checkpoint_end.h5");
       return finish("done", ExitCode::done);
     }
@@ -356,6 +347,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   RunRecord record;
   record.deck_path = options_.deck_path, record.resolved_deck = options_.resolved_deck;
   record.command_line = options_.command_line;
+  record.stop_condition = recorder_ ? recorder_->stop_reason() : "";
   record.status = status, record.exit_code = static_cast<int>(code);
   record.started = live_.started(), record.ended = utc_now();
   record.backend = backend_->description();
@@ -364,34 +356,12 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.redundancy = body_coupling_.multibody() ? body_coupling_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
-  const LoadBalance balance = backend_->list().balance();
   record.starts = book_.starts(state_);
   record.timers = timers_;
-  const StepCounts& n = step_.counts();
-  record.counts = {{"steps", n.steps},
-                   {"substeps", model_.integrator.substeps},
-                   {"newton_iterations", n.newton_iterations},
-                   {"linear_iterations", n.linear_iterations},
-                   {"rejected_error", n.rejected_error},
-                   {"rejected_newton", n.rejected_newton},
-                   {"frozen_steps", n.lagged_steps},
-                   {"list_builds", backend_->list().builds()},
-                   {"list_skin_chosen", chooses_skin(model_) ? 1 : 0},
-                   {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
-                   {"rebalances", balance.rebalances},
-                   {"migrated", migrated_},
-                   {"particles", particles_so_far(model_.particles, state_.population)},
-                   {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
-                   {"particles_escaped", state_.carried_out.left},
-                   {"bodies_outside", bodies_outside(model_, state_.bodies).count},
-                   {"history_rows", state_.history_rows},
-                   {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
-  const BalanceState& b = state_.balance;
-  record.measures = {
-      {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
-      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", taken_by_integrator(b)},
-      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest},
-      {"list_skin", backend_->list().skin()}};
+  const RankSums sums{ranks_.alone() ? backend_->list().entries() : list_entries_, migrated_,
+                      recorder_ ? recorder_->snapshots_written() : state_.snapshots};
+  record.counts = record_counts(model_, state_, step_.counts(), backend_->list(), sums);
+  record.measures = record_measures(state_, backend_->list());
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }
@@ -402,6 +372,7 @@ void Simulation::summarize() const {
   log_.info(steps_text(n, state_.clock.time) + lists_text(model_, backend_->list(), timers_));
   if (n.lagged_steps > 0) log_.info(lagged_text(n));
   log_.info(balance_text(b, state_.carried_out.left, bodies_outside(model_, state_.bodies).count));
+  if (model_.particles.inserters > 0 || !model_.outlets.empty()) log_.info(population_text(state_));
   log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
   const Multibody* const bodies = body_coupling_.multibody();
   const BodyBalance of_bodies = bodies == nullptr ? BodyBalance{} : body_balance(model_, *bodies, state_);
@@ -412,6 +383,7 @@ void Simulation::summarize() const {
 }  // namespace
 
 ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log) {
+  check_stop_columns(model);
   Simulation simulation(model, options, log);
   return simulation.run();
 }

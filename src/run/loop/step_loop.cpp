@@ -55,11 +55,12 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
 LoopEnd StepLoop::run(Real until) {
   checkpoint_age_ = parts_.seconds();
   while (!clock_.done()) {
+    if (parts_.records.should_end()) return LoopEnd::stop_condition;
     if (clock_.time() >= until) return LoopEnd::paused;
     if (poll_requests() != 0) return LoopEnd::stopped_by_signal;
     take_recorded_step(until);
   }
-  return LoopEnd::done;
+  return parts_.records.should_end() ? LoopEnd::stop_condition : LoopEnd::done;
 }
 
 void StepLoop::take_recorded_step(Real until) {
@@ -183,7 +184,7 @@ void StepLoop::output(Real h) {
     const Reports::Instant now(parts_.backend.reports());
     if (state_.counts.steps >= next_sample_) parts_.records.sample_energies(state_);
     if (history) parts_.records.history(state_, h);
-    if (snapshot) parts_.records.snapshot(state_);
+    if (snapshot || parts_.records.should_end()) parts_.records.snapshot(state_);
   }
   if (checkpoint) write_checkpoint();
   progress_(state_, h);

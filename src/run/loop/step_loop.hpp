@@ -18,7 +18,8 @@
 
 namespace scree {
 
-enum class LoopEnd { done, paused, stopped_by_signal };
+// stop_condition: one of the deck's is met, possibly at the end.
+enum class LoopEnd { done, stop_condition, paused, stopped_by_signal };
 
 // Time of a monotonic clock [s].
 double steady_seconds();
@@ -51,8 +52,8 @@ class StepLoop {
   StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
            std::function<void(const State&, Real h)> progress);
 
-  // Takes steps until the end or a signal, or pauses after the first step that reaches the time `until` [s];
-  // may then be called again. Throws SimulationError if the run cannot continue.
+  // Takes steps until the end, a stop condition or a signal, or pauses after the first step that reaches the
+  // time `until` [s]; may then be called again. Throws SimulationError if the run cannot continue.
   LoopEnd run(Real until = kInfinity);
   int signal() const { return signal_; }  // the one that stopped the run, on any rank
   // The current state, complete with the particles.

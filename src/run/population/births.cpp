@@ -16,8 +16,6 @@
 namespace scree {
 namespace {
 
-// Numbers per waiting particle in PopulationState::waiting.
-constexpr std::size_t kWaitingNumbers = 3;
 // Round-off of an instant, relative to the interval.
 constexpr Real kInstantRoundOff = 1e-9;
 

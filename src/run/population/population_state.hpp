@@ -1,6 +1,7 @@
 // Particles born and removed so far, as part of the state of a run.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "base/types.hpp"
 
 namespace scree {
+
+// Numbers per particle in PopulationState::waiting.
+inline constexpr std::size_t kWaitingNumbers = 3;
 
 // All arrays are empty in a model without inserters. Particle n of an inserter, n from 0, is the same
 // whenever it is born.
@@ -25,7 +29,7 @@ struct PopulationState {
 
   std::int64_t waiting_of(int inserter) const {
     std::int64_t count = 0;
-    for (std::size_t k = 0; k < waiting.size(); k += 3) count += waiting[k] == inserter;
+    for (std::size_t k = 0; k < waiting.size(); k += kWaitingNumbers) count += waiting[k] == inserter;
     return count;
   }
   std::int64_t born_of(int inserter) const {

@@ -253,6 +253,13 @@ void contact_columns(Group contacts, const ContactTarget& target, std::size_t k)
                [k](const Sample& s) { return static_cast<Real>(s.contacts[k].contacts); });
 }
 
+// k: index of the region.
+void region_columns(Group region, std::size_t k) {
+  region.add("number", "1", "particles whose centres are in the region",
+             [k](const Sample& s) { return s.regions[k].number; });
+  region.add("mass", "kg", "mass of these particles", [k](const Sample& s) { return s.regions[k].mass; });
+}
+
 void spatial_columns(Group body, std::size_t b) {
   const auto part = [&](const char* name, Real Quaternion::*value) {
     body.add(name, "1",
@@ -341,6 +348,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     inserter_columns({"inserters/" + model.inserters[i].name, out}, i);
   for (std::size_t k = 0; k < model.outlets.size(); ++k)
     outlet_columns({"outlets/" + model.outlets[k].name, out}, k);
+  for (std::size_t k = 0; k < output.history_regions.size(); ++k)
+    region_columns({"regions/" + output.history_regions[k].name, out}, k);
   for (const int body : output.history_bodies) {
     const auto b = as_size(body);
     body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);

@@ -41,6 +41,7 @@ struct HistorySample {
   std::vector<JointReading> coordinates;   // of the recorded joints
   std::vector<BushingSample> bushings;     // of the recorded bushings
   std::vector<ContactSum> contacts;        // per entry of Output::history_contacts
+  std::vector<RegionSums> regions;         // per entry of Output::history_regions
   std::vector<BodyMotion> bodies;          // all bodies, if some are recorded
   std::vector<TracedParticle> traced;      // per entry of Output::history_particles; NaN: removed particle
 };

@@ -92,6 +92,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyCoupling& lin
                                coordinates_of(link, state), bushings_of(model, link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
+    stops_.emplace(model.stop_conditions, columns_);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows, likely_rows(model));
     if (!model.meshes.empty()) surfaces_.emplace(model);
     if (model.output.links && link.multibody() != nullptr) links_.emplace(model);
@@ -126,8 +127,17 @@ void Recorder::history(State& state, Real h) {
     std::vector<Real> row;
     for (const RecordedColumn& column : columns_) row.push_back(column.value(sample));
     history_->append(row);
+    stops_->adopt(state.stop_watches);
+    stops_->add_row(sample.time, row, state.stop_watches);
   }
   ++state.history_rows;
+  find_stop(state);
+}
+
+void Recorder::find_stop(State& state) {
+  if (model_.stop_conditions.empty()) return state.stop_watches.clear();
+  if (stops_) stops_->adopt(state.stop_watches), stop_reason_ = stops_->reason(state.stop_watches);
+  should_end_ = body_coupling_.ranks().any(!stop_reason_.empty());
 }
 
 HistorySample Recorder::take_sample(State& state, Real h) const {
@@ -145,6 +155,8 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.contacts = target_contacts(model_, body_coupling_, state, backend_);
   if (body_coupling_.multibody() != nullptr && !model_.output.history_bodies.empty())
     sample.bodies = body_coupling_.multibody()->motion(state.bodies);
+  for (const HistoryRegion& region : model_.output.history_regions)
+    sample.regions.push_back(backend_.reports().in_region(region.bounds));
   sample.traced = traced_of(model_, body_coupling_.ranks(), backend_);
   return sample;
 }

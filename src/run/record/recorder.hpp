@@ -14,6 +14,7 @@
 #include "run/record/history_columns.hpp"
 #include "run/record/joint_lines.hpp"
 #include "run/record/mesh_surfaces.hpp"
+#include "run/record/stop_conditions.hpp"
 #include "run/state/records.hpp"
 #include "run/state/state.hpp"
 
@@ -37,6 +38,11 @@ class Recorder : public Records {
   // Takes a snapshot. On a single rank an asynchronous backend continues with its steps meanwhile, and the
   // snapshot is written while the host would be idle, at the latest by flush() or before the next snapshot.
   void snapshot(State& state) override;
+  // Looks whether a stop condition is met at the last row of a state from a checkpoint. Collective.
+  void find_stop(State& state);
+  bool should_end() const override { return should_end_; }
+  // The stop condition that is met, on rank 0; empty if none is.
+  const std::string& stop_reason() const { return stop_reason_; }
   // Writes a pending snapshot. It is dropped if the backend fails to return the particles.
   void write_pending() override;
   // Brings all recorded data to disk.
@@ -70,10 +76,13 @@ class Recorder : public Records {
   std::optional<MeshSurfaces> surfaces_;  // on rank 0, with meshes
   std::optional<JointLines> links_;       // on rank 0, if the output has them
   std::vector<RecordedColumn> columns_;   // on rank 0
+  std::optional<StopConditions> stops_;   // on rank 0
   std::optional<HistoryWriter> history_;  // on rank 0
   std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
   std::int64_t contacts_ = -1;
+  std::string stop_reason_;  // on rank 0
+  bool should_end_ = false;
 };
 
 }  // namespace scree

@@ -28,6 +28,8 @@ class LiveStatus {
   bool poll(const State& state, Real h, std::int64_t contacts);
   // Notes a new checkpoint. name: file name; time: simulated time [s].
   void checkpoint_written(const std::string& name, Real time);
+  // Notes the stop condition that ended the run; empty: none.
+  void ended_by(const std::string& stop_condition) { status_.stop_condition = stop_condition; }
   // Writes the status file, on rank 0. A full disk does not end the run here, because writing the results
   // will report it. word: RunStatus::state; contacts: as above.
   void write(const std::string& word, const State& state, std::int64_t contacts, std::int64_t snapshots);

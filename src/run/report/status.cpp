@@ -114,6 +114,8 @@ std::string status_lines(const Observed& observed) {
       status.state.starts_with("failed") ? ", at the last row of the history" : "";
   std::string text = fmt::format("deck           {}, backend {}\n", printable(status.deck), status.backend);
   text += fmt::format("simulated      {:.6g} of {:g} s ({})\n", p.time, p.end, percent_text(p));
+  if (!status.stop_condition.empty())
+    text += fmt::format("ended by       stop condition {}\n", printable(status.stop_condition));
   if (is_running) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
   text += fmt::format("wall time      {}, since {}\n", duration_text(status.wall_seconds), status.started);
   text += fmt::format("steps          {}, the last one of {:.2e} s\n", p.steps, p.step);

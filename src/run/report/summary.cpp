@@ -4,6 +4,7 @@
 
 #include "dem/search/skin_choice.hpp"
 #include "model/checks/memory.hpp"
+#include "run/report/bodies_outside.hpp"
 
 namespace scree {
 
@@ -46,6 +47,53 @@ std::string balance_text(const BalanceState& balance, std::int64_t escaped, std:
       balance_error(balance), balance.exchanged, taken_by_integrator(balance),
       counted(escaped, "particle", "particles"),
       bodies == 0 ? "" : ", " + counted(bodies, "body is outside", "bodies are outside"));
+}
+
+std::string population_text(const State& state) {
+  const PopulationState& population = state.population;
+  std::int64_t dropped = 0;
+  for (const std::int64_t of_inserter : population.dropped) dropped += of_inserter;
+  std::string text = counted(population.born(), "particle", "particles") + " born";
+  if (!population.waiting.empty())
+    text += fmt::format(", {} still wait for a free position", population.waiting.size() / kWaitingNumbers);
+  if (dropped > 0) text += fmt::format(", {} dropped because no position was free", dropped);
+  return text + fmt::format(", {} removed in outlets", state.outlets.removed_of_all());
+}
+
+std::vector<std::pair<std::string, std::int64_t>> record_counts(const Model& model, const State& state,
+                                                                const StepCounts& steps, const RankList& list,
+                                                                const RankSums& sums) {
+  return {{"steps", steps.steps},
+          {"substeps", model.integrator.substeps},
+          {"newton_iterations", steps.newton_iterations},
+          {"linear_iterations", steps.linear_iterations},
+          {"rejected_error", steps.rejected_error},
+          {"rejected_newton", steps.rejected_newton},
+          {"frozen_steps", steps.lagged_steps},
+          {"list_builds", list.builds()},
+          {"list_skin_chosen", chooses_skin(model) ? 1 : 0},
+          {"list_entries", sums.list_entries},
+          {"rebalances", list.balance().rebalances},
+          {"migrated", sums.migrated},
+          {"particles", particles_so_far(model.particles, state.population)},
+          {"particles_removed", state.outlets.removed_of_all()},
+          {"bodies", static_cast<std::int64_t>(model.bodies.size())},
+          {"particles_escaped", state.carried_out.left},
+          {"bodies_outside", bodies_outside(model, state.bodies).count},
+          {"history_rows", state.history_rows},
+          {"snapshots", sums.snapshots}};
+}
+
+std::vector<std::pair<std::string, double>> record_measures(const State& state, const RankList& list) {
+  const BalanceState& b = state.balance;
+  const LoadBalance balance = list.balance();
+  return {{"simulated_time", state.clock.time},
+          {"balance_error", balance_error(b)},
+          {"energy_exchanged", b.exchanged},
+          {"energy_taken_by_integrator", taken_by_integrator(b)},
+          {"imbalance", balance.imbalance},
+          {"largest_imbalance", balance.largest},
+          {"list_skin", list.skin()}};
 }
 
 }  // namespace scree

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/timer.hpp"
@@ -23,5 +24,17 @@ std::string lagged_text(const StepCounts& counts);
 std::string lists_text(const Model& model, const RankList& list, const StageTimers& timers);
 // escaped: number of particles; bodies: number of bodies outside the domain.
 std::string balance_text(const BalanceState& balance, std::int64_t escaped, std::int64_t bodies);
+// Particles born, waiting and removed in outlets.
+std::string population_text(const State& state);
+
+// Numbers of all ranks that the state does not have.
+struct RankSums {
+  std::int64_t list_entries = 0, migrated = 0, snapshots = 0;
+};
+// RunRecord::counts and RunRecord::measures.
+std::vector<std::pair<std::string, std::int64_t>> record_counts(const Model& model, const State& state,
+                                                                const StepCounts& steps, const RankList& list,
+                                                                const RankSums& sums);
+std::vector<std::pair<std::string, double>> record_measures(const State& state, const RankList& list);
 
 }  // namespace scree

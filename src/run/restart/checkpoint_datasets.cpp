@@ -107,6 +107,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
     sizes.shape_contacts.values.resize(checkpoint.real_array(kShapeHistory).size());
   // Contact history and rotation are optional in a checkpoint: without them it starts empty.
   sizes.contacts.content = content_in(checkpoint), sizes.there = fields_there(checkpoint);
+  sizes.stop_watches = watches_in(checkpoint);  // of any conditions
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";
   check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);

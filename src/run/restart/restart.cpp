@@ -136,8 +136,9 @@ Differences differences_until(const Checkpoint& checkpoint, const RunOptions& op
 
 [[noreturn]] void refuse(const Differences& differences, const RunOptions& options) {
   throw InputError(fmt::format(
-      "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output and "
-      "parallel may differ. With --allow-changes the run continues, but not bit for bit. Keys that differ: "
+      "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output, "
+      "stop and parallel may differ. With --allow-changes the run continues, but not bit for bit. Keys that "
+      "differ: "
       "{}",
       options.restart, listed(differences)));
 }

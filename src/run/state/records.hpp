@@ -17,6 +17,8 @@ class Records {
   virtual void sample_energies(State& state) = 0;
   // Takes a snapshot, which may be written later, and updates the number of snapshots in the state.
   virtual void snapshot(State& state) = 0;
+  // Whether a stop condition of the deck is met at the last row of the history; the same on every rank.
+  virtual bool should_end() const { return false; }
   // Writes a snapshot that was taken but not yet written.
   virtual void write_pending() = 0;
 };

@@ -127,8 +127,9 @@ void visit_state(Visitor& visit, StateType& state) {
   visit_ledger(visit, state.balance.last);
 }
 
-// Visits values that are not part of the hash: amounts of output do not belong to the computed state, and the
-// number of lagged steps, stored for particles that rotate, follows from the rest of the state.
+// Visits values that are not part of the hash: amounts of output and what stop conditions have seen do not
+// belong to the computed state, and the number of lagged steps, stored for particles that rotate, follows
+// from the rest of the state.
 template <class Visitor, class StateType>
 void visit_output(Visitor& visit, StateType& state) {
   visit("clock/histories", state.clock.histories);
@@ -136,6 +137,7 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("clock/checkpoints", state.clock.checkpoints);
   visit("output/history_rows", state.history_rows);
   visit("output/snapshots", state.snapshots);
+  visit.watches(state.stop_watches);
   if (state.there.rotates) visit("counts/frozen_steps", state.counts.lagged_steps);
 }
 

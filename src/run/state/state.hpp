@@ -12,6 +12,7 @@
 #include "run/population/outlets.hpp"
 #include "run/population/population_state.hpp"
 #include "run/state/step_clock.hpp"
+#include "run/state/stop_watch.hpp"
 
 namespace scree {
 
@@ -52,6 +53,7 @@ struct State {
   PopulationState population;
   OutletState outlets;
   BalanceState balance;
+  std::vector<StopWatch> stop_watches;  // of the deck's stop conditions; on rank 0
   // Numbers recorded so far. All of them are on disk before a checkpoint with these numbers.
   std::int64_t history_rows = 0, snapshots = 0;
 };
@@ -75,9 +77,9 @@ FieldsThere fields_there(const Checkpoint& in);
 // before it.
 Checkpoint pack(const State& state);
 Checkpoint pack(const State&& state) = delete;
-// Hash of all bits of the state except the amounts of output. The hashes of ranks, each of its own particles,
-// add up (modulo 2^64) to the hash of the whole. with_rest: also hashes everything except the particles, on
-// one rank.
+// Hash of all bits of the state except the amounts of output and the stop watches. The hashes of ranks, each
+// of its own particles, add up (modulo 2^64) to the hash of the whole. with_rest: also hashes everything
+// except the particles, on one rank.
 std::uint64_t state_hash(const State& state, bool with_rest);
 // The state of a checkpoint, with the particles of this rank's rows. Throws IoError naming what is missing,
 // on every rank. Collective.

@@ -13,6 +13,7 @@
 #include "model/data/body_exchange.hpp"
 #include "output/checkpoint.hpp"
 #include "physics/tangential_losses.hpp"
+#include "run/state/stop_watch.hpp"
 
 namespace scree {
 
@@ -40,6 +41,7 @@ class Writer {
   void if_any(const char* name, const TangentialLosses& losses) {
     if (losses != TangentialLosses{}) out_.reals[name] = {std::begin(losses.of), std::end(losses.of)};
   }
+  void watches(const std::vector<StopWatch>& watches) { add_watches(watches, out_); }
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto end = position.end() - static_cast<std::ptrdiff_t>(angles);
     out_.reals[kPositions].assign(position.begin(), end);
@@ -78,6 +80,7 @@ class Reader {
       throw IoError(in_.path + ": '" + name + "' has another number of values");
     std::ranges::copy(values, losses.of);
   }
+  void watches(std::vector<StopWatch>& watches) { watches = watches_in(in_); }
   void poses(std::vector<Real>& position, std::size_t& angles) {
     position = in_.real_array(kPositions);
     angles = 0;

@@ -21,6 +21,7 @@ class CountedReports : public Reports {
     return {};
   }
   ContactLines contact_lines() override { return {}; }
+  RegionSums in_region(const RegionBounds&) override { return {}; }
   std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
   std::vector<ContactSum> parent_contacts() override { return {}; }
   std::vector<ContactSum> surface_contacts() override { return {}; }

@@ -65,6 +65,7 @@ class FailingReports : public Reports {
   }
   ShapePack pack_shapes() override { return of_.pack_shapes(); }
   ContactLines contact_lines() override { return of_.contact_lines(); }
+  RegionSums in_region(const RegionBounds& region) override { return of_.in_region(region); }
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }
   std::vector<ContactSum> parent_contacts() override { return of_.parent_contacts(); }
   std::vector<ContactSum> surface_contacts() override { return of_.surface_contacts(); }
@@ -75,7 +76,6 @@ class FailingReports : public Reports {
 
  private:
   void find_loads() override {}  // that of the other backend
-
   Reports& of_;
 };
 
