@@ -60,7 +60,6 @@ REFUSED = (
     ((RAIN + "min=[2.0,0.2,0.5]", RAIN + "max=[3.0,0.8,0.9]"), "the region is outside the domain of [space]"),
     ((RAIN + "on=nobody",), 'there is no body named "nobody"'),
     ((RAIN + "on=slope",), "is a plane at rest: leave the key out"),
-    ((RAIN + "start=1.0",), "must be below time.end = 1 s"),
     ((RAIN + "start=0.5", RAIN + "end=0.5"), "must be above start = 0.5 s"),
     ((RAIN + "interval=-1.0",), "rain.interval must be a number of at least 0 [s]"),
     ((RAIN + "interval=1e-300",), "must not be below 1e-15 s"),
@@ -125,6 +124,10 @@ class InserterMessagesTest(CommandLineTest):
     def test_a_dense_stream_is_warned_of(self):
         self.assertIn("many random positions are occupied, and births are late",
                       self.check(DONE, DECK, [STREAM + "mass_rate=12.0"]).stderr)
+
+    def test_births_after_the_end_are_warned_of(self):
+        self.assertIn("inserters.rain: no particle is born until time.end = 1 s",
+                      self.check(DONE, DECK, [RAIN + "start=1.5"]).stderr)
 
     def test_what_a_deck_must_not_say(self):
         for settings, part in REFUSED:
