@@ -155,10 +155,8 @@ void check_room(const DeckTable& table, const Model& model, const Inserter& inse
 }
 
 // The end of the births [s].
-Real end_of(const DeckTable& table, const Model& model, bool at_once) {
+Real end_of(const DeckTable& table, bool at_once) {
   const Real start = table.real("start");
-  if (start >= model.time.end)
-    table.fail("start", fmt::format("must be below time.end = {} s", model.time.end));
   if (!table.has("end")) return at_once ? start : kInfinity;
   if (table.real("end") <= start) table.fail("end", fmt::format("must be above start = {} s", start));
   return table.real("end");
@@ -205,20 +203,20 @@ std::vector<Real> rate_times(const DeckTable& table, const std::vector<Real>& fa
   return times;
 }
 
-BirthSchedule schedule_of(const DeckTable& table, const Model& model, const Inserter& inserter) {
+BirthSchedule schedule_of(const DeckTable& table, const Inserter& inserter) {
   const Real total = total_of(table, inserter.region, inserter.amount);
   const char* const key = inserter.amount == Amount::mass ? "mass_rate" : "number_rate";
   const bool has_rate = table.has("number_rate") || table.has("mass_rate");
   std::vector<Real> rates = table.reals("rate_factors"), times = rate_times(table, rates);
   if (!has_rate) {
     if (!times.empty()) table.fail("rate_times", "needs number_rate or mass_rate");
-    const Real start = table.real("start"), end = end_of(table, model, true);
+    const Real start = table.real("start"), end = end_of(table, true);
     if (end <= start) return BirthSchedule::at_once(start, total);
     return BirthSchedule::by_rate({start, end}, {total / (end - start), total / (end - start)}, total);
   }
   const Real rate = table.real(key);
   if (times.empty())
-    return BirthSchedule::by_rate({table.real("start"), end_of(table, model, false)}, {rate, rate}, total);
+    return BirthSchedule::by_rate({table.real("start"), end_of(table, false)}, {rate, rate}, total);
   for (Real& factor : rates) factor *= rate;
   return BirthSchedule::by_rate(std::move(times), std::move(rates), total);
 }
@@ -323,7 +321,7 @@ void build_inserters(const DeckTable& deck, Model& model, const ModelNames& name
     inserter.amount = amount_of(table, inserter.region);
     inserter.seed = table.integer("seed");
     inserter.mixture = std::make_shared<const Mixture>(read_mixture(table, names, model.space.dimension));
-    inserter.schedule = schedule_of(table, model, inserter);
+    inserter.schedule = schedule_of(table, inserter);
     inserter.interval = checked_interval(table, model, interval_of(table, model, inserter));
     inserter.gap = table.real("gap"), inserter.tries = table.integer("tries");
     inserter.blocked = table.choice<BlockedPolicy>("blocked");
@@ -331,6 +329,9 @@ void build_inserters(const DeckTable& deck, Model& model, const ModelNames& name
       table.fail("most_waiting", "used with blocked = \"wait\" only");
     if (table.has("most_waiting")) inserter.most_waiting = table.integer("most_waiting");
     inserter.most_births = most_births(table, model, inserter);
+    if (inserter.most_births == 0)  // a part of a longer run may end before
+      log.warning(
+          fmt::format("{}: no particle is born until time.end = {} s", table.label(), model.time.end));
     check_room(table, model, inserter);
     check_density(table, inserter, model.space.dimension, log);
     declare(inserter, model);

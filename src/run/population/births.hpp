@@ -30,9 +30,9 @@ class Births {
   // it must end with births_at().
   Real next(const PopulationState& state) const;
   // Counts the particles that are due at time t, and returns those that are born: equal on every rank, in the
-  // order of the inserters and of their numbers n, with the state from which a step starts. motion: of the
-  // bodies, then of the walls with a pose. Throws SimulationError where the deck's limit of blocked births is
-  // exceeded. Collective.
+  // order of the inserters and, of each, in the order in which they found their positions; with the state
+  // from which a step starts. motion: of the bodies, then of the walls with a pose. Throws SimulationError
+  // where the deck's limit of blocked births is exceeded, and leaves the state as it was. Collective.
   std::vector<Particle> births_at(Real t, std::span<const BodyMotion> motion, RankParticles& particles,
                                   PopulationState& state) const;
 

@@ -222,7 +222,7 @@ DeckTable component_table(const TableKeys& keys, const std::string& path, const 
 }
 
 // A table like that of an inserter.
-const TableKeys& feeder_keys() {
+const TableKeys& test_keys() {
   static const TableKeys keys = [] {
     TableKeys made{"", mixture_list_keys(), ""};
     made.keys.push_back(integer("seed"));
@@ -232,7 +232,7 @@ const TableKeys& feeder_keys() {
 }
 
 DeckTable inserter(std::vector<DeckTable> mixture) {
-  DeckTable table(feeder_keys(), "inserters.feed", kTable);
+  DeckTable table(test_keys(), "inserters.feed", kTable);
   give(table, "mixture", std::move(mixture));
   give(table, "seed", std::int64_t{1});
   give(table, "thickness", 1.0);
@@ -268,7 +268,7 @@ TEST_CASE("a mixture of the deck") {
   CHECK(contains(error(table), "not used together with mixture, whose components have it"));
   DeckTable none = inserter({});
   CHECK(contains(error(none), "inserters.feed.radius: missing"));
-  DeckTable alone = component_table(feeder_keys(), "inserters.feed", "steel", 0.001);
+  DeckTable alone = component_table(test_keys(), "inserters.feed", "steel", 0.001);
   give(alone, "mixture", std::vector<DeckTable>{}), give(alone, "seed", std::int64_t{1});
   give(alone, "shares", std::string("exact"));
   CHECK(near(read_mixture(alone, names, 3).mean_mass(), steel_mass, {.relative = 1e-14}));

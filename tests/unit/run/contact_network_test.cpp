@@ -137,7 +137,7 @@ TEST_CASE("columns of contacts identify the end of each line") {
     lines.lines.push_back({first, second, {1, 2, 3}, {{0, 1, 0}, {}, 0, 0, 0, 0.5}});
   for (const GlobalId second : {body, surface_id(0)})
     lines.of_bodies.push_back({surface_id(surfaces.ground()), second, {}, {{0, 1, 0}, {}, 0, 0, 0, 0}});
-  const ContactNetwork network(model, {}, lines);
+  const ContactNetwork network(model, {}, 10, lines);
   const LineSnapshot shown = network.snapshot();
   CHECK(shown.ends[5] == Vec3{1, 3, 3});
   std::vector<std::string> names;
