@@ -19,9 +19,9 @@ struct SearchCells {
   CellGrid space;  // items in one of its cells are searched, for any number of ranks
   CellGrid own;    // cells over the box of this rank; the same with one rank
   bool same = true;
-  bool finer = false;    // whether the cells of `own` suit the smallest particles instead
   DomainBox box{};       // of this rank
   Real list_radius = 0;  // of the list beyond the box [m]
+  bool finer = false;    // whether the cells of `own` suit the smallest particles instead
 
   // Cell index in `own`; x is -1 for items that are not searched.
   SCREE_HD CellIndex cell_index(Vec3 p) const {
