@@ -32,13 +32,13 @@ std::vector<Key> region_keys() {
           .only_for({Kind::mesh})
           .required()
           .about(
-              "A closed mesh whose inside is the region, in its pose on the wall or the body that has it, "
-              "otherwise in the global frame. It must be an open surface (a file with sheet = true) or not "
-              "collide: the inside of other meshes is solid."),
+              "A closed mesh whose inside is the region, in its pose at t = 0 on the wall or the body that "
+              "has it, otherwise in the global frame; the region moves only with on. If the mesh collides, "
+              "it must be a shell (a file with sheet = true): the inside of other closed meshes is solid."),
       vector("normal", "")
           .only_for({Kind::face})
           .left_out("the direction of velocity")
-          .about("Direction across the face, of any length."),
+          .about("Normal of the face, of any length; must point to the side that velocity leads to."),
       real("width", "m")
           .only_for({Kind::face})
           .above(0)
@@ -48,16 +48,15 @@ std::vector<Key> region_keys() {
           .only_for({Kind::face})
           .above(0)
           .left_out("equal to width")
-          .about("3D: height of a rectangular face, across width."),
+          .about("3D: height of a rectangular face, perpendicular to width."),
       vector("width_axis", "")
           .only_for({Kind::face})
           .left_out("3D: the global axis that is most nearly across the normal")
-          .about("3D: direction of width, of any length; its part along the normal is left out."),
+          .about("3D: direction of width, of any length; its component along the normal is removed."),
       text("on")
           .left_out("the region is at rest")
-          .about("A body, or a wall with a mesh or a motion, with which the region moves. Its keys give the "
-                 "region at "
-                 "t = 0 in the global frame."),
+          .about("A body, or a wall with a mesh or a motion, with which the region moves. The other keys "
+                 "give the region at t = 0 in the global frame."),
   };
 }
 
@@ -66,42 +65,42 @@ std::vector<Key> amount_keys() {
       integer("number")
           .within(1, 1000000000)
           .left_out("no limit")
-          .about("Number of particles in all. Without a rate all of them are born at start, or uniformly "
-                 "from start "
-                 "to end where end is given."),
+          .about("Total number of particles. Without a rate all of them are due at start or, if end is "
+                 "given, uniformly from start to end."),
       real("mass_total", "kg")
           .above(0)
           .left_out("no limit")
-          .about(
-              "Mass of all particles, in place of number: particles are born as long as it is not exceeded."),
+          .about("Total mass of the particles, in place of number; births end before it would be exceeded."),
       real("solid_fraction", "")
           .within(0, 1)
           .above(0)
           .left_out("none")
-          .about("Volume of all particles over that of the region (2D: areas), in place of number."),
-      real("number_rate", "1/s").above(0).left_out("no rate").about("Particles born per time."),
-      real("mass_rate", "kg/s").above(0).left_out("no rate").about("Mass born per time."),
+          .about("Total volume of the particles over that of the region (2D: areas), in place of number."),
+      real("number_rate", "1/s").above(0).left_out("no rate").about("Rate of the number of particles."),
+      real("mass_rate", "kg/s").above(0).left_out("no rate").about("Rate of the mass of particles."),
       reals("rate_times", "s")
           .otherwise("[]")
-          .about("Times of a table of the rate, increasing; they stand for start and end."),
+          .about("Increasing times of a table of the rate, in place of start and end."),
       reals("rate_factors", "")
           .at_least(0)
           .otherwise("[]")
-          .about("Factors of the rate at rate_times, with linear interpolation."),
-      real("start", "s").at_least(0).otherwise("0.0").about("Begin of the births."),
+          .about("Factors of number_rate or mass_rate at rate_times, with linear interpolation; the rate is "
+                 "0 before and after these times."),
+      real("start", "s").at_least(0).otherwise("0.0").about("Start of the births."),
       real("end", "s")
           .above(0)
           .left_out("never; number, mass_total and solid_fraction without a rate: start")
-          .about("End of the births, which is one of their instants whatever the interval is."),
+          .about("End of the births. Particles that have become due since the last instant are born then, "
+                 "whatever the interval is."),
       real("interval", "s")
           .at_least(0)
           .left_out("a face: the time in which the stream moves by the largest diameter; others: the time in "
                     "which a particle at rest falls by the smallest diameter; must be given without gravity")
           .about(
-              "Particles are born at start + k interval, at each of these instants all that are due; those "
-              "of a face are placed where they have got to since they passed it, so that their distances "
-              "do not depend on the interval. Each birth builds the neighbour list: a short interval takes "
-              "time. 0: after each step."),
+              "At each instant start + k interval all particles that are due are born. A particle of a face "
+              "starts where free fall from the face, since it was due, has taken it, so that the density of "
+              "the stream does not depend on the interval. Each instant with births rebuilds the neighbour "
+              "list: a short interval takes time. 0: births after each step in which particles are due."),
   };
 }
 
@@ -109,7 +108,8 @@ std::vector<Key> birth_keys() {
   return {
       vector("velocity", "m/s")
           .otherwise("zero")
-          .about("Velocity at birth, relative to the body or wall of on; required for a face."),
+          .about("Velocity at birth; with on, it rotates with the body or wall and is relative to it. "
+                 "Required for a face."),
       real("random_velocity", "m/s")
           .at_least(0)
           .otherwise("0.0")
@@ -118,21 +118,21 @@ std::vector<Key> birth_keys() {
       real("gap", "m")
           .at_least(0)
           .otherwise("0.0")
-          .about("Smallest distance of a particle at birth from other particles and from surfaces."),
+          .about("Smallest distance of the surface of a particle at birth from other particles and from "
+                 "walls and bodies."),
       integer("tries").within(1, 10000).otherwise("50").about(
           "Number of random positions that are tried for a particle at one instant."),
       choice<BlockedPolicy>("blocked")
           .otherwise_choice(BlockedPolicy::wait)
-          .about(
-              "What happens to a particle that finds no free position. Wait: it is tried again at the next "
-              "instant, before later ones. Drop: it is left out. Error: the run ends. Waiting and dropped "
-              "particles are counted in the history."),
+          .about("What happens to a particle for which no free position is found. Wait: it is tried again at "
+                 "the next instant, before particles that are due later. Drop: it is left out. Error: the "
+                 "run ends with an error. Waiting and dropped particles are counted in the history."),
       integer("most_waiting")
           .at_least(0)
           .left_out("any number")
-          .about("With blocked = \"wait\": the run ends where more particles than this wait."),
+          .about("With blocked = \"wait\": the run ends with an error if more particles than this wait."),
       integer("seed").at_least(0).otherwise("1").about(
-          "Seed of the inserter's random numbers; the same seed gives the same particles."),
+          "Seed of the inserter's random numbers; inserters with the same seed use the same random numbers."),
   };
 }
 
@@ -141,13 +141,13 @@ std::vector<Key> birth_keys() {
 const TableKeys& inserter_keys() {
   static const TableKeys keys = [] {
     TableKeys all{
-        "Inserters: regions in which particles are born during the run. How many are due follows from the "
-        "time "
-        "alone, so that births do not depend on steps, ranks or restarts.",
+        "Inserters: regions in which particles are born during the run. The amount that is due is a function "
+        "of time alone and does not depend on steps, ranks or restarts.",
         {name_key().required().about("Name, for the history and messages."),
          choice<InserterKind>("kind").required().about(
-             "Box, cylinder (3D), sphere (2D: circle): regions inside which particles are born. Mesh: the "
-             "inside of a mesh. Face: a surface through which particles stream with a velocity.")},
+             "Box, cylinder (3D), sphere (2D: circle): regions in which particles are born. Mesh: the inside "
+             "of a mesh. Face: a plane rectangle or disc (2D: a line) through which particles enter with a "
+             "velocity.")},
         "kind"};
     add(all.keys, region_keys());
     add(all.keys, amount_keys());
@@ -161,9 +161,9 @@ const TableKeys& inserter_keys() {
 const TableKeys& outlet_keys() {
   using Kind = OutletKind;
   static const TableKeys keys{
-      "Outlets: regions in which particles are removed during the run, and counted. A particle is removed "
-      "when "
-      "its centre is in the region at an instant of the outlet.",
+      "Outlets: regions in which particles are removed during the run, and counted; at most eight. A "
+      "particle is removed when its centre is in the region, and inside the domain, at an instant of the "
+      "outlet.",
       {name_key().required().about("Name, for the history and messages."),
        choice<Kind>("kind").required().about(
            "Box, cylinder (3D), sphere (2D: circle): regions. Plane: everything beyond a plane."),
@@ -184,21 +184,20 @@ const TableKeys& outlet_keys() {
        vector("normal", "")
            .only_for({Kind::plane})
            .required()
-           .about("Direction across the plane, of any length, to the side on which particles are removed."),
+           .about("Normal of the plane, of any length, towards the side on which particles are removed."),
        text("on")
            .left_out("the region is at rest")
-           .about("A body, or a wall with a mesh or a motion, with which the region moves. Its keys give the "
-                  "region at "
-                  "t = 0 in the global frame."),
+           .about("A body, or a wall with a mesh or a motion, with which the region moves. The other keys "
+                  "give the region at t = 0 in the global frame."),
        real("start", "s").at_least(0).otherwise("0.0").about("Time from which on particles are removed."),
        real("end", "s").above(0).left_out("never").about("Time until which particles are removed."),
        real("interval", "s")
            .above(0)
            .left_out("the time in which a particle at rest falls by the smallest diameter; must be given "
                      "without gravity")
-           .about(
-               "Particles are removed at start + k interval. Each removal builds the neighbour list: a short "
-               "interval takes time, and with a long one particles get farther into the region.")},
+           .about("Particles are removed at the instants start + k interval. Each removal rebuilds the "
+                  "neighbour list: a short interval takes time, and with a long one particles move farther "
+                  "into the region.")},
       "kind"};
   return keys;
 }

@@ -19,8 +19,9 @@ const TableKeys& distribution_keys() {
            .only_for({Kind::uniform, Kind::normal, Kind::lognormal, Kind::rosin_rammler, Kind::table})
            .required_for({Kind::lognormal, Kind::rosin_rammler})
            .left_out("number")
-           .about("What the distribution counts: particles, or their mass, as a sieve analysis does. The "
-                  "share of the number at a size is that of the mass divided by the mass of one particle."),
+           .about("Whether the distribution is by number of particles or by mass, as from a sieve analysis. "
+                  "By mass, the number of particles at a size is in proportion to the mass there, divided by "
+                  "the mass of one particle."),
        real("value", kQuantityUnit).only_for({Kind::constant}).above(0).required().about("Value."),
        real("mean", kQuantityUnit)
            .only_for({Kind::normal})
@@ -42,7 +43,7 @@ const TableKeys& distribution_keys() {
            .above(1)
            .required()
            .about("Geometric standard deviation before truncation: the ratio of the values below which 84.1 "
-                  "% and 50 % are."),
+                  "% and 50 % lie."),
        real("scale", kQuantityUnit)
            .only_for({Kind::rosin_rammler})
            .above(0)
@@ -113,13 +114,14 @@ std::vector<Key> mixture_list_keys() {
       tables("mixture", mixture_keys()),
       choice<CountedBy>("shares_by")
           .left_out("at most one component")
-          .about("Whether the shares of the mixture's components are of the number or of the mass of the "
-                 "particles."),
+          .about(
+              "Whether the shares of the mixture's components are of the number or of the mass of the "
+              "particles. The components' mean masses convert shares of the mass to shares of the number."),
       choice<MixtureShares>("shares")
           .otherwise_choice(MixtureShares::exact)
-          .about("Exact: after any number of particles, each component is within one particle of its share, "
-                 "and each of 16 equally probable size bins too. Drawn: component and size of each particle "
-                 "are random."),
+          .about("Exact: after any number of particles that were due, the number of each component is within "
+                 "one particle of its share, and so is that of each of its 16 equally probable size bins. "
+                 "Drawn: component and size of each particle are random."),
       radius_key().left_out("mixture is given")};
   for (Key& key : kind_keys()) keys.push_back(std::move(key));
   return keys;

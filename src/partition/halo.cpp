@@ -18,8 +18,8 @@ Ghost ghost_in(const HaloTarget& target, Index source) { return {source, target.
 // Number of the shift by the same periods in the other direction.
 std::int8_t opposite_image(std::int8_t image) { return static_cast<std::int8_t>(2 * kZeroShift - image); }
 
-// The second round of the halo of particles of many sizes. An item of this rank that comes near a larger
-// ghost is a partner of the original, on the ghost's rank: it becomes a ghost there.
+// The second round of the halo of particles of many sizes. An item of this rank that is near a ghost of a
+// higher level is a partner of the original and becomes a ghost on the rank that owns the original.
 class SmallPartners {
  public:
   // ghosts: positions of those of the first round; images: theirs.

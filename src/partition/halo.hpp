@@ -63,9 +63,9 @@ class Halo {
   // [m]. Collective.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 std::span<const Vec4> position, Real width);
-  // The same with the ghosts that rows need of particles of many sizes (x, y, z, radius), in two rounds.
-  // First particles within reach of the larger and equal ones of their level become ghosts, then the smaller
-  // ones that come near a ghost of a higher level. space: of the domain.
+  // The same for particles of many sizes, in two rounds, with those ghosts only that rows need. First the
+  // particles within search distance of particles of their level or a lower one become ghosts, then those
+  // that are near a ghost of a higher level. position: x, y, z, radius. space: of the domain.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 std::span<const Vec4> position, const SizeLevels& levels, const LevelSpace& space);
 

@@ -1,5 +1,5 @@
-// How much an inserter is due to have inserted at any instant: a closed form of time, so that births do not
-// depend on the steps of a run.
+// The amount of particles that an inserter has due at any time: a closed-form function of time, so that
+// births do not depend on the steps of a run.
 #pragma once
 
 #include <algorithm>

@@ -11,8 +11,8 @@ inline constexpr int kMostOutlets = 8;  // of a deck
 
 enum class OutletShape { box, cylinder, sphere };
 
-// A region at one instant. Local coordinates: (p - origin) along the axes. A half space is a box without
-// bounds but one.
+// A region at one instant. Local coordinates: (p - origin) along the axes. A half space is a box
+// with a single finite bound.
 struct OutletRegion {
   OutletShape shape = OutletShape::box;
   Vec3 origin;      // [m]

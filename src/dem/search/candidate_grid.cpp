@@ -10,7 +10,7 @@
 namespace scree {
 namespace {
 
-// Cells per sphere, at most: beyond that they are wider than a contact needs.
+// Limits of the number of cells; where more would be needed, they become wider.
 constexpr Real kCellsPerSphere = 8, kLeastCells = 4096;
 
 constexpr Real Vec3::*kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};

@@ -1,4 +1,5 @@
-// Spheres that are to become particles, in cells, and the test of particles against them.
+// Trial positions of particles that are to be born, sorted into cells, and the search for particles that
+// overlap them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,8 @@
 
 namespace scree {
 
-// Candidates in cells as wide as a candidate and a particle that touch: partners are in neighbouring cells.
+// Candidates in cells at least as wide as the distance of centres at which a candidate and a particle touch:
+// partners are in neighbouring cells.
 struct CandidateViews {
   Vec3 min;              // lower corner of the cells [m]
   Real edge = 0;         // [m]
@@ -36,7 +38,7 @@ struct CandidateViews {
   }
 
  private:
-  // -2 for whatever is too far away to have a number.
+  // -2 for coordinates beyond the range of cell numbers.
   SCREE_HD Index cell(Real offset) const {
     const Real at = std::floor(offset / edge);
     return at >= -1 && at <= kMostCells ? static_cast<Index>(at) : -2;

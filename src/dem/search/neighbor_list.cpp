@@ -92,7 +92,8 @@ std::vector<LevelGrid> NeighborBuilder::level_grids(const SearchCells& cells, Re
   const Real width = cutoff(skin), layer = model_.space.dimension == 3 ? width : 0;
   space.extent.min = space.extent.min - Vec3{width, width, layer};
   space.extent.max = space.extent.max + Vec3{width, width, layer};
-  // At least half of the items of a level and of those above are in the level, if all have equal masses.
+  // If all levels have equal masses, at least half of the items of a level and of those above are in the
+  // level.
   std::vector<Index> items;
   for (int k = 0; k < levels_.count; ++k) items.push_back(in_all >> std::min(k, 30));
   return make_level_grids(levels_, space, items);

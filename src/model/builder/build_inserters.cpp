@@ -22,8 +22,8 @@ namespace scree {
 namespace {
 
 constexpr Real kMostBirths = 1e9;
-// Solid fractions of a stream: random positions rarely find space above the first, and never above the
-// second.
+// Solid fractions of a stream or region: above the first few random positions are free, above the second
+// none is.
 constexpr Real kDenseStream = 0.25, kFullStream = 0.55;
 
 // The two sides of a rectangular face, each half of it [m].
@@ -313,7 +313,8 @@ void build_inserters(const DeckTable& deck, Model& model, const ModelNames& name
     Inserter inserter;
     inserter.name = table.text("name");
     for (const ParticleGroup& group : model.particles.groups)
-      if (group.name == inserter.name) table.fail("name", "is the name of a group of particles or inserter");
+      if (group.name == inserter.name)
+        table.fail("name", "is the name of a group of particles or of another inserter");
     inserter.carrier = carrier_of(table, model, names);
     inserter.velocity = table.vector("velocity");
     inserter.random_velocity = table.real("random_velocity");

@@ -31,7 +31,7 @@ struct BirthRegion {
   Vec3 center;        // sphere, face [m]
   Vec3 ends[2];       // cylinder: of its axis [m]
   Real radius = 0;    // cylinder, sphere; face: of a disc, 0 for a rectangle [m]
-  Vec3 half_side[2];  // face: half of either side of a rectangle, from the centre; in 2D the second is 0 [m]
+  Vec3 half_side[2];  // face: from the centre to the middle of two sides; in 2D the second is 0 [m]
   int mesh = -1;      // index into Model::meshes
   Vec3 mesh_origin;   // position of the mesh's origin [m]
   Mat3 mesh_axes;     // rows: the mesh's axes
@@ -63,7 +63,7 @@ struct Outlet {
   std::string name;
   OutletRegion region;    // at t = 0, in the global frame; on a carrier it moves with it afterwards
   int carrier = kGround;  // as of an inserter
-  // Particles are removed at start + k * interval, at `end` at the latest [s].
+  // Particles are removed at start + k * interval, until `end` [s].
   Real start = 0, end = kInfinity, interval = 0;
 };
 

@@ -29,7 +29,7 @@ class Distribution {
   // density: 1). It converts a distribution by mass to one by number.
   Distribution(const DistributionParameters& parameters, int mass_power);
 
-  // The x that is the largest of the fraction u of all particles, by number. u: in [0, 1). Monotone.
+  // The x below which the fraction u of all particles lies, by number. u: in [0, 1). Monotone.
   Real quantile(Real u) const;
   Real smallest() const { return parameters_.min; }
   Real largest() const { return parameters_.max; }

@@ -104,7 +104,7 @@ std::optional<Real> Births::instant_reached(std::size_t i, Real t, const Populat
   return is_new ? std::optional(regular) : std::nullopt;
 }
 
-// The waiting particles, then those that have become due; all of them are removed from the waiting ones.
+// The waiting particles of the inserter, which are removed from the state, then those that have become due.
 std::vector<Births::Candidate> Births::take_due(std::size_t i, Real instant, Real t,
                                                 PopulationState& state) const {
   const Inserter& of = inserter(i);
@@ -142,8 +142,8 @@ Particle Births::born(std::size_t i, const Candidate& candidate, const Birth& bi
   p.material = candidate.particle.material;
   p.moment_of_inertia = moment_of_inertia(candidate.particle.inertia_factor, p.mass, p.radius);
   p.acceleration = model_.gravity, p.force = p.mass * model_.gravity;
-  // The accounting of explicit steps contains this function of the acceleration, which is not an energy that
-  // the particle brings.
+  // The accounting of explicit steps contains this function of the acceleration. It is not an energy that the
+  // particle carries in.
   p.integrator_loss = verlet_energy_shift(verlet_step(model_), p.mass, p.acceleration);
   return p;
 }

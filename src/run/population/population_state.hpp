@@ -25,7 +25,7 @@ struct PopulationState {
   // Particles that wait for a free position: inserter, n and class of each, in the order of n per inserter.
   std::vector<std::int64_t> waiting;
   std::vector<std::int64_t> mass;  // FixedSum of the masses of all particles born: its words
-  std::vector<Real> energy;        // kinetic and gravitational energy that they brought [J]: one number
+  std::vector<Real> energy;        // kinetic and gravitational energy of these at birth [J]: one number
 
   std::int64_t waiting_of(int inserter) const {
     std::int64_t count = 0;
