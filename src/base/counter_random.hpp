@@ -17,9 +17,6 @@ enum class RandomStream : std::uint32_t {
   radius = 1,
   mass = 2,
   density = 3,
-  position = 4,
-  velocity = 5,
-  region_share = 6,   // sample points for a region's volume
   mixture_class = 7,  // of a particle of a mixture
   birth = 8,          // position and velocity of an inserted particle
   test = 9

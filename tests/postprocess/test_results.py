@@ -360,7 +360,7 @@ RECORDED = (
     ("paper/net_9", ("output.history_bodies=['net.0']", "output.history_contacts=['net']")),
     ("examples/engine_mount", ()), ("examples/governor", ("output.history_coordinates=9",)),
     ("examples/slider_crank_3d", ("output.history_coordinates=9",)), ("examples/boom", ()), ("examples/press", ()),
-    ("examples/rolling_resistance", ("output.history_particles=[0]", REGION)),
+    ("examples/rolling_resistance", ("output.history_particles=[0]", REGION)), ("examples/silo", ()),
     ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")))
 
 

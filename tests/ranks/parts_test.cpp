@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "model/derived/random.hpp"
 #include "partition/decomposition.hpp"
 #include "partition/halo.hpp"
 #include "partition/ranks.hpp"
 #include "support/catch.hpp"
 #include "support/petsc_run.hpp"
-#include "support/random.hpp"
 #include "unit/dem/random_box.hpp"
 
 namespace scree {

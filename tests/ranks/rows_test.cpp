@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "dem/search/neighbor_list.hpp"
+#include "model/derived/random.hpp"
 #include "partition/decomposition.hpp"
 #include "partition/halo.hpp"
 #include "partition/ranks.hpp"
 #include "support/catch.hpp"
 #include "support/petsc_run.hpp"
-#include "support/random.hpp"
 #include "unit/dem/random_box.hpp"
 
 namespace scree {

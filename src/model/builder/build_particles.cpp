@@ -21,15 +21,15 @@ namespace scree {
 
 namespace {
 
-// One group while it is built: this rank's part of it. The random properties of a particle depend on the
-// group's seed and the particle's index within the group, not on its owner.
+// One group while it is built: this rank's part of it. Random numbers are drawn in the order radius, mass,
+// position, velocity, for all particles on every rank: a particle does not depend on its owner.
 class Group {
  public:
   Group(const DeckTable& table, const ModelNames& names, const Model& model)
       : table_(table),
         model_(model),
         names_(names),
-        seed_(static_cast<std::uint64_t>(table.integer("seed"))),
+        random_(static_cast<std::uint64_t>(table.integer("seed"))),
         kind_(table.choice<GroupKind>("kind")),
         material_(find_material(names, table, "material")),
         density_(names.densities[static_cast<std::size_t>(material_)]),
@@ -54,10 +54,10 @@ class Group {
   void place_regular();
   void place_row();
   void place_lattice();
-  void place_random(const std::vector<StartItem>& placed);
+  void place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii);
   // Values of the quantity `key` of the particles `part`. mass_power: as of Distribution.
-  std::vector<Real> drawn(const char* key, RandomStream stream, int mass_power, IdRange part) const {
-    return draw(read_distribution(table_.table(key), mass_power), part, seed_, stream);
+  std::vector<Real> drawn(const char* key, int mass_power, IdRange part, RandomNumbers& random) const {
+    return draw(read_distribution(table_.table(key), mass_power), count_, part, random);
   }
   std::vector<Real> radii();
   std::vector<Real> masses(const std::vector<Real>& radius);
@@ -77,7 +77,7 @@ class Group {
   const DeckTable& table_;
   const Model& model_;
   const ModelNames& names_;
-  std::uint64_t seed_;
+  RandomNumbers random_;
   GroupKind kind_;
   int material_;
   Real density_;
@@ -133,10 +133,11 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   part_ = part;
   if (file_) columns_ = file_->read(part);
   if (!is_random()) place_regular();
+  const RandomNumbers before_radii = random_;
   const std::vector<Real> radius = radii(), mass = masses(radius);
   for (const Real r : radius) check_normal(table_, has_column("radius") ? "file" : "radius", r);
   for (const Real m : mass) check_normal(table_, mass_key(), m);
-  if (is_random()) place_random(placed);
+  if (is_random()) place_random(placed, before_radii);
   const std::vector<Vec3> velocity = velocities();
   const std::size_t before = particles.position.size();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
@@ -213,7 +214,7 @@ void Group::place_lattice() {
 }
 
 // Each position depends on all earlier ones: every rank computes all of them and keeps its part.
-void Group::place_random(const std::vector<StartItem>& placed) {
+void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
   const FillRegion region(table_, model_, names_);
   PackingBox box = region.packing(table_.real("gap"), table_.integer("tries"));
   const PosedMeshes meshes(model_);
@@ -225,11 +226,11 @@ void Group::place_random(const std::vector<StartItem>& placed) {
     table_.fail("count",
                 fmt::format("the {} has no room in the space that is free of walls, meshes and bodies",
                             region.name()));
-  const std::vector<Real> radius = drawn("radius", RandomStream::radius, model_.space.dimension, {0, count_});
+  const std::vector<Real> radius = drawn("radius", model_.space.dimension, {0, count_}, before_radii);
   if (const std::string trouble = packing_trouble(box, radius, region.name()); !trouble.empty())
     table_.fail("count", trouble);
   const auto is_free = [&](Vec3 p, Real r) { return region.holds(p, r) && clear(p, r, box.gap); };
-  const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, seed_);
+  const std::vector<Vec3> places = random_packing(box, radius, placed, is_free, random_);
   if (places.size() < radius.size())
     table_.fail("count",
                 fmt::format("only {} particles found a position in {} tries each in the {}; a larger {}, "
@@ -253,7 +254,7 @@ std::vector<Real> Group::radii() {
     return columns_.at("radius");
   }
   if (!table_.has("radius")) table_.fail("radius", "missing; it must be a number [m] or a distribution");
-  return drawn("radius", RandomStream::radius, model_.space.dimension, part_);
+  return drawn("radius", model_.space.dimension, part_, random_);
 }
 
 std::vector<Real> Group::masses(const std::vector<Real>& radius) {
@@ -263,13 +264,13 @@ std::vector<Real> Group::masses(const std::vector<Real>& radius) {
       if (table_.has(key)) table_.fail(key, "not used: the file has a column mass");
     return columns_.at("mass");
   }
-  return table_.has("mass") ? drawn("mass", RandomStream::mass, 1, part_) : masses_from_density(radius);
+  return table_.has("mass") ? drawn("mass", 1, part_, random_) : masses_from_density(radius);
 }
 
 std::vector<Real> Group::masses_from_density(const std::vector<Real>& radius) {
   if (!table_.has("density") && density_ == 0)
     table_.fail("mass", "missing; the group needs mass or density, or a material with a density");
-  std::vector<Real> mass = table_.has("density") ? drawn("density", RandomStream::density, 1, part_)
+  std::vector<Real> mass = table_.has("density") ? drawn("density", 1, part_, random_)
                                                  : std::vector<Real>(radius.size(), density_);
   const Real thickness = table_.real("thickness");
   for (std::size_t i = 0; i < radius.size(); ++i)
@@ -283,11 +284,10 @@ std::vector<Vec3> Group::velocities() {
   if (has_column("vx")) velocity = vectors_of("v");
   for (Vec3& v : velocity) v += table_.vector("velocity");
   const Real bound = table_.real("random_velocity");
-  for (std::int64_t i = part_.first; bound > 0 && i < part_.last; ++i) {
-    CounterRandom random(seed_, RandomStream::velocity, i);
-    const Real x = random.uniform(-bound, bound), y = random.uniform(-bound, bound);
-    const Real z = model_.space.dimension == 3 ? random.uniform(-bound, bound) : 0;
-    velocity[static_cast<std::size_t>(i - part_.first)] += {x, y, z};
+  for (std::int64_t i = 0; bound > 0 && i < count_; ++i) {
+    const Real x = random_.uniform(-bound, bound), y = random_.uniform(-bound, bound);
+    const Real z = model_.space.dimension == 3 ? random_.uniform(-bound, bound) : 0;
+    if (i >= part_.first && i < part_.last) velocity[static_cast<std::size_t>(i - part_.first)] += {x, y, z};
   }
   return velocity;
 }

@@ -167,9 +167,9 @@ Real FillRegion::share(const IsFree& is_free) const {
   constexpr int kPoints = 20000;
   // A very small sphere, as overlaps with surfaces need a radius.
   const Real point = 1e-9 * norm(max_ - min_);
+  RandomNumbers random(1);
   int found = 0;
   for (int i = 0; i < kPoints; ++i) {
-    CounterRandom random(1, RandomStream::region_share, i);
     Vec3 p;
     if (drawn_) {
       p = drawn_->draw(random, point);
@@ -223,7 +223,7 @@ void FillRegion::add_cylinder(const DeckTable& table) {
     return along >= r && along <= length - r && norm(p - from - along * axis) <= radius - r;
   });
   const Vec3 across = perpendicular_to(axis), third = cross(axis, across);
-  drawn_ = DrawnRegion{[=](CounterRandom& random, Real r) {
+  drawn_ = DrawnRegion{[=](RandomNumbers& random, Real r) {
                          const Real along = random.uniform(r, length - r);
                          const Real one = random.uniform(r - radius, radius - r);
                          const Real two = random.uniform(r - radius, radius - r);

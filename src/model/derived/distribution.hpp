@@ -37,6 +37,7 @@ class Distribution {
   // Mean of x^power by number, from a quadrature with a relative error below 1e-12.
   Real moment(int power) const;
   const DistributionParameters& parameters() const { return parameters_; }
+  const DistributionParameters& given() const { return given_; }  // as the caller gave them
   int mass_power() const { return mass_power_; }
   // The distribution with the same parameters whose density counts the other of number and mass.
   Distribution other_reading() const;

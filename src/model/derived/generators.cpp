@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-Vec3 random_position(const PackingBox& box, Real radius, CounterRandom& random) {
+Vec3 random_position(const PackingBox& box, Real radius, RandomNumbers& random) {
   if (box.drawn) return box.drawn->draw(random, radius);
   const Real x = random.uniform(box.min.x + radius, box.max.x - radius);
   const Real y = random.uniform(box.min.y + radius, box.max.y - radius);
@@ -53,6 +53,27 @@ Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, R
   return failures;
 }
 
+// Distributions by number that groups of particles have always had keep the sequence of their random numbers;
+// the others are drawn by their quantiles.
+Real draw_one(const Distribution& distribution, RandomNumbers& random) {
+  const DistributionParameters& p = distribution.given();
+  if (p.by == CountedBy::number && p.kind == DistributionKind::uniform) return random.uniform(p.min, p.max);
+  if (p.by == CountedBy::number && p.kind == DistributionKind::normal)
+    for (;;) {
+      const Real value = p.mean + p.sd * random.normal();
+      if (value >= p.min && value <= p.max) return value;
+    }
+  if (p.by == CountedBy::number && p.kind == DistributionKind::table) {
+    Real rest = random.uniform() * std::accumulate(p.weights.begin(), p.weights.end(), Real(0));
+    for (std::size_t i = 0; i + 1 < p.values.size(); ++i) {
+      rest -= p.weights[i];
+      if (rest < 0) return p.values[i];
+    }
+    return p.values.back();
+  }
+  return distribution.quantile(random.uniform());
+}
+
 }  // namespace
 
 Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size, std::int64_t i) {
@@ -64,7 +85,7 @@ Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 
 
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
                                  const std::vector<StartItem>& obstacles, const IsFree& is_free,
-                                 std::uint64_t seed) {
+                                 RandomNumbers& random) {
   const Real own = radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end());
   Real largest = own;
   for (const StartItem& item : obstacles) largest = std::max(largest, item.radius);
@@ -80,7 +101,6 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
   std::vector<Vec3> positions(radius.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     const Real r = radius[order[n]];
-    CounterRandom random(seed, RandomStream::position, static_cast<std::int64_t>(order[n]));
     bool found = false;
     for (std::int64_t attempt = 0; static_cast<Real>(attempt) < tries && !found && fits(box, r); ++attempt) {
       positions[order[n]] = random_position(box, r, random);
@@ -119,13 +139,14 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius, con
       region.substr(0, region.find(' ')));
 }
 
-std::vector<Real> draw(const Distribution& distribution, IdRange part, std::uint64_t seed,
-                       RandomStream stream) {
+std::vector<Real> draw(const Distribution& distribution, std::int64_t count, IdRange part,
+                       RandomNumbers& random) {
   std::vector<Real> values(static_cast<std::size_t>(part.size()), distribution.smallest());
   if (distribution.is_constant()) return values;
-  for (std::int64_t i = part.first; i < part.last; ++i)
-    values[static_cast<std::size_t>(i - part.first)] =
-        distribution.quantile(CounterRandom(seed, stream, i).uniform());
+  for (std::int64_t i = 0; i < count; ++i) {
+    const Real value = draw_one(distribution, random);
+    if (i >= part.first && i < part.last) values[static_cast<std::size_t>(i - part.first)] = value;
+  }
   return values;
 }
 

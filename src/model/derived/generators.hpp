@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "base/counter_random.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/data/share.hpp"
 #include "model/derived/distribution.hpp"
+#include "model/derived/random.hpp"
 
 namespace scree {
 
@@ -22,7 +22,7 @@ Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 
 // Region from which random positions are drawn, in place of the bounding box: an oblique region fills little
 // of it.
 struct DrawnRegion {
-  std::function<Vec3(CounterRandom& random, Real radius)> draw;
+  std::function<Vec3(RandomNumbers& random, Real radius)> draw;
   Real volume = 0;  // [m^3]
 };
 
@@ -39,21 +39,19 @@ struct PackingBox {
 using IsFree = std::function<bool(Vec3 point, Real radius)>;
 
 // Random sequential insertion, largest particles first: each particle takes the first of its random positions
-// that is allowed and does not overlap spheres inserted before. The random positions of a particle depend on
-// the seed and its index. Returns one position per radius, in the order of the radii; fewer, the number
-// inserted, where a particle found no position.
+// that is allowed and does not overlap spheres inserted before. Returns one position per radius, in the order
+// of the radii; fewer, the number inserted, where a particle found no position.
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
                                  const std::vector<StartItem>& obstacles, const IsFree& is_free,
-                                 std::uint64_t seed);
+                                 RandomNumbers& random);
 
 // The reason why the particles cannot fit, found before any insertion; empty where they may fit. Large groups
 // are judged by the probability that a random position is free, small ones by volume. region: its name.
 std::string packing_trouble(const PackingBox& box, std::vector<Real> radius,
                             const std::string& region = "box (min, max)");
 
-// Values of the particles [part.first, part.last) of a group. Each depends on the seed, the stream and the
-// particle's index alone.
-std::vector<Real> draw(const Distribution& distribution, IdRange part, std::uint64_t seed,
-                       RandomStream stream);
+// Entries [part.first, part.last) of `count` values of a distribution. All values are drawn in sequence.
+std::vector<Real> draw(const Distribution& distribution, std::int64_t count, IdRange part,
+                       RandomNumbers& random);
 
 }  // namespace scree

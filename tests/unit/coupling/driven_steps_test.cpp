@@ -1,7 +1,7 @@
 // Explicit steps beside walls with prescribed motion and conveyors, taken at once: particles, contact history
 // and wrenches have the bits of steps taken one by one. Sums of several steps are added up together.
 #include "dem/host/step_loads.hpp"
-#include "support/random.hpp"
+#include "model/derived/random.hpp"
 #include "unit/coupling/driven_box.hpp"
 
 namespace scree {

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "model/derived/random.hpp"
 #include "output/checkpoint.hpp"
 #include "run/loop/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/petsc_run.hpp"
-#include "support/random.hpp"
 #include "support/reference.hpp"
 #include "support/state_bits.hpp"
 #include "unit/cuda/mixed_run.hpp"

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "dem/cpu/cpu_solver.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

@@ -3,12 +3,12 @@
 #include "dem/implicit/friction_matrix.hpp"
 
 #include "dem/implicit/friction_items.hpp"
+#include "model/derived/random.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

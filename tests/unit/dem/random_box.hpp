@@ -10,12 +10,12 @@
 #include "dem/particles/particle_store.hpp"
 #include "dem/surfaces/surfaces.hpp"
 #include "model/data/model.hpp"
+#include "model/derived/random.hpp"
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
 #include "support/backends.hpp"
 #include "support/catch.hpp"
 #include "support/newton_loop.hpp"
-#include "support/random.hpp"
 #include "support/test_meshes.hpp"
 
 namespace scree {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "dem/surfaces/surface_sums.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

@@ -21,7 +21,7 @@ struct Packing {
 // So many radii between `smallest` and 1 that they fill `fraction` of a box `length` wide.
 Packing packing(int dimension, Real fraction, Real smallest, Real length) {
   Packing p{{{0, 0, 0}, {length, length, dimension == 3 ? length : 0}, dimension, 0, 100000}, {}, {}};
-  CounterRandom random(3, RandomStream::test, 0);
+  RandomNumbers random(3);
   while (p.sums.fraction < fraction) {
     p.radius.push_back(random.uniform(smallest, 1));
     p.sums.add(dimension, p.radius.back(), std::pow(length, -dimension));
@@ -32,9 +32,9 @@ Packing packing(int dimension, Real fraction, Real smallest, Real length) {
 // The fraction of random positions, away from the walls, that are free for a radius among those positioned.
 Real tried_chance(const Packing& p, Real radius) {
   constexpr int kTried = 20000;
-  CounterRandom random(7, RandomStream::test, 0);
+  RandomNumbers random(7);
   const std::vector<Vec3> positions = random_packing(
-      p.box, p.radius, {}, [](Vec3, Real) { return true; }, 7);
+      p.box, p.radius, {}, [](Vec3, Real) { return true; }, random);
   REQUIRE(positions.size() == p.radius.size());
   int free = 0;
   for (int n = 0; n < kTried; ++n) {

@@ -1,8 +1,8 @@
 // Every point of the domain and its margin has one cell; cells have at least the size asked for.
 #include "partition/cell_grid.hpp"
 
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <vector>
 
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 

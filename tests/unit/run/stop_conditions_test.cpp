@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "model/derived/random.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
-#include "support/random.hpp"
 
 namespace scree {
 namespace {

@@ -1,5 +1,5 @@
-// Sequences of random numbers for tests that are equal on every platform: the standard specifies
-// std::mt19937_64, but not the distributions of <random>.
+// Random numbers that are equal on every platform: the standard specifies std::mt19937_64, but not the
+// distributions of <random>.
 #pragma once
 
 #include <cmath>
