@@ -100,7 +100,10 @@ std::optional<Real> Births::instant_reached(std::size_t i, Real t, const Populat
   const Real regular = of.schedule.start() + static_cast<Real>(instants_until(of, t) - 1) * of.interval;
   const bool is_new = instants_until(of, t) > state.instants[i];
   // The end of the schedule is an instant, too, for what has become due since the last regular one.
-  if (t >= end - kInstantRoundOff * of.interval && regular < end) return end;
+  const auto is_owing = [&] {
+    return of.schedule.is_due(state.amounts[i] + amount_of(i, next_candidate(i, state).particle), end);
+  };
+  if (t >= end - kInstantRoundOff * of.interval && regular < end && is_owing()) return end;
   return is_new ? std::optional(regular) : std::nullopt;
 }
 
