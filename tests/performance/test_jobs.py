@@ -87,12 +87,12 @@ class Jobs(unittest.TestCase):
             self.assertGreater(int(rows[0]["steps"]), 0)
 
     def test_a_settling_that_was_stopped_goes_on(self):
-        words = ("--only", "excavator 5e3, digging", "--sizes", 5000, "--time-limit", 1, "--settle", 3, "--keep",
+        words = ("--only", "excavator 5e3, digging", "--sizes", 5000, "--time-limit", 1, "--settle", 1.5, "--keep",
                  self.folder)
         for _ in range(2):
             code, rows, text = self.call(*words)
             self.assertEqual((code, rows), (1, []), text)
-            self.assertIn("stopped after 3.0 s, before it begins at 0.45 s", text)
+            self.assertIn("stopped after 1.5 s, before it begins at 0.45 s", text)
         (record,) = self.folder.glob("*/run_record.json")
         self.assertEqual(len(jobs.json.loads(record.read_text())["starts"]), 2)
 
