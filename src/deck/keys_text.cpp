@@ -17,8 +17,7 @@ constexpr std::size_t kWidth = 110;
 // The text of input/limits.md, in lines of kWidth; tests/cli/test_words.py compares them.
 constexpr const char* kModelLimits = R"(The model has these limits today.
 
-Particles are discs (2D) or spheres (3D); there are no polygons. All particles exist from the start: none are
-inserted, bonded or broken.
+Particles are discs (2D) or spheres (3D); there are no polygons. Particles are not bonded and do not break.
 
 Friction and rolling and twisting resistance act between particles, bodies and walls. JKR contacts, plastic
 contacts, liquid bridges and an attraction with a range beyond touch are available in explicit steps

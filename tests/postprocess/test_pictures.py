@@ -39,7 +39,7 @@ class PictureTest(unittest.TestCase):
         for path in PICTURES.glob("*.[pw][ne]*"):
             self.assertLess(path.stat().st_size, LARGEST, path.name)
             with PIL.Image.open(path) as image:
-                self.assertGreaterEqual(image.width, NARROWEST, path.name)
+                self.assertGreaterEqual(max(image.size), NARROWEST, path.name)
                 self.assertGreaterEqual(getattr(image, "n_frames", 1), 20 if path.suffix == ".webp" else 1, path.name)
 
     def test_they_say_of_what_they_are(self):
@@ -54,7 +54,9 @@ class PictureTest(unittest.TestCase):
                 said = image.text
             self.assertEqual(said["Title"], deck["title"], name)
             self.assertTrue(said["Description"].startswith(f"t = {time:g} s, "), said)
-            self.assertTrue(said["Color bar"].startswith("particle speed [m/s]: 0 to "), said)
+            shown = {"radius": "particle radius [m]: 0 to ", "material": "particle material"}.get(
+                words.get("--color"), "particle speed [m/s]: 0 to ")
+            self.assertTrue(said["Color bar"].startswith(shown), said)
             if "--fastest" in words:
                 self.assertEqual(said["Color bar"], f"particle speed [m/s]: 0 to {words['--fastest']}")
 
