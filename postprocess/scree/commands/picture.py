@@ -19,6 +19,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
                         help="a .png, .jpg, .pdf or .svg; default RESULT_DIR/picture.png")
     parser.add_argument("--colors", type=palette, default=0, metavar="COUNT",
                         help="number of colours of a .png, up to 256, for a smaller file; default: all")
+    parser.add_argument("--width", type=count, metavar="PIXELS",
+                        help="width of the picture; default: from its height and shape")
     add_picture_options(parser)
 
 
@@ -42,7 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     path = arguments.output or arguments.folder / "picture.png"
     options.fit(drawn, [snapshot])
     try:
-        save_picture(make_picture(drawn, [snapshot], options, fine=True), snapshot, path, arguments.colors)
+        save_picture(make_picture(drawn, [snapshot], options, fine=True), snapshot, path, arguments.colors,
+                     arguments.width)
     except ValueError as error:  # unknown suffix
         raise ScreeError(f"{path}: {error}") from error
     print(path)

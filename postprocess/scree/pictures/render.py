@@ -231,12 +231,14 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], options: PictureOpti
                    coloring(particles, options.color, snapshots, gravity, visible, options.fastest))
 
 
-def save_picture(picture: Picture, snapshot: int, path: pathlib.Path, colors: int = 0) -> None:
-    """colors: number of those of a PNG, for a smaller file; 0: all."""
+def save_picture(picture: Picture, snapshot: int, path: pathlib.Path, colors: int = 0,
+                 width: int | None = None) -> None:
+    """colors: number of those of a PNG, for a smaller file; 0: all. width: in pixels."""
     picture.draw(snapshot)
+    dpi = "figure" if width is None else width / picture.figure.get_figwidth()
     if path.suffix == ".png":  # without the transparency of matplotlib the file is smaller
         drawn = io.BytesIO()
-        picture.figure.savefig(drawn, format="png")
+        picture.figure.savefig(drawn, format="png", dpi=dpi)
         entries = PngInfo()
         for name, text in picture.imprint(snapshot).items():
             entries.add_text(name, text)
@@ -245,7 +247,7 @@ def save_picture(picture: Picture, snapshot: int, path: pathlib.Path, colors: in
             image = image.quantize(colors, dither=Image.Dither.NONE)
         image.save(path, optimize=True, pnginfo=entries)
     else:
-        picture.figure.savefig(path)
+        picture.figure.savefig(path, dpi=dpi)
     plt.close(picture.figure)
 
 
